@@ -58,7 +58,7 @@
 //! `format`, `sentence`, `timings`, the scene's data (`model`), `simd` → `rotation`, `material`, `displacement` → `element` → `mesh`
 //! → `solver`, `scene` (reads scenes and mesh files), `state` → `assembly` → `method` for equilibria, `dynamics` for
 //! motions, `stress` → `simulation` → `exact_beam` → `study` → `plot`, the drawings → the window → the commands.
-//! `article` needs elements and rotations only. The list `LAYERS` in `tests/architecture.rs` holds this order, and a test
+//! `article` needs elements and rotations only. The list `LAYERS` in `tests/style/architecture.rs` holds this order, and a test
 //! fails on imports against it.
 //!
 //! The feature `app` (on by default) adds the window and the commands; `cli` adds the commands alone, without a GPU or
@@ -68,7 +68,7 @@
 //!
 //! - M. Müller, M. Gross, *Interactive Virtual Materials*, Graphics Interface 2004: warped stiffness.
 //! - "实时物理模拟之 Warped Stiffness 方法" (*the article*): equation numbers in these pages refer to it. Its errata are
-//!   documented at [`rotation::polar`]; those of formulas that the solver does not need, in `tests/article`.
+//!   documented at [`rotation::polar`]; those of formulas that the solver does not need, in `tests/physics/article`.
 //! - faer for sparse Cholesky, nalgebra for small matrices.
 
 #![forbid(unsafe_code)]

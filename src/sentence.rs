@@ -13,7 +13,7 @@ pub struct Sentence {
 }
 
 /// Makes a [`Sentence`] of a pattern and its parts, each written `name = value`, or `name` for a variable of that name.
-/// `tests/language.rs` checks that every pattern is translated.
+/// `tests/window/language.rs` checks that every pattern is translated.
 macro_rules! sentence {
     ($pattern:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
         $crate::sentence::Sentence::new($pattern, [$((stringify!($name), sentence!(@part $name $($value)?))),*])

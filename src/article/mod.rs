@@ -6,7 +6,7 @@
 //! - [`stiffness`]: Ke, R Ke, R Ke Rᵀ and R Ke X of one element (eqs. 1–3).
 //!
 //! The maps of quadrilaterals and tetrahedra, the SVD and the polar decomposition in space (eqs. 21–36) are in
-//! `tests/article`. The closed-form rotation of the plane (eqs. 37–39) is the solver's own: [`crate::rotation::polar`].
+//! `tests/physics/article`. The closed-form rotation of the plane (eqs. 37–39) is the solver's own: [`crate::rotation::polar`].
 
 pub mod affine;
 pub mod stiffness;

@@ -1,9 +1,10 @@
-//! Functions shared by the tests.
-#![allow(dead_code, reason = "each test uses its part")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+//! Functions shared by the test programs.
+#![allow(dead_code, reason = "each program uses its part")]
 
+pub mod alone;
 #[cfg(all(feature = "app", target_os = "linux"))]
 pub mod drop;
+pub mod files;
 #[cfg(feature = "app")]
 pub mod lab;
 pub mod motion;
@@ -13,21 +14,11 @@ pub mod pictures;
 pub mod process;
 pub mod random;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use warpbeam::scene::{Analysis, Scene, Source, open, registry};
 use warpbeam::simulation::{Simulation, Status};
-
-/// Returns every Rust file in a folder and the folders inside it, sorted.
-pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let (folders, mut files): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| path.is_dir());
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
-    files.extend(folders.iter().flat_map(|folder| rust_files(folder)));
-    files
-}
 
 /// Opens a built-in scene.
 pub fn scene(id: &str) -> Scene {

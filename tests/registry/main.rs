@@ -1,6 +1,6 @@
 //! Tests that run for every entry of a registry under the entry's name: `cargo test --test registry -- t6` runs those
 //! of one element, `-- newton` those of one method.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 #[path = "../common/mod.rs"]
 mod common;

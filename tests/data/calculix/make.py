@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Solves two parts with CalculiX and writes what tests/calculix.rs compares with: decks and results.csv.
+"""Solves two parts with CalculiX and writes what tests/physics/calculix.rs compares with: decks and results.csv.
 
 Usage, from this folder, with CalculiX 2.20 (Debian: calculix-ccx):
 

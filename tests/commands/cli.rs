@@ -1,0 +1,1130 @@
+//! Tests of the command line for scripts: exit codes, messages, JSON, files.
+
+use std::fs;
+use std::path::Path;
+
+#[cfg(target_os = "linux")]
+use crate::common::process::{on_a_terminal, start, wait_for};
+use crate::common::{ids_of, program, scene, scene_ids, solve_json, stderr, stdout, warpbeam, warpbeam_in};
+use warpbeam::scene::{Analysis, registry};
+
+#[test]
+fn every_command_has_help() {
+    for args in [
+        &["--help"][..],
+        &["run", "--help"],
+        &["scenes", "--help"],
+        &["solve", "--help"],
+        &["shot", "--help"],
+        &["curve", "--help"],
+        &["study", "--help"],
+        &["tune", "--help"],
+        &["extremes", "--help"],
+        &["record", "--help"],
+        &["rust", "--help"],
+        &["completions", "--help"],
+        &["man", "--help"],
+    ] {
+        let output = warpbeam(args);
+        assert_eq!(output.status.code(), Some(0), "{args:?}");
+        let text = stdout(&output);
+        assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
+        assert!(text.lines().all(|line| line.len() < 200));
+    }
+    for command in
+        ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot", "record", "rust", "completions", "man"]
+    {
+        assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
+    }
+    assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
+    // The help documents the columns of files that scripts read, and interruption.
+    for words in ["NAME_v_x", "dissipated", "about 300", "Ctrl-C"] {
+        assert!(stdout(&warpbeam(&["solve", "--help"])).contains(words), "{words}");
+    }
+    for words in ["frame times", "ffmpeg", "Ctrl-C"] {
+        assert!(stdout(&warpbeam(&["record", "--help"])).contains(words), "{words}");
+    }
+    assert!(stdout(&warpbeam(&["--version"])).starts_with("warpbeam "));
+}
+
+#[test]
+fn scenes_lists_every_scene_with_its_sentence() {
+    let text = stdout(&warpbeam(&["scenes"]));
+    for id in scene_ids() {
+        assert!(text.lines().any(|line| line.starts_with(id)), "{id}");
+        assert!(text.contains(&scene(id).about), "{id}");
+    }
+}
+
+#[test]
+fn every_scene_file_is_in_the_registry() {
+    let files = fs::read_dir("assets/scenes").unwrap().count();
+    assert_eq!(files, registry::BUILT_IN.len());
+}
+
+#[test]
+fn json_has_every_field_of_the_contract() {
+    for id in ids_of(Analysis::Static) {
+        let json = solve_json(&[id]);
+        let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+        let contract = [
+            "scene",
+            "element",
+            "method",
+            "dofs",
+            "status",
+            "reason",
+            "stable",
+            "jumped",
+            "jumped_at",
+            "buckles_at",
+            "iterations",
+            "load_steps",
+            "load_fraction",
+            "on_path_from_rest",
+            "residual",
+            "residual_floor",
+            "fixed_point_rho",
+            "max_rotation_deg",
+            "max_strain",
+            "inverted_elements",
+            "max_von_mises",
+            "mesh_error_percent",
+            "mesh_error_of",
+            "warnings",
+            "probes",
+            "energy",
+            "reaction",
+            "supports",
+            "time_us",
+        ];
+        assert_eq!(keys, contract, "{id}");
+        assert_eq!(json["status"], "converged", "{id}");
+        assert!(json["residual"].as_f64().unwrap() <= 1e-8);
+        let probe = &json["probes"][0];
+        for key in [
+            "name",
+            "x",
+            "u",
+            "rotation_deg",
+            "strain",
+            "stress",
+            "von_mises",
+            "reference_u",
+            "reference_source",
+            "reference_error_percent",
+            "error_percent",
+            "truth_u",
+        ] {
+            assert!(probe.get(key).is_some(), "{id}: {key}");
+        }
+        // A body at rest has no kinetic energy and no dissipation: absent values are null.
+        assert!(json["energy"]["kinetic"].is_null() && json["energy"]["dissipated"].is_null());
+        for (object, keys) in [
+            ("energy", &["elastic", "external", "kinetic", "dissipated"][..]),
+            ("reaction", &["force", "moment"]),
+            (
+                "time_us",
+                &[
+                    "total",
+                    "wall",
+                    "rotate",
+                    "assemble",
+                    "factorize",
+                    "solve",
+                    "certify",
+                    "set_up",
+                    "stress",
+                    "reference",
+                    "other",
+                ],
+            ),
+        ] {
+            for key in keys {
+                assert!(json[object].get(key).is_some(), "{id}: {object}.{key}");
+            }
+        }
+        // The solve time is the sum of its stages, and the reported times sum to the total.
+        let time = |key: &str| json["time_us"][key].as_f64().unwrap();
+        let solve: f64 = ["rotate", "assemble", "factorize", "solve"].map(time).iter().sum();
+        let beside: f64 = ["certify", "set_up", "stress", "reference", "other"].map(time).iter().sum();
+        assert!((solve - time("total")).abs() < 1e-6 * solve, "{id}: {solve} of {} µs", time("total"));
+        assert!((solve + beside - time("wall")).abs() < 1e-6 * time("wall"), "{id}: {solve} + {beside} µs");
+        let certified = json["time_us"]["certify"].as_f64().unwrap() > 0.0;
+        assert_eq!(certified, json["method"] != "linear", "{id}");
+        assert!(json["reason"].is_null(), "{id}");
+    }
+}
+
+/// A motion has the same object with additional fields. Its energy ledger balances, and its energy drift is small.
+#[test]
+fn json_of_a_motion_has_its_energy_ledger() {
+    for integrator in ["implicit-euler", "tr-bdf2", "energy-momentum"] {
+        let choice = format!("dynamics.integrator={integrator}");
+        let json = solve_json(&["swing", "--set", &choice, "--set", "dynamics.duration=0.5"]);
+        assert_eq!(json["status"], "finished");
+        assert_eq!((json["integrator"].as_str(), json["steps"].as_u64()), (Some(integrator), Some(30)));
+        assert!((json["time"].as_f64().unwrap() - 0.5).abs() < 1e-9);
+        let energy = |key: &str| json["energy"][key].as_f64().unwrap_or_else(|| panic!("{integrator}: {key}"));
+        let lost = energy("dissipated") + energy("integrator") - energy("pulses") - energy("hands");
+        let sum = energy("kinetic") + energy("elastic") - energy("external") + lost;
+        assert!(sum.abs() < 1e-9 * energy("external"), "{integrator}: the terms of the ledger sum to {sum} J");
+        assert!(json["energy_drift"].as_f64().unwrap() < 1e-6);
+        assert!(json["momentum"]["linear"][1].as_f64().unwrap() < 0.0 && json["momentum"]["angular"].is_number());
+    }
+    let explicit = ["solve", "swing", "--json", "--set", "dynamics.integrator=symplectic-euler"];
+    let too_long = warpbeam(&explicit);
+    let json: serde_json::Value = serde_json::from_str(&stdout(&too_long)).unwrap();
+    assert_eq!((too_long.status.code(), json["status"].as_str()), (Some(1), Some("stopped")));
+    assert!(json["critical_step"].as_f64().unwrap() < 1e-3);
+}
+
+#[test]
+fn the_axial_bar_has_the_analytic_displacement_energy_and_reaction() {
+    let json = solve_json(&["stretch"]);
+    assert!((json["probes"][0]["u"][0].as_f64().unwrap() - 0.4).abs() < 1e-9);
+    assert!((json["energy"]["elastic"].as_f64().unwrap() - 10_000.0).abs() < 1e-3);
+    assert!((json["reaction"]["force"][0].as_f64().unwrap() + 50_000.0).abs() < 1e-3);
+}
+
+#[test]
+fn set_changes_any_value() {
+    let json = solve_json(&["cantilever", "--set", "beam.cells=[20,2]", "--set", "solver.method=linear"]);
+    assert_eq!((json["dofs"].as_u64(), json["method"].as_str()), (Some(120), Some("linear")));
+    let double = solve_json(&["cantilever", "--set", "solver.method=linear", "--set", "load.0.force=[0,-2000]"]);
+    let single = solve_json(&["cantilever", "--set", "solver.method=\"linear\""]);
+    let tip = |json: &serde_json::Value| json["probes"][0]["u"][1].as_f64().unwrap();
+    assert!((tip(&double) / tip(&single) - 2.0).abs() < 1e-9);
+    // A table that the file does not contain.
+    let scene = solve_json(&["shear", "--set", "solver.tolerance=1e-4"]);
+    assert!(scene["residual"].as_f64().unwrap() > 1e-8);
+}
+
+#[test]
+fn exit_code_1_for_a_solve_that_does_not_converge_and_the_result_is_still_printed() {
+    let limit = warpbeam(&["solve", "cantilever", "--json", "--set", "solver.max_iterations=2"]);
+    assert_eq!(limit.status.code(), Some(1));
+    let json: serde_json::Value = serde_json::from_slice(&limit.stdout).unwrap();
+    assert_eq!((json["status"].as_str(), json["iterations"].as_u64()), (Some("not_converged"), Some(2)));
+    let diverged = warpbeam(&["solve", "cantilever", "--json", "--set", "load.0.force=[0,-9000]"]);
+    assert_eq!(diverged.status.code(), Some(1));
+    let json: serde_json::Value = serde_json::from_slice(&diverged.stdout).unwrap();
+    assert_eq!(json["status"], "diverged");
+    let words = stdout(&warpbeam(&["solve", "cantilever", "--set", "load.0.force=[0,-9000]"]));
+    assert!(words.contains("too large for this method"), "{words}");
+}
+
+#[test]
+fn results_are_written_as_csv_and_vtu() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str| {
+        let path = folder.path().join(name);
+        let output = warpbeam(&["solve", "article", "--out", path.to_str().unwrap()]);
+        (output.status.code(), fs::read_to_string(path).unwrap_or_default(), stderr(&output))
+    };
+    let (code, csv, _) = run("nodes.csv");
+    assert_eq!(code, Some(0));
+    let rows: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+    assert_eq!((rows.len(), rows[0].len()), (12, 17));
+    for row in &rows {
+        assert!((row[1] + row[5] - row[3]).abs() < 1e-12 && (row[2] + row[6] - row[4]).abs() < 1e-12);
+    }
+    let (code, vtu, _) = run("mesh.vtu");
+    assert_eq!(code, Some(0));
+    assert!(vtu.contains("NumberOfPoints=\"12\" NumberOfCells=\"10\"") && vtu.contains("von Mises (Cauchy) [Pa]"));
+    let (code, _, message) = run("mesh.obj");
+    assert_eq!(code, Some(2));
+    assert!(message.contains(".csv or .vtu"), "{message}");
+}
+
+/// Returns the columns and the rows of a CSV file of numbers.
+fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    (header, lines.map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect())
+}
+
+/// Returns `true` if a number equals one in a JSON text, which `serde_json` parses to all but the last digit.
+fn same(number: f64, json: &serde_json::Value) -> bool {
+    (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
+}
+
+/// The trajectory of a motion has a row for every step. The last row is the result, and the energy
+/// ledger balances in every row.
+#[test]
+fn a_motion_is_written_as_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.csv");
+    for (id, integrator, iterations) in [
+        ("swing", "tr-bdf2", 1),
+        ("swing", "energy-momentum", 0),
+        ("jelly", "implicit-euler", 1),
+        ("flick", "tr-bdf2", 1),
+    ] {
+        let set = [format!("dynamics.integrator={integrator}"), format!("dynamics.iterations={iterations}")];
+        let args = [id, "--set", &set[0], "--set", &set[1], "--set", "dynamics.duration=0.5"];
+        let json = solve_json(&[&args[..], &["--out", path.to_str().unwrap()]].concat());
+        let (header, rows) = read_table(&path);
+        let name = json["probes"][0]["name"].as_str().unwrap();
+        assert_eq!(
+            header[..7],
+            ["t", "x", "y", "u_x", "u_y", "v_x", "v_y"].map(|c| match c {
+                "t" => c.to_owned(),
+                c => format!("{name}_{c}"),
+            })
+        );
+        let energies = &header[header.len() - 7..];
+        assert_eq!(energies, ["kinetic", "elastic", "potential", "dissipated", "integrator", "pulses", "hands"]);
+        let steps = json["steps"].as_u64().unwrap() as usize;
+        assert_eq!((rows.len(), steps > 20), (steps + 1, true), "{id}");
+        assert!(rows.windows(2).all(|w| w[1][0] > w[0][0]) && rows[0][0] == 0.0, "{id}: times increase");
+        let last = rows.last().unwrap();
+        let probe = &json["probes"][0];
+        let seen = [&json["time"], &probe["x"][0], &probe["x"][1], &probe["u"][0], &probe["u"][1]];
+        for (column, value) in last.iter().zip(seen) {
+            assert!(same(*column, value), "{id}: {column} {value}");
+        }
+        let from = header.len() - 7;
+        for key in ["kinetic", "elastic", "dissipated", "integrator", "pulses", "hands"] {
+            let column = header.iter().position(|c| c == key).unwrap();
+            assert!(same(last[column], &json["energy"][key]), "{id}: {key}");
+        }
+        let sum = |row: &[f64]| row[from..from + 5].iter().sum::<f64>() - row[from + 5] - row[from + 6];
+        let largest = rows.iter().flat_map(|r| &r[from..]).fold(0.0_f64, |m, v| m.max(v.abs()));
+        for row in &rows {
+            assert!((sum(row) - sum(&rows[0])).abs() < 1e-9 * largest, "{id}, {integrator}: the ledger of {row:?}");
+        }
+        // The velocity is the derivative of the displacement, for steps that resolve it.
+        let h = rows[1][0] - rows[0][0];
+        let fastest = rows.iter().map(|r| r[6].abs()).fold(0.0, f64::max);
+        let off = rows.windows(3).map(|w| ((w[2][4] - w[0][4]) / (2.0 * h) - w[1][6]).abs()).fold(0.0, f64::max);
+        assert!(off < 0.2 * fastest, "{id}, {integrator}: the velocity is off by {off} of {fastest} m/s");
+    }
+}
+
+/// A motion is written as a series of states for ParaView: existing files, increasing times, and the result at the end.
+#[test]
+fn a_motion_is_written_as_a_series_of_states() {
+    let folder = tempfile::tempdir().unwrap();
+    // A name with a character that XML must escape.
+    let path = folder.path().join("swing & sway.pvd");
+    let last = folder.path().join("last.vtu");
+    for (step, duration, states) in [("0.016666666666666666", "0.5", 31), ("0.001", "0.65", 218)] {
+        let set = [format!("dynamics.time_step={step}"), format!("dynamics.duration={duration}")];
+        let args = ["swing", "--set", &set[0], "--set", &set[1], "--set", "beam.cells=[4,1]"];
+        let json = solve_json(&[&args[..], &["--out", path.to_str().unwrap()]].concat());
+        let text = fs::read_to_string(&path).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let root = document.root_element();
+        assert_eq!((root.tag_name().name(), root.attribute("type")), ("VTKFile", Some("Collection")));
+        let sets: Vec<_> = document.descendants().filter(|n| n.has_tag_name("DataSet")).collect();
+        assert_eq!(sets.len(), states, "every step, or every third of 650, and the last");
+        let times: Vec<f64> = sets.iter().map(|n| n.attribute("timestep").unwrap().parse().unwrap()).collect();
+        assert!(times.windows(2).all(|w| w[1] > w[0]) && times[0] == 0.0);
+        assert!(same(*times.last().unwrap(), &json["time"]));
+        let files: Vec<_> = sets.iter().map(|n| folder.path().join(n.attribute("file").unwrap())).collect();
+        for file in &files {
+            let text = fs::read_to_string(file).unwrap();
+            roxmltree::Document::parse(&text).unwrap();
+        }
+        // The state in the last file is the result: the tip is the mean of the right edge.
+        let text = fs::read_to_string(files.last().unwrap()).unwrap();
+        let vectors = |name: &str| -> Vec<Vec<f64>> {
+            let document = roxmltree::Document::parse(&text).unwrap();
+            let array = document.descendants().find(|n| match name {
+                "points" => n.parent().is_some_and(|p| p.has_tag_name("Points")),
+                name => n.attribute("Name") == Some(name),
+            });
+            let numbers: Vec<f64> =
+                array.unwrap().text().unwrap().split_whitespace().map(|v| v.parse().unwrap()).collect();
+            numbers.chunks(3).map(<[f64]>::to_vec).collect()
+        };
+        let (points, u, v) = (vectors("points"), vectors("displacement"), vectors("velocity"));
+        assert!(u.len() == points.len() && v.len() == points.len());
+        let tip = &json["probes"][0];
+        // Simpson's rule along the only six-node side.
+        let weight = |y: f64| if y.abs() < 1e-9 { 4.0 / 6.0 } else { 1.0 / 6.0 };
+        for axis in 0..2 {
+            let mean: f64 =
+                points.iter().zip(&u).filter(|(p, _)| p[0] > 1.0 - 1e-9).map(|(p, u)| weight(p[1]) * u[axis]).sum();
+            assert!((mean - tip["u"][axis].as_f64().unwrap()).abs() < 1e-12, "axis {axis}: {mean}, {tip}");
+        }
+        assert!(v.iter().flatten().any(|v| v.abs() > 0.1));
+        // The same run written as a single state.
+        solve_json(&[&args[..], &["--out", last.to_str().unwrap()]].concat());
+        assert_eq!(fs::read_to_string(&last).unwrap(), text);
+    }
+    let refused = warpbeam_in(folder.path(), &["solve", "article", "--out", "rest.pvd"]);
+    assert_eq!((refused.status.code(), refused.stdout.is_empty()), (Some(2), true));
+    assert!(stderr(&refused).contains("a scene in motion"), "{}", stderr(&refused));
+    assert!(!folder.path().join("rest.pvd").exists());
+}
+
+/// A file that cannot be written is an error, but the result is still printed. A reader that
+/// closes its pipe is no error.
+#[cfg(target_os = "linux")]
+#[test]
+fn failed_writes_end_with_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    for args in [&["solve", "article", "--json"][..], &["solve", "swing"], &["scenes"], &["curve", "elastica"]] {
+        let output = program(folder.path(), args).stdout(full()).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&output).contains("standard output: "), "{args:?}: {}", stderr(&output));
+    }
+    for (id, name) in
+        [("article", "x.csv"), ("swing", "x.csv"), ("article", "x.vtu"), ("swing", "x.vtu"), ("swing", "x.pvd")]
+    {
+        let path = folder.path().join(name);
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let output = warpbeam_in(folder.path(), &["solve", id, "--out", name, "--json"]);
+        fs::remove_file(path).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{id} {name}");
+        assert!(stderr(&output).contains("x."), "{id} {name}: {}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert!(json["status"] == "converged" || json["status"] == "finished", "{id} {name}");
+    }
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = program(folder.path(), &["solve", "article"]).stdout(writer).output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+}
+
+/// Ctrl-C ends a long command, which writes its results up to then.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_command_writes_its_partial_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.csv");
+    let args = ["solve", "swing", "--json", "--set", "dynamics.duration=1e5", "--out", "swing.csv"];
+    let running = start(folder.path(), &args);
+    wait_for("rows", || fs::metadata(&path).is_ok_and(|file| file.len() > 20_000));
+    let output = running.interrupt();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("partial"), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(json["status"], "stopped");
+    let (header, rows) = read_table(&path);
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+    assert_eq!(rows.len() as u64 - 1, json["steps"].as_u64().unwrap());
+    assert!(same(rows.last().unwrap()[0], &json["time"]));
+
+    let args = ["solve", "swing", "--set", "dynamics.duration=1e5", "--out", "series.pvd"];
+    let running = start(folder.path(), &args);
+    wait_for("the first state", || folder.path().join("series_0000.vtu").exists() && running.listens());
+    let output = running.interrupt();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("stopped at"), "{}", stdout(&output));
+    let pvd = fs::read_to_string(folder.path().join("series.pvd")).unwrap();
+    assert!(roxmltree::Document::parse(&pvd).unwrap().descendants().filter(|n| n.has_tag_name("DataSet")).count() >= 1);
+
+    // Interrupted at any time, the atlas is a table of the cases so far.
+    let running = start(folder.path(), &["extremes", "--out", "atlas"]);
+    wait_for("an ear for signals", || running.listens());
+    let output = running.interrupt();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("not in the atlas"), "{}", stderr(&output));
+    let atlas = fs::read_to_string(folder.path().join("atlas/extremes.csv")).unwrap();
+    let columns = atlas.lines().next().unwrap().split(',').count();
+    assert!(atlas.lines().all(|line| line.split(',').count() == columns));
+
+    for (args, missing) in [
+        (&["study", "cantilever", "--out", "trade"][..], "the finer meshes|nothing has been measured"),
+        (&["tune", "cantilever", "--error", "0.001%"], "nothing has been measured|finer meshes"),
+    ] {
+        let running = start(folder.path(), args);
+        wait_for("an ear for signals", || running.listens());
+        let output = running.interrupt();
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(missing.split('|').any(|words| text.contains(words)), "{args:?}: {text}");
+    }
+}
+
+/// A progress bar is shown on a terminal only.
+#[cfg(target_os = "linux")]
+#[test]
+fn long_commands_show_a_progress_bar_on_a_terminal() {
+    let args = ["solve", "swing", "--set", "dynamics.duration=60"];
+    let quiet = warpbeam(&args);
+    assert_eq!((quiet.status.code(), stderr(&quiet).as_str()), (Some(0), ""));
+    let (code, text) = on_a_terminal(Path::new("."), &args);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains(" of 60 s, ") && text.contains(" s per second") && text.contains(" left"), "{text}");
+    // The bar shows a remaining time only once it can estimate one.
+    assert!(!text.contains("0s left"), "{text}");
+}
+
+const GOOD: &str = r#"name = "Bar"
+[beam]
+length = 2.0
+height = 1.0
+cells = [4, 2]
+
+[material]
+young = 1.0e6
+poisson = 0.3
+
+[[support]]
+edge = "left"
+fix = ["x", "y"]
+
+[[load]]
+kind = "force"
+edge = "right"
+force = [0.0, -10.0]
+"#;
+
+/// The scene above with one line changed gives exit code 2, and one message with file, line and the expected value.
+#[test]
+fn bad_scene_files_get_one_clear_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let cases: &[(&str, &str, Option<usize>, &str)] = &[
+        // Missing keys.
+        ("name = \"Bar\"\n", "", Some(1), "scene.toml:1: name: expected a title, got nothing"),
+        ("length = 2.0\n", "", Some(2), "beam.length: expected a length (m), got nothing"),
+        ("poisson = 0.3\n", "", Some(7), "material.poisson: expected a pure number, got nothing"),
+        ("young = 1.0e6\n", "", Some(7), "material.young: expected a pressure (Pa), got nothing"),
+        (
+            "cells = [4, 2]\n",
+            "",
+            Some(2),
+            "beam.cells: expected the cells along and across, as in [20, 2], got nothing",
+        ),
+        (
+            "[material]\nyoung = 1.0e6\npoisson = 0.3\n",
+            "",
+            Some(1),
+            "material: expected the table [material], got nothing",
+        ),
+        ("fix = [\"x\", \"y\"]\n", "", Some(11), "support.0.fix: expected the directions it fixes, as in"),
+        (
+            "kind = \"force\"\n",
+            "",
+            Some(15),
+            "load.0.kind: expected one of \"force\", \"gravity\", \"moment\", got nothing",
+        ),
+        (
+            "[[load]]",
+            "[[probe]]\nedge = \"left\"\n[[load]]",
+            Some(15),
+            "probe.0.name: expected what it is called in results",
+        ),
+        ("force = [0.0, -10.0]\n", "", Some(15), "force = [fx, fy] in N"),
+        ("[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n", "", None, "at least one [[support]]"),
+        // Unknown keys and words.
+        ("length = 2.0", "length = 2.0\nlenght = 3.0", Some(4), "unknown field `lenght`"),
+        ("kind = \"force\"", "kind = \"wind\"", Some(16), "unknown variant `wind`"),
+        ("cells = [4, 2]", "cells = [4, 2]\nelement = \"q9\"", Some(6), "unknown variant `q9`"),
+        ("edge = \"right\"", "edge = \"rihgt\"", Some(17), "expected one of bottom, left, right, top"),
+        // Numbers out of range.
+        ("length = 2.0", "length = -2.0", Some(3), "expected 1e-6 to 1000000 m, got -2"),
+        ("height = 1.0", "height = 0.0", Some(4), "beam.height: expected"),
+        ("height = 1.0", "height = nan", Some(4), "got NaN"),
+        ("young = 1.0e6", "young = inf", Some(8), "got inf"),
+        ("poisson = 0.3", "poisson = 0.6", Some(9), "expected -0.99 to 0.5, got 0.6"),
+        ("poisson = 0.3", "poisson = 0.5\nplane = \"strain\"", Some(9), "to 0.4999, got 0.5"),
+        ("force = [0.0, -10.0]", "force = [0.0, nan]", Some(18), "load.0.force: expected"),
+        ("cells = [4, 2]", "cells = [0, 2]", Some(5), "beam.cells: expected 1 to"),
+        ("cells = [4, 2]", "cells = [1000000000, 1]", Some(5), "beam.cells: expected 1 to 100000"),
+        ("cells = [4, 2]", "cells = [31623, 31623]", Some(5), "cells in all"),
+        ("cells = [4, 2]", "cells = [99999999999, 1]", Some(5), "99999999999"),
+        // Wrong types.
+        ("length = 2.0", "length = \"2 N\"", Some(3), "beam.length: `2 N` is a force (N); expected a length (m)"),
+        ("length = 2.0", "length = \"2 ell\"", Some(3), "unknown unit `ell`; expected a length (m)"),
+        ("young = 1.0e6", "young = \"much\"", Some(8), "`much` is not a number; expected a pressure (Pa)"),
+        ("force = [0.0, -10.0]", "force = [0.0,\n\"-1 kPa\"]", Some(19), "load.0.force.1: `-1 kPa` is a pressure (Pa)"),
+        ("force = [0.0, -10.0]", "force = [0.0, \"-1e12 GN\"]", Some(18), "expected 0 to 1e15 N, got 1e21"),
+        ("cells = [4, 2]", "cells = 4", Some(5), "expected an array"),
+        ("cells = [4, 2]", "cells = [4.5, 2]", Some(5), "expected u32"),
+        ("edge = \"left\"", "edge = \"left\"\nat = [0.0, 0.0]", Some(11), "got both"),
+        ("fix = [\"x\", \"y\"]", "fix = [\"x\"]", Some(11), "can still move freely"),
+        ("fix = [\"x\", \"y\"]", "fix = [\"z\"]", Some(13), "unknown variant `z`"),
+        // Not TOML.
+        ("[material]", "[material", Some(7), "unclosed table"),
+        ("name = \"Bar\"", "{ \"name\": \"Bar\" }", Some(1), ""),
+    ];
+    fs::write(&path, GOOD).unwrap();
+    assert_eq!(warpbeam(&["solve", path.to_str().unwrap()]).status.code(), Some(0));
+    for (old, new, line, message) in cases {
+        assert!(GOOD.contains(old));
+        fs::write(&path, GOOD.replacen(old, new, 1)).unwrap();
+        for command in [&["solve"][..], &["shot", "-o", "never.png"]] {
+            let output = warpbeam(&[command, &[path.to_str().unwrap()]].concat());
+            let text = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{new}: {text}");
+            assert!(output.stdout.is_empty());
+            assert!(text.contains(message), "{new}: {text}");
+            assert_eq!(text.trim().lines().count(), 1, "{new}: {text}");
+            assert!(text.contains("scene.toml"), "{new}: {text}");
+            if let Some(line) = line {
+                assert!(text.contains(&format!("scene.toml:{line}:")), "{new}: line {line} in {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn unreadable_files_and_wrong_usage_get_one_clear_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = folder.path().join("bytes.toml");
+    fs::write(&bytes, [0xff, 0xfe, 0x00]).unwrap();
+    let bytes = bytes.to_str().unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (&["solve", "no-such-scene"], "built-in scenes: article, cantilever"),
+        (&["solve", folder.path().to_str().unwrap()], "not a file"),
+        (&["solve", bytes], "UTF-8"),
+        (&["solve", "article", "--set", "material.young"], "expected PATH=VALUE"),
+        (&["solve", "article", "--set", "material.young=-1"], "--set material.young=-1: expected"),
+        (&["solve", "article", "--set", "material.yuong=1"], "unknown field `yuong`"),
+        (
+            &["solve", "article", "--set", "load.0.pulse.start=1"],
+            "--set load.0.pulse.start=1: load.0.pulse.duration: expected a time (s), got nothing",
+        ),
+        (
+            &["solve", "article", "--set", "material.young=12 kN"],
+            "--set material.young=12 kN: `12 kN` is a force (N); expected a pressure (Pa)",
+        ),
+        (&["solve", "article", "--set", "load.0.force=[0 N, fast]"], "`fast` is not a number; expected a force (N)"),
+        (&["solve", "article", "--set", "load.0.edge=nowhere"], "--set load.0.edge=nowhere: expected one of bottom"),
+        (&["solve", "article", "--set", "load.3.force=[0,1]"], "expected an index below 1, got 3"),
+        (&["solve", "article", "--set", "load.0.force=[0]"], "--set load.0.force=[0]"),
+        (&["solve", "article", "--set", "name.x=1"], "expected a table or a list"),
+        (&["solve", "article", "--set", "beam.cells=[1000000000,1]"], "expected 1 to 100000"),
+        (&["solve"], "SCENE"),
+        (&["melt"], "melt"),
+        (&["shot", "article", "-o", "x.png", "--size", "10x10"], "64 to 8192"),
+        (&["shot", "article", "-o", "x.png", "--size", "big"], "WIDTHxHEIGHT"),
+        (&["shot", "article", "-o", "x.png", "--compare", "warped"], "expected 2 to 4 panes"),
+        (&["shot", "article", "-o", "x.png", "--compare", "t3,t5"], "got \u{201c}t5\u{201d}"),
+        (&["shot", "swing", "-o", "x.png", "--compare", "t3,t6"], "expected a scene with analysis = \"static\""),
+        (&["shot", "article", "-o", "/no/such/folder/x.png"], "/no/such/folder/x.png"),
+        (&["solve", "article", "--out", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
+    ];
+    for (args, message) in cases {
+        let output = warpbeam(args);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {text}");
+        assert!(text.contains(message), "{args:?}: {text}");
+        assert!(!text.contains("panicked"), "{text}");
+    }
+}
+
+/// A solve without a result gives its reason in JSON, as in the text output.
+#[test]
+fn json_states_why_a_solve_failed() {
+    let args = ["solve", "cantilever", "--set", "solver.max_iterations=2"];
+    let words = stdout(&warpbeam(&args));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&warpbeam(&[&args[..], &["--json"]].concat()))).unwrap();
+    let reason = json["reason"].as_str().unwrap();
+    assert!(!reason.is_empty() && words.contains(reason), "{reason}: {words}");
+}
+
+#[test]
+fn a_certificate_can_be_left_out() {
+    let json = solve_json(&["elastica", "--no-certificate"]);
+    assert!(json["stable"].is_null() && json["fixed_point_rho"].is_null());
+    assert_eq!(json["time_us"]["certify"], 0.0);
+    assert!(!stdout(&warpbeam(&["solve", "elastica", "--no-certificate"])).contains("ρ"));
+}
+
+/// Steel moves by micrometres: the text has unit prefixes and enough digits.
+#[test]
+fn small_motions_have_digits() {
+    let set = ["material.young=210 GPa", "load.0.force=[0 N, -1 kN]"];
+    let args = ["cantilever", "--set", set[0], "--set", set[1]];
+    let u = solve_json(&args)["probes"][0]["u"][1].as_f64().unwrap();
+    let text = stdout(&warpbeam(&[&["solve"], &args[..]].concat()));
+    assert!((-1e-3..-1e-7).contains(&u), "{u}");
+    let digits = |u: f64| format!("{}", format!("{u:.3e}").parse::<f64>().unwrap());
+    assert!(text.contains(&format!(", {}) µm", digits(1e6 * u))), "{u}: {text}");
+    assert!(text.contains(", 1) kN, moment about"), "{text}");
+    assert!(text.lines().last().unwrap().starts_with("time ") && text.contains(", certify "), "{text}");
+    let curve = stdout(&warpbeam(&["curve", "cantilever", "--set", set[0]]));
+    assert!(curve.contains("tip displacement, µm"), "{curve}");
+}
+
+/// The path `-` reads the scene from standard input in every command; its mesh file is found from the current folder.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_scene_is_read_from_standard_input() {
+    use std::io::Write as _;
+    let folder = tempfile::tempdir().unwrap();
+    let run = |args: &[&str], text: &str| {
+        let mut program = program(folder.path(), args);
+        let pipe = std::process::Stdio::piped;
+        let mut running = program.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn().unwrap();
+        running.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+        running.wait_with_output().unwrap()
+    };
+    let solved = run(&["solve", "-", "--json"], GOOD);
+    assert_eq!(solved.status.code(), Some(0), "{}", stderr(&solved));
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&stdout(&solved)).unwrap()["scene"], "Bar");
+    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let beam = "[beam]\nlength = 2.0\nheight = 1.0\ncells = [4, 2]\n";
+    let mesh = GOOD.replacen(beam, "[mesh]\nfile = \"square.msh\"\n", 1);
+    let mesh = mesh.replace("\"left\"", "\"wall\"").replace("edge = \"right\"", "at = [1.0, 1.0]");
+    let solved = run(&["solve", "-"], &mesh);
+    assert_eq!(solved.status.code(), Some(0), "{}", stderr(&solved));
+    // An error that only the meshing finds names the line of the scene, also of a scene from standard input.
+    let wrong = run(&["solve", "-"], &GOOD.replacen("\"right\"", "\"rihgt\"", 1));
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(stderr(&wrong).contains("-:17: load.0.edge: expected one of"), "{}", stderr(&wrong));
+    let none = run(&["solve", "-"], "");
+    assert!(stderr(&none).contains("-:1: name: expected a title, got nothing"), "{}", stderr(&none));
+}
+
+/// A path need not be valid UTF-8.
+#[cfg(target_os = "linux")]
+#[test]
+fn paths_are_any_bytes() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(std::ffi::OsStr::from_bytes(b"sc\xffne.toml"));
+    fs::write(&path, GOOD).unwrap();
+    let output = program(folder.path(), &["solve"]).arg(&path).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn completions_and_the_man_page_have_every_command() {
+    let words = ["solve", "no-certificate", "extremes"];
+    for shell in ["bash", "zsh", "fish"] {
+        let script = stdout(&warpbeam(&["completions", shell]));
+        assert!(words.iter().all(|word| script.contains(word)), "{shell}");
+    }
+    let page = stdout(&warpbeam(&["man"]));
+    for word in [".TH warpbeam", "COMMAND SOLVE", "COMMAND EXTREMES", "no\\-certificate", "Exit codes", "NAME_v_x"] {
+        assert!(page.contains(word), "{word}: {page}");
+    }
+    assert_eq!(warpbeam(&["completions", "dos"]).status.code(), Some(2));
+}
+
+#[test]
+fn without_a_display_run_reports_it_and_writes_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    for args in [&[][..], &["run", "stretch"]] {
+        let output = warpbeam_in(folder.path(), args);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let text = stdout(&output);
+        assert!(text.starts_with("No window: ") && text.contains("converged after"), "{text}");
+        let picture = folder.path().join("warpbeam.png");
+        assert!(fs::metadata(&picture).unwrap().len() > 10_000);
+        fs::remove_file(picture).unwrap();
+    }
+}
+
+#[test]
+fn without_an_adapter_shot_names_the_package_to_install() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_warpbeam"))
+        .args(["shot", "article", "-o", "x.png"])
+        .current_dir(folder.path())
+        .env("VK_DRIVER_FILES", "/dev/null")
+        .env("VK_ICD_FILENAMES", "/dev/null")
+        .env("WGPU_BACKEND", "vulkan")
+        .output()
+        .unwrap();
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{text}");
+    assert!(text.contains("no usable graphics adapter") && text.contains("mesa-vulkan-drivers"), "{text}");
+}
+
+#[test]
+fn curve_prints_linear_theory_the_reference_and_every_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.csv");
+    let output = warpbeam(&["curve", "elastica", "--out", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    for words in [
+        "differs by 3 %",
+        "differs by 5 %",
+        "differs by 10 %",
+        "linear  at full load",
+        "warped  at",
+        "diverged",
+        "newton  at full load",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let rows: Vec<Vec<f64>> = fs::read_to_string(path)
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|v| v.parse().unwrap()).collect())
+        .collect();
+    // The row of the full load is the reference solution that `solve` compares with.
+    let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
+    let reference = &solve_json(&["elastica"])["probes"][0]["truth_u"];
+    assert!(
+        (full[3] - reference[0].as_f64().unwrap()).abs() < 1e-6
+            && (full[4] - reference[1].as_f64().unwrap()).abs() < 1e-6
+    );
+    for (args, why) in [
+        (&["curve", "swing"][..], "expected a static scene"),
+        (&["curve", "shear", "--set", "solver.method=linear"], "expected a static scene"),
+        (&["curve", "snap", "--picture", "x.png", "--of", "nobody"], "expected one of quarter, crown, support.0"),
+        (&["curve", "snap", "--picture", "x.pdf"], "expected a name that ends in .svg or .png"),
+    ] {
+        let none = warpbeam(args);
+        assert_eq!(none.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&none).contains(why), "{}", stderr(&none));
+    }
+}
+
+/// The load path of any scene: states that are unstable under force control are reported, marked in the table, and
+/// dashed in the picture.
+#[test]
+fn curve_follows_an_arch_through_its_limit_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = warpbeam_in(folder.path(), &["curve", "snap", "--out", "snap.csv", "--picture", "snap.svg"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("the limit load") && text.contains("stable under force control again"), "{text}");
+    // Text output names a support as `solve` does; its number is for scripts.
+    assert!(text.contains("displacement of support (0.1, 0.0085)  its reaction"), "{text}");
+    let picture = fs::read_to_string(folder.path().join("snap.svg")).unwrap();
+    let axes = ["displacement of support (0.1, 0.0085), mm", "reaction in this direction, N"];
+    assert!(axes.iter().all(|axis| picture.contains(axis)), "{axes:?}");
+    let table = fs::read_to_string(folder.path().join("snap.csv")).unwrap();
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
+    let (force, stable) = (column("support.2_force_y"), column("stable_under_force"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    // States are unstable where the force decreases.
+    for three in rows.windows(3) {
+        let f: Vec<f64> = three.iter().map(|row| -row[force].parse::<f64>().unwrap()).collect();
+        if (f[1] - f[0]) * (f[2] - f[1]) > 0.0 && (f[2] - f[1]).abs().min((f[1] - f[0]).abs()) > 0.2 {
+            assert_eq!(three[1][stable], if f[2] > f[0] { "true" } else { "false" }, "{f:?}");
+        }
+    }
+    assert!(rows.iter().filter(|row| row[stable] == "false").count() > 20);
+    assert!(picture.contains("stroke-dasharray=\"9 5\""));
+    for of in ["crown", "support.0"] {
+        let output = warpbeam_in(folder.path(), &["curve", "snap", "--picture", "snap.png", "--of", of]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    assert!(fs::read(folder.path().join("snap.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+/// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
+#[test]
+fn a_jump_is_reported() {
+    let json = solve_json(&["jump", "--no-truth"]);
+    assert_eq!((&json["jumped"], &json["stable"]), (&true.into(), &true.into()));
+    let at = json["jumped_at"].as_f64().unwrap();
+    assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
+    assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
+    let text = stdout(&warpbeam(&["solve", "jump", "--no-truth"]));
+    assert!(text.contains("jumped: beyond the limit point at 89."), "{text}");
+    for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {
+        let json = solve_json(&[scene, &["--no-truth"]].concat());
+        assert_eq!((&json["jumped"], &json["jumped_at"]), (&false.into(), &serde_json::Value::Null), "{scene:?}");
+    }
+    let unknown = solve_json(&["jump", "--no-truth", "--no-certificate"]);
+    assert!(unknown["jumped"].is_null());
+}
+
+/// The reaction of every support is in JSON and in the text output. Displacements and rotations may have units.
+#[test]
+fn solve_prints_the_reaction_of_every_support() {
+    let set = ["--set", "support.1.turn=30°", "--set", "support.1.displacement=[-5 mm, 0 mm]"];
+    let json = solve_json(&[&["snap", "--no-truth"][..], &set].concat());
+    let supports = json["supports"].as_array().unwrap();
+    assert_eq!(supports.len(), 3);
+    assert_eq!((&supports[1]["edge"], &supports[1]["displacement"][0]), (&"right".into(), &(-0.005).into()));
+    assert!((supports[1]["turn"].as_f64().unwrap() - std::f64::consts::FRAC_PI_6).abs() < 1e-12);
+    assert_eq!(supports[2]["at"], serde_json::json!([0.1, 0.0085]));
+    let sum: f64 = supports.iter().map(|s| s["force"][1].as_f64().unwrap()).sum();
+    assert!(sum.abs() < 1e-3, "{sum}");
+    let text = stdout(&warpbeam(&[&["solve", "snap", "--no-truth"][..], &set].concat()));
+    assert!(text.contains("support right, moved by (-5, 0) mm, rotated by 30°: reaction ("), "{text}");
+    let wrong = warpbeam(&["solve", "snap", "--set", "support.1.turn=3 mm"]);
+    assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
+}
+
+/// The JSON has the certificate, ρ, the reference solution and the error.
+#[test]
+fn json_certifies_its_result() {
+    let json = solve_json(&["elastica"]);
+    assert_eq!(json["stable"], true);
+    assert!(json["fixed_point_rho"].as_f64().unwrap() > 3.5);
+    assert!(json["probes"][0]["error_percent"].as_f64().unwrap() < 0.3);
+    let linear = solve_json(&["elastica", "--set", "solver.method=linear"]);
+    assert!(linear["stable"].is_null() && linear["fixed_point_rho"].is_null());
+    assert!(linear["probes"][0]["error_percent"].as_f64().unwrap() > 100.0);
+    // Where beam theory does not apply, or is too inaccurate, a fine solution is the
+    // reference, and its source is named.
+    for (id, source) in [
+        ("elastica", "the exact beam"),
+        ("article", "a fine solution"),
+        ("shear", "a fine solution"),
+        ("bracket", "a solution on the refined mesh"),
+    ] {
+        let probe = &solve_json(&[id])["probes"][0];
+        assert_eq!(probe["reference_source"], source, "{id}");
+        // Field names of the previous version.
+        assert_eq!((&probe["truth_u"], &probe["truth_source"]), (&probe["reference_u"], &probe["reference_source"]));
+        let own = probe["reference_error_percent"].as_f64().unwrap();
+        assert!(probe["error_percent"].as_f64().unwrap() > 0.0 && own > 0.0 && own < 1.0, "{id}: {own}");
+        let text = stdout(&warpbeam(&["solve", id]));
+        assert!(text.contains(&format!("  {source}: (")) && text.contains("its own error at most "), "{id}: {text}");
+    }
+    for none in ["--no-truth", "--reference=none"] {
+        let none = solve_json(&["shear", none]);
+        assert!(none["probes"][0]["reference_u"].is_null() && none["probes"][0]["error_percent"].is_null());
+    }
+    // A probe that moves only by rounding errors has no error relative to its displacement.
+    let still = solve_json(&["shear", "--set", "load.0.force=[0,0]"]);
+    assert!(still["probes"][0]["error_percent"].is_null());
+}
+
+/// In the stability atlas every case is classified, every number is finite, and the counts add up.
+#[test]
+fn extremes_writes_the_stability_atlas() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("atlas");
+    let output = warpbeam(&["extremes", "--quick", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let csv = fs::read_to_string(out.join("extremes.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() >= 150 && rows.iter().all(|row| row.len() == 17));
+    for row in &rows {
+        for value in row[3..8].iter().chain(&row[9..13]) {
+            assert!(value.parse::<f64>().unwrap().is_finite(), "{row:?}");
+        }
+        // A result at working precision has a residual above the tolerance and below its bound.
+        if let Ok(floor) = row[16].parse::<f64>() {
+            let residual: f64 = row[10].parse().unwrap();
+            assert!(residual > 1e-8 && residual <= floor && floor <= 1e-5 && row[8] != "not_converged", "{row:?}");
+        }
+    }
+    let count = |element: &str, method: &str, outcome: &str| {
+        rows.iter().filter(|r| (r[0], r[1]) == (element, method) && (outcome.is_empty() || r[8] == outcome)).count()
+    };
+    for element in ["t3", "t6", "q4"] {
+        let all = count(element, "newton", "");
+        // A cube under a thousand times its bending load is inverted.
+        assert!(count(element, "newton", "certified") * 100 >= 80 * all, "{element}");
+        assert_eq!(count(element, "newton", "not_converged") + count(element, "newton", "stalled"), 0, "{element}");
+        // Distorted cells succeed like others under any load.
+        let distorted: Vec<_> = rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[14] != "0").collect();
+        assert!(distorted.len() >= 3 && distorted.iter().all(|r| r[8] == "certified"), "{distorted:?}");
+        assert!(count(element, "warped", "stalled") > count(element, "newton", "stalled"), "{element}");
+        // From every starting state, however bad, the solve ends in a certified equilibrium.
+        let bad_starts: Vec<_> =
+            rows.iter().filter(|r| (r[0], r[1]) == (element, "newton") && r[2] != "rest").collect();
+        assert!(bad_starts.len() >= 12 && bad_starts.iter().all(|r| r[8] == "certified"), "{bad_starts:?}");
+    }
+    // Mesh files are used with the elements that they support.
+    for file in ["bracket", "clip", "cook"] {
+        let of = |element: &str| rows.iter().filter(|r| r[0] == element && r[15] == file).count();
+        assert!(of("t3") >= 12 && of("t6") == of("t3") && of("q4") == 0, "{file}");
+        let newton = rows.iter().filter(|r| (r[1], r[15]) == ("newton", file));
+        assert!(newton.into_iter().all(|r| r[3] != "0.1" || r[8] == "certified"), "{file}");
+    }
+    // The summary's counts are those of the table, and the picture exists.
+    let summary = stdout(&output);
+    assert_eq!(summary, fs::read_to_string(out.join("extremes.txt")).unwrap());
+    let certified = count("t6", "newton", "certified");
+    assert!(summary.lines().any(|line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        words.starts_with(&["t6", "newton"]) && words[2] == certified.to_string()
+    }));
+    assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("stalled"));
+    assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
+    // The atlas of motions, too, has counts that add up, and finite numbers.
+    let csv = fs::read_to_string(out.join("extremes-motion.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() >= 72 && rows.iter().all(|row| row.len() == 13));
+    for row in &rows {
+        assert!(row[2..6].iter().chain(&row[7..]).all(|v| v.parse::<f64>().unwrap().is_finite()), "{row:?}");
+    }
+    let exploded = rows.iter().filter(|r| (r[0], r[1], r[6]) == ("t6", "symplectic-euler", "exploded")).count();
+    let line = summary.lines().find(|line| line.starts_with("t6      symplectic-euler")).unwrap();
+    assert_eq!(line.split_whitespace().nth(5).unwrap(), exploded.to_string());
+    assert!(summary.contains(&format!("in motion: {} cases", rows.len())));
+    assert!(fs::read_to_string(out.join("extremes-motion.svg")).unwrap().contains("gained energy"));
+    assert!(fs::metadata(out.join("extremes-motion.png")).unwrap().len() > 5_000);
+}
+
+/// The speed–accuracy study splits errors, has positive times and a correct front, and writes its files.
+#[test]
+fn study_measures_error_against_time() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, source) in [
+        ("cantilever", "the exact beam"),
+        ("bracket", "a solution on the refined mesh"),
+        ("shear", "a fine solution"),
+        ("article", "a fine solution"),
+    ] {
+        let out = folder.path().join(id);
+        let output = warpbeam(&["study", id, "--quick", "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{id}: {}", stderr(&output));
+        let summary = stdout(&output);
+        // Every reference reports a bound of its own error.
+        let own = summary.lines().next().unwrap().split("its own error at most ").nth(1);
+        let own: Option<f64> = own.and_then(|t| t.split(' ').next()).map(|t| t.parse().unwrap());
+        assert!(own.is_some_and(|own| own > 0.0 && own < 5.0), "{summary}");
+        // Beam theory is no reference for a stubby beam under large strains.
+        assert_eq!(summary.contains("beam theory differs"), id == "article", "{summary}");
+        assert!(summary.contains(source) && summary.contains("an error of 10 % costs"), "{id}: {summary}");
+        let csv = fs::read_to_string(out.join("study.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+        let number = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
+        for row in &rows {
+            assert!(row[7..17].iter().all(|v| v.parse::<f64>().unwrap().is_finite()), "{row:?}");
+            assert!(
+                number(row, 7) > 0.0
+                    && (number(row, 16) - number(row, 13) - number(row, 14) - number(row, 15)).abs()
+                        < 1e-9 * number(row, 16).max(1.0)
+            );
+            // The parts are distances along a chain from the result to the reference: their sum is
+            // an upper bound of the total.
+            let parts = number(row, 13) + number(row, 14) + number(row, 15);
+            assert!(number(row, 12) <= parts * (1.0 + 1e-6) + 1e-4, "{row:?}");
+            assert!(["linear", "auto"].contains(&row[4]) || number(row, 15) == 0.0, "{row:?}");
+        }
+        // No setting is better than the front, and the front is better than some setting.
+        let front: Vec<&Vec<&str>> = rows.iter().filter(|r| r[17] == "true").collect();
+        assert!(!front.is_empty() && front.len() < rows.len());
+        for f in &front {
+            let beaten = rows.iter().any(|r| number(r, 7) < number(f, 7) && number(r, 16) < number(f, 16));
+            assert!(!beaten, "{f:?}");
+        }
+        assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
+        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
+    }
+    // Locking is distinguished from the model error: converged T3 has only discretization error, and
+    // linear T6 only model error.
+    let csv = fs::read_to_string(folder.path().join("cantilever/study.csv")).unwrap();
+    let row = |element: &str, method: &str| {
+        let mut rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let last = rows.rfind(|r| r[0] == element && r[4] == method && r[1] == "20" && r[6] == "true").unwrap();
+        [12, 13, 14, 15].map(|c| last[c].parse::<f64>().unwrap())
+    };
+    let [total, discretization, iteration, model] = row("t3", "newton");
+    assert!(total > 10.0 && (discretization - total).abs() < 1e-6 && iteration < 1e-6 && model == 0.0);
+    let [total, discretization, _, model] = row("t6", "linear");
+    assert!(total > 5.0 && discretization < 0.5 && (model - total).abs() < 0.5);
+}
+
+/// `tune` measures, chooses a setting, gives the reason, and writes a scene that solves within the requested limits. If
+/// they cannot be met, it ends with exit code 1 and the closest setting.
+#[test]
+fn tune_chooses_a_setting_that_meets_the_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tuned.toml");
+    let path = path.to_str().unwrap();
+    for (id, force, asked) in [
+        ("cantilever", "[0,-1000]", "5%"),
+        ("cantilever", "[0,-1000]", "1"),
+        ("cantilever", "[0,-2]", "1 %"),
+        ("elastica", "[0,-20]", "2%"),
+    ] {
+        let set = format!("load.0.force={force}");
+        let tune = warpbeam(&["tune", id, "--error", asked, "--time", "100s", "--set", &set, "--write", path]);
+        let text = stdout(&tune);
+        assert_eq!(tune.status.code(), Some(0), "{text}{}", stderr(&tune));
+        assert!(text.contains("settings measured here meet at most") && text.contains("; the fastest:"), "{text}");
+        let bound: f64 = text.split(" ms, error at most ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        let asked: f64 = asked.trim_end_matches([' ', '%']).parse().unwrap();
+        assert!(bound <= asked, "{text}");
+        let json = solve_json(&[path]);
+        let error = json["probes"][0]["error_percent"].as_f64().unwrap();
+        assert!(error <= bound * (1.0 + 1e-3) + 1e-4, "{error} %: {text}");
+        let chosen = format!("  {} ", json["element"].as_str().unwrap());
+        assert!(text.lines().any(|line| line.starts_with(&chosen)), "{text}");
+    }
+    // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form
+    // has its own error included.
+    let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
+    assert!(text.contains("meet at most 100000 ms; the most accurate"), "{text}");
+    assert!(!text.contains("the reference's own 0.0000 %"), "{text}");
+    let hopeless = warpbeam(&["tune", "cantilever", "--error", "1%", "--time", "1e-6ms"]);
+    assert_eq!(hopeless.status.code(), Some(1));
+    assert!(stdout(&hopeless).contains("none of"), "{}", stdout(&hopeless));
+    for wrong in [["--error", "0%"], ["--error", "much"], ["--time", "-1ms"], ["--time", "1 kg"]] {
+        let refused = warpbeam(&[&["tune", "cantilever"][..], &wrong].concat());
+        assert_eq!(refused.status.code(), Some(2), "{wrong:?}");
+        assert!(stderr(&refused).contains("expected"), "{wrong:?}: {}", stderr(&refused));
+    }
+    let nothing = warpbeam(&["tune", "article", "--set", "probe=[]"]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(stderr(&nothing).contains("a probe that moves"), "{}", stderr(&nothing));
+}
+
+/// A tuned scene finds its mesh file from any folder.
+#[test]
+fn a_tuned_scene_keeps_its_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
+    for folder in [&from, &to] {
+        fs::create_dir(folder).unwrap();
+    }
+    fs::write(from.join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -0.1]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
+    fs::write(from.join("square.toml"), scene).unwrap();
+    let tuned = to.join("tuned.toml");
+    let tuned = tuned.to_str().unwrap();
+    // From another folder, and from its own folder by its bare name.
+    for (folder, source) in [(Path::new("."), from.join("square.toml")), (from.as_path(), "square.toml".into())] {
+        // Two triangles cannot reach one percent; the closest setting is written nevertheless.
+        let tune = warpbeam_in(folder, &["tune", source.to_str().unwrap(), "--write", tuned]);
+        assert_eq!(tune.status.code(), Some(1), "{}{}", stdout(&tune), stderr(&tune));
+        assert_eq!(solve_json(&[tuned])["element"], "t6");
+        fs::remove_file(tuned).unwrap();
+    }
+}
+
+/// `auto` gives the same result and report in every `solve`, on the scene's own mesh.
+#[test]
+fn auto_keeps_the_mesh_and_its_answer() {
+    for id in ["article", "elastica"] {
+        let args = [id, "--set", "solver.method=auto"];
+        let (once, again) = (solve_json(&args), solve_json(&args));
+        let own = solve_json(&[id]);
+        assert_eq!((&once["element"], &once["dofs"]), (&own["element"], &own["dofs"]));
+        for key in ["probes", "iterations", "residual", "auto", "energy"] {
+            assert_eq!(once[key], again[key], "{id}: {key}");
+        }
+        assert!(once["auto"]["decision"].is_string() && own.get("auto").is_none());
+        let text = stdout(&warpbeam(&["solve", id, "--set", "solver.method=auto"]));
+        assert!(text.contains("method auto") && text.contains("estimated error"), "{text}");
+    }
+    assert_eq!(warpbeam(&["solve", "article", "--set", "solver.max_error_percent=0"]).status.code(), Some(2));
+    let gone = warpbeam(&["solve", "article", "--set", "solver.budget_ms=1"]);
+    assert_eq!(gone.status.code(), Some(2));
+}
+
+/// `solve` stops after the number of iterations that a scene accepts, as a study does with the same number.
+#[test]
+fn an_accepted_result_is_a_success() {
+    let args = ["solve", "cantilever", "--json", "--set", "solver.accept_after=3"];
+    let output = warpbeam(&args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((json["status"].as_str(), json["iterations"].as_u64()), (Some("accepted"), Some(3)));
+    let output = warpbeam(&["solve", "cantilever", "--set", "solver.accept_after=3"]);
+    assert!(stdout(&output).contains("accepted after 3 iterations"), "{}", stdout(&output));
+}
+
+#[test]
+fn a_scene_is_printed_as_a_rust_program() {
+    let program = fs::read_to_string("tests/programs/snap.rs").unwrap();
+    assert_eq!(stdout(&warpbeam(&["rust", "snap"])), program);
+    let edited = stdout(&warpbeam(&["rust", "snap", "--set", "support.2.displacement=[0, -3 mm]"]));
+    assert_eq!(edited, program.replace("-0.012", "-0.003"));
+    // The mesh file is found from any folder.
+    let folder = std::env::current_dir().unwrap().join("assets/scenes");
+    let program = stdout(&warpbeam(&["rust", "assets/scenes/../scenes/clip.toml"]));
+    let mesh = program.lines().find(|line| line.contains("mesh_file")).unwrap();
+    assert!(mesh.contains(&format!("(\"../meshes/clip.msh\", \"{}", folder.parent().unwrap().display())), "{mesh}");
+    assert_eq!(warpbeam(&["rust", "nowhere"]).status.code(), Some(2));
+}

@@ -1,0 +1,71 @@
+//! Tests of the example programs.
+#![allow(dead_code, reason = "the examples' own `main` is not called here")]
+
+#[path = "../../examples/game_loop.rs"]
+mod game_loop;
+#[path = "../../examples/grab.rs"]
+mod grab;
+#[path = "../../examples/load_curve.rs"]
+mod load_curve;
+#[path = "../../examples/mesh_study.rs"]
+mod mesh_study;
+#[path = "../../examples/own_mesh.rs"]
+mod own_mesh;
+#[path = "../../examples/swing_energy.rs"]
+mod swing_energy;
+
+use warpbeam::IntegratorKind;
+
+#[test]
+fn the_game_keeps_its_beam_in_motion() {
+    let (finished, tip) = game_loop::play().unwrap();
+    // A frame that runs out of time leaves the rest to the next one, on any machine.
+    assert!(finished > 0 && tip > 0.1 && tip < 4.0, "{finished} {tip}");
+}
+
+#[test]
+fn the_load_curve_leaves_linear_theory_where_the_exact_beam_does() {
+    let csv = load_curve::curve().unwrap();
+    let rows: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 20);
+    for row in &rows {
+        let [alpha, linear, newton, exact] = row[..] else { unreachable!("{row:?}") };
+        assert!((linear - alpha / 3.0).abs() < 0.01 * alpha, "{row:?}");
+        assert!((newton - exact).abs() < 0.002, "{row:?}");
+    }
+    // Mattiasson 1981 for α = 10.
+    assert!((rows[19][3] - 0.8106).abs() < 0.001, "{:?}", rows[19]);
+}
+
+#[test]
+fn the_mesh_is_studied() {
+    let report = mesh_study::report("assets/scenes".as_ref()).unwrap();
+    assert!(report.contains("stable Some(true)") && report.contains("an error of 1 % costs"), "{report}");
+}
+
+#[test]
+fn the_grabbed_tip_follows_the_pointer() {
+    let (distance, force) = grab::drag().unwrap();
+    assert!(distance < 0.05 && force > 1.0 && force.is_finite(), "{distance} {force}");
+}
+
+#[test]
+fn the_hook_is_bent_as_a_curved_beam() {
+    let (elements, largest) = own_mesh::hook().unwrap();
+    assert_eq!(elements, 144);
+    // The section at the crown carries 50 N at a lever of 0.95 m: 6 M / (t h²) = 3.2 kPa without curvature.
+    assert!((2e3..8e3).contains(&largest), "{largest}");
+}
+
+#[test]
+fn the_integrators_lose_different_energies() {
+    let lost = |integrator| {
+        let ledger = swing_energy::swing(integrator).unwrap();
+        assert!(ledger.imbalance().abs() < 1e-9 * ledger.throughput, "{integrator:?} {ledger:?}");
+        ledger.integrator
+    };
+    let [euler, tr_bdf2, conserving] =
+        [IntegratorKind::ImplicitEuler, IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum].map(lost);
+    assert!(euler > 10.0 * tr_bdf2.abs() && conserving.abs() < 1e-6, "{euler} {tr_bdf2} {conserving}");
+}

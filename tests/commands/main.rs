@@ -1,0 +1,16 @@
+//! Tests of the command line, of the Rust programs that it prints, and of the examples. `cargo test --test commands
+//! TOPIC` runs one file.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod cli;
+mod examples;
+mod programs;
+#[cfg(feature = "app")]
+mod record;
+#[cfg(target_os = "linux")]
+mod statements;
+#[cfg(target_os = "linux")]
+mod usage;

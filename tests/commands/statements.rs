@@ -1,0 +1,207 @@
+//! Tests that the sentences of the commands agree with the numbers of the result: warnings, units, plurals, and values
+//! below the rounding error of their context.
+
+use std::fs;
+
+use crate::common::{ids_of, stderr, stdout, warpbeam, warpbeam_in};
+use warpbeam::scene::Analysis;
+
+/// Returns the exit code and the text of `solve`.
+fn solve(args: &[&str]) -> (Option<i32>, String) {
+    let output = warpbeam(&[&["solve"], args].concat());
+    (output.status.code(), stdout(&output) + &stderr(&output))
+}
+
+/// Returns the exit code and the JSON object of `solve --json`.
+fn solve_object(args: &[&str]) -> (Option<i32>, serde_json::Value) {
+    let output = warpbeam(&[&["solve", "--json"], args].concat());
+    let json = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", stderr(&output)));
+    (output.status.code(), json)
+}
+
+fn warnings(json: &serde_json::Value) -> Vec<&str> {
+    json["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap()).collect()
+}
+
+/// A converged result with inverted elements has a warning with their number.
+#[test]
+fn inverted_elements_give_a_warning() {
+    for (force, cells, all) in [("[0,-1e8]", "[5,1]", 10), ("[0,-2e6]", "[20,4]", 160)] {
+        let set = [format!("load.0.force={force}"), format!("beam.cells={cells}")];
+        let args = ["article", "--set", &set[0], "--set", &set[1], "--set", "solver.method=newton"];
+        let (code, json) = solve_object(&args);
+        let inverted = json["inverted_elements"].as_u64().unwrap();
+        assert!(code == Some(0) && inverted > 0, "{force}: {json}");
+        let warning = format!("inverted elements: {inverted} of {all}");
+        assert!(warnings(&json).iter().any(|said| said.starts_with(&warning)), "{force}: {json}");
+        let (_, text) = solve(&args);
+        assert!(text.contains(&format!("note: {warning}")), "{text}");
+    }
+    let (_, json) = solve_object(&["article"]);
+    assert!(!warnings(&json).iter().any(|said| said.contains("inverted")), "{json}");
+}
+
+/// A motion that gains energy from its integrator is not a success, and the text names the time step. Losses and small
+/// gains are reported without a warning.
+#[test]
+fn gained_energy_is_reported_and_ends_with_exit_code_1() {
+    for args in [&["flick", "--set", "dynamics.time_step=.5"][..], &["tests/data/scenes/long-steps.toml"]] {
+        let (code, text) = solve(args);
+        assert_eq!(code, Some(1), "{args:?}: {text}");
+        assert!(text.contains("\ngained by the integrator ") && !text.contains("lost by the integrator"), "{text}");
+        let note = text.lines().find(|line| line.starts_with("note: the integrator gained ")).unwrap();
+        assert!(note.ends_with("of the energy put in: the time step is too long"), "{note}");
+        let (code, json) = solve_object(args);
+        assert_eq!((code, json["status"].as_str()), (Some(1), Some("finished")), "{json}");
+        assert!(json["energy_drift_of_input"].as_f64().unwrap() > 0.1, "{json}");
+        assert!(warnings(&json).iter().any(|said| said.ends_with("the time step is too long")), "{json}");
+    }
+    for id in ids_of(Analysis::Dynamic) {
+        let (code, text) = solve(&[id]);
+        assert_eq!(code, Some(0), "{text}");
+        assert!(!text.contains("the time step is too long"), "{id}: {text}");
+    }
+}
+
+/// A step that is cut short by the end of the motion is reported with the length it had.
+#[test]
+fn the_steps_of_a_motion_have_the_lengths_that_were_taken() {
+    for (duration, step, words) in [
+        ("2", "5", "finished at 2 s after 1 step of 2 s and "),
+        ("2", "1", "finished at 2 s after 2 steps of 1 s and "),
+        ("2", ".8", "finished at 2 s after 3 steps of 800 ms, the last of 400 ms, and "),
+    ] {
+        let set = [format!("dynamics.duration={duration}"), format!("dynamics.time_step={step}")];
+        let (_, text) = solve(&["jelly", "--set", &set[0], "--set", &set[1]]);
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
+
+/// The rotation of a probe has the definition of the largest rotation in every theory.
+#[test]
+fn a_probe_rotates_in_linear_theory_too() {
+    let (_, json) = solve_object(&["cantilever", "--set", "solver.method=linear", "--set", "load.0.force=[0,-3000]"]);
+    let (largest, own) = (&json["max_rotation_deg"], &json["probes"][0]["rotation_deg"]);
+    let (largest, own) = (largest.as_f64().unwrap(), own.as_f64().unwrap());
+    // The end of a cantilever rotates most.
+    assert!(largest > 10.0 && own < 0.0 && (own.abs() / largest - 1.0).abs() < 0.05, "{own}° of {largest}°");
+}
+
+/// A body without stress has no stress that grows as the mesh is refined.
+#[test]
+fn an_unloaded_body_has_no_singular_stress() {
+    let args = ["article", "--set", "load.0.force=[0,0]"];
+    let (_, json) = solve_object(&args);
+    assert!(!warnings(&json).iter().any(|said| said.contains("grows without limit")), "{json}");
+    assert!(solve_object(&["article"]).1.to_string().contains("grows without limit"));
+}
+
+/// Built-in meshes are in metres by definition; only files may be in another unit.
+#[test]
+fn a_built_in_scene_has_no_warning_of_its_unit() {
+    for id in ids_of(Analysis::Static) {
+        assert_eq!(stderr(&warpbeam(&["solve", id, "--reference", "none"])), "", "{id}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -0.1]\n";
+    fs::write(folder.path().join("square.toml"), scene).unwrap();
+    let solved = warpbeam_in(folder.path(), &["solve", "square.toml"]);
+    assert_eq!(stderr(&solved), "", "a square of one metre");
+    let large = include_str!("../data/square.msh").replace("\n1 0 0\n1 1 0\n0 1 0", "\n100 0 0\n100 100 0\n0 100 0");
+    fs::write(folder.path().join("square.msh"), large).unwrap();
+    let solved = warpbeam_in(folder.path(), &["solve", "square.toml"]);
+    assert!(stderr(&solved).contains("m across; if it is in millimetres"), "{}", stderr(&solved));
+}
+
+#[test]
+fn one_unknown_is_singular() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "name = \"Bar\"\n[beam]\nlength = 1.0\nheight = 1.0\ncells = [1, 1]\nelement = \"t3\"\n[material]\nyoung = 1e6\npoisson = 0.3\n\
+        [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[support]]\nedge = \"right\"\nfix = [\"y\"]\n[[support]]\nat = [1.0, -0.5]\nfix = [\"x\"]\n\
+        [[load]]\nkind = \"force\"\nat = [1.0, 0.5]\nforce = [1.0, 0.0]\n";
+    fs::write(folder.path().join("bar.toml"), scene).unwrap();
+    let text = stdout(&warpbeam_in(folder.path(), &["solve", "bar.toml", "--reference", "none"]));
+    assert!(text.lines().next().unwrap().ends_with(", 1 unknown"), "{text}");
+}
+
+/// Values that are rounding errors beside others of their kind are 0 in the text, and numbers in JSON.
+#[test]
+fn rounding_errors_are_zero_in_text() {
+    for id in ids_of(Analysis::Static) {
+        let (_, text) = solve(&[id, "--reference", "none"]);
+        // The last line has times; a residual is meant to be small.
+        for line in text.lines().filter(|line| !line.starts_with("time ") && !line.contains("relative residual")) {
+            assert!(!line.contains("e-9") && !line.contains("e-1"), "{id}: {line}");
+            for unit in ["pPa", "nPa", "pJ", "pN", "pm"] {
+                assert!(!line.contains(&format!(" {unit}")), "{id}: {line}");
+            }
+        }
+    }
+    // Pure stretch: the rotation is rounding error, the strain is not.
+    let (_, text) = solve(&["stretch"]);
+    assert!(text.contains("rotation 0°, strain ") && text.contains("largest rotation 0°, "), "{text}");
+    // A rotation of the whole body causes no strain.
+    let turned = ["cantilever", "--set", "load=[]", "--set", "support.0.turn=0.3", "--set", "solver.method=newton"];
+    let (_, text) = solve(&turned);
+    assert!(text.contains("largest strain 0 %") && text.contains("elastic energy 0 J"), "{text}");
+    assert!(!text.contains("grows without limit"), "{text}");
+}
+
+/// An explicit motion beyond its critical step ends with the cause.
+#[test]
+fn an_explosion_names_the_time_step() {
+    for id in ["swing", "flick", "jelly"] {
+        for step in ["1/60 s", "1e-2", "3e-3"] {
+            let step = if step == "1/60 s" {
+                "dynamics.time_step=0.016".to_owned()
+            } else {
+                format!("dynamics.time_step={step}")
+            };
+            let (code, json) = solve_object(&[id, "--set", "dynamics.integrator=symplectic-euler", "--set", &step]);
+            if json["status"] == "stopped" {
+                let reason = json["reason"].as_str().unwrap();
+                assert!(code == Some(1) && reason.contains("is too long"), "{id} {step}: {reason}");
+            }
+        }
+    }
+}
+
+/// The estimate of `auto` is named as that of the method, and an error above the one asked for is reported.
+#[test]
+fn auto_says_which_error_it_estimates_and_which_is_too_large() {
+    let auto = ["--set", "solver.method=auto"];
+    let (_, text) = solve(&[&["article"], &auto[..]].concat());
+    assert!(text.contains("estimated error of the method ") && !text.contains("estimated error 0"), "{text}");
+    let note = "above the 1 % of solver.max_error_percent, which limits the error of the method only";
+    assert!(text.lines().any(|line| line.starts_with("note: the error ") && line.contains(note)), "{text}");
+    let (_, json) = solve_object(&[&["article"], &auto[..]].concat());
+    assert!(warnings(&json).iter().any(|said| said.contains(note)), "{json}");
+    let (_, json) = solve_object(&[&["cantilever", "--set", "beam.element=t6"], &auto[..]].concat());
+    assert!(!warnings(&json).iter().any(|said| said.contains(note)), "{json}");
+}
+
+/// Sentences of the study of a scene whose mesh is too coarse for small errors.
+#[test]
+fn a_study_says_which_errors_are_not_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -0.1]\n[[probe]]\nname = \"corner\"\nat = [1, 0]\n";
+    fs::write(folder.path().join("square.toml"), scene).unwrap();
+    let text = stdout(&warpbeam_in(folder.path(), &["study", "square.toml", "--quick", "--out", "out"]));
+    assert!(text.contains("an error of 1 % is not reached by a measured setting"), "{text}");
+    assert!(!text.contains("costs not reached"), "{text}");
+}
+
+/// Sentences name a status in words, not by its identifier.
+#[cfg(feature = "app")]
+#[test]
+fn a_picture_of_an_unfinished_solve_says_why_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["shot", "cantilever", "--set", "solver.max_iterations=2", "-o", "shot.png"];
+    let output = warpbeam_in(folder.path(), &args);
+    let said = stderr(&output);
+    assert!(output.status.code() == Some(1) && said.contains("warpbeam: not converged: "), "{said}");
+}

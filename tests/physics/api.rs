@@ -1,0 +1,221 @@
+//! Every public constructor with short, long, empty, non-finite and out-of-range input gives typed errors and no panic.
+
+use crate::common::{scene, solved};
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::article::affine::Affine2;
+use warpbeam::assembly::{Problem, SystemError};
+use warpbeam::element::{ELEMENTS, side_weights};
+use warpbeam::exact_beam::{ClampedBeam, ExactBeam};
+use warpbeam::format::{count, number};
+use warpbeam::mesh::{GmshError, MaterialPoint, MeshError};
+use warpbeam::rotation::{Rotation, polar};
+use warpbeam::scene::{Source, open};
+use warpbeam::simulation::SimulationError;
+use warpbeam::solver::{Factor, Symbolic};
+use warpbeam::state::StateError;
+use warpbeam::study::{LoadCurve, Reference};
+use warpbeam::{Axis, ElementKind, LoadId, Material, Mesh, MethodKind, Scene, Simulation, Status};
+
+const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
+
+#[test]
+fn states_of_other_bodies_are_refused() {
+    let mut simulation = solved(&scene("cantilever"));
+    let nodes = simulation.displacement().len();
+    let before = simulation.state().clone();
+    for length in [0, 1, nodes - 1, nodes + 1] {
+        let u = vec![Vector2::new(0.1, 0.1); length];
+        let expected = StateError::Length { what: "displacements", expected: nodes, got: length };
+        assert_eq!(simulation.start_from(&u), Err(expected));
+        assert!(simulation.system().state_of(&u).is_err());
+        assert!(before.with_displacement(u).is_err());
+    }
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut u = vec![Vector2::zeros(); nodes];
+        u[3].x = bad;
+        assert!(matches!(simulation.start_from(&u), Err(StateError::NotFinite { .. })));
+        assert!(simulation.system().state_of(&u).is_err());
+    }
+    assert_eq!(*simulation.state(), before, "a refused state changes nothing");
+    assert!(simulation.restore(Simulation::new(&scene("article")).unwrap().state()).is_err());
+    // Huge, but finite: the solve ends with a status.
+    simulation.start_from(&vec![Vector2::new(1e300, -1e300); nodes]).unwrap();
+    simulation.solve();
+    assert!(simulation.state().is_finite() && *simulation.status() != Status::Running);
+}
+
+#[test]
+fn scenes_in_code_are_checked_where_they_are_simulated() {
+    let good = || Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
+    assert!(Simulation::new(&good()).is_ok());
+    let mut wrong: Vec<Scene> = vec![
+        Scene::named("no mesh").clamp("left"),
+        Scene::named(" "),
+        Scene::beam(4.0, 1.0),
+        Scene::beam(4.0, 1.0).support("left", &[]),
+        Scene::beam(4.0, 1.0).support("left", &[Axis::X]),
+        Scene::beam(4.0, 1.0).support([0.0, 0.0], &[Axis::X, Axis::Y]),
+        Scene::beam(0.0, 1.0).clamp("left"),
+        Scene::beam(1.0, -1.0).clamp("left"),
+        good().clamp("nowhere"),
+        good().clamp(""),
+        good().force("nowhere", [1.0, 0.0]),
+        good().moment("nowhere", 1.0),
+        good().moment("", 1.0),
+        good().probe("p", "nowhere"),
+        good().probe("p", [5.0, 0.0]),
+        good().with_cells(0, 1),
+        good().with_cells(1, 0),
+        good().with_cells(u32::MAX, 1),
+        good().with_cells(100_000, 100_000),
+        good().with_material(Material::new(0.0, 0.3)),
+        good().with_material(Material::new(1e6, 0.51)),
+        good().with_material(Material { thickness: 0.0, ..Material::default() }),
+        good().with_material(Material { density: -1.0, ..Material::default() }),
+    ];
+    let all =
+        ["left", "right", "top", "bottom"].iter().fold(Scene::beam(1.0, 1.0).with_cells(1, 1), |s, e| s.clamp(*e));
+    wrong.push(all.with_element(ElementKind::T3));
+    for bad in BAD {
+        wrong.extend([
+            Scene::beam(bad, 1.0).clamp("left"),
+            Scene::beam(1.0, bad).clamp("left"),
+            good().force("right", [bad, 0.0]),
+            good().force([bad, 0.0], [1.0, 0.0]),
+            good().gravity([0.0, bad]),
+            good().moment("right", bad),
+            good().probe("p", [0.0, bad]),
+            good().support([bad, 0.0], &[Axis::X]),
+            good().with_material(Material::new(bad, 0.3)),
+            good().with_material(Material::new(1e6, bad)),
+        ]);
+    }
+    let mesh = Mesh::beam(good().beam.as_ref().unwrap()).unwrap();
+    let system = solved(&good()).system().clone();
+    for scene in wrong {
+        let error = Simulation::new(&scene).map(|_| ()).unwrap_err();
+        let SimulationError::System(SystemError::Scene(invalid)) = &error else { panic!("{scene:?}: {error}") };
+        assert!(invalid.message().starts_with("expected "), "{scene:?}: {error}");
+        assert_eq!(error.to_string(), format!("{}: {}", invalid.key, invalid.message()));
+        assert!(Simulation::with_system(&scene, system.clone()).is_err());
+        assert!(Problem::new(&scene, system.clone()).is_err());
+        assert!(Reference::of(&scene).is_err());
+        assert!(LoadCurve::new(&scene).is_none(), "{scene:?}");
+        // With another mesh, the scene's own geometry is not used; everything else is validated.
+        let geometry_alone = scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok();
+        if geometry_alone {
+            let of_geometry = |e: String| e.starts_with("beam") || e.starts_with("mesh");
+            assert!(of_geometry(scene.validate().unwrap_err().to_string()), "{scene:?}");
+        }
+        // An edit is refused for the same scenes as a new simulation.
+        assert!(solved(&good()).change_scene(&scene).is_err(), "{scene:?}");
+    }
+}
+
+#[test]
+fn setters_name_missing_loads() {
+    let mut scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).moment("right", 2.0);
+    scene.set_force(LoadId::nth(0), [1.0, 2.0]).unwrap();
+    scene.set_moment(LoadId::nth(1), 3.0).unwrap();
+    for (error, words) in [
+        (scene.set_force(LoadId::nth(1), [0.0; 2]), "load.1: expected a load of kind \"force\", got a moment"),
+        (scene.set_force(LoadId::nth(2), [0.0; 2]), "load.2: expected a load of kind \"force\", got no load"),
+        (scene.set_moment(LoadId::nth(0), 0.0), "load.0: expected a load of kind \"moment\", got a force"),
+        (scene.set_gravity(LoadId::nth(usize::MAX), [0.0; 2]), "got no load"),
+    ] {
+        let text = error.unwrap_err().to_string();
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+#[test]
+fn invalid_sources_and_assignments_are_refused() {
+    for name in ["", "no-such-scene", "/", "\0", "assets"] {
+        let source = Source { name: name.into(), assignments: Vec::new() };
+        assert!(open(&source).is_err(), "{name:?}");
+    }
+    for assignment in ["", "=", "a", "a=", ".=1", "load.0=1", "load.-1.force=[0,1]", "load.99999999999999999999.x=1"] {
+        let source = Source { name: "article".into(), assignments: vec![assignment.to_owned()] };
+        assert!(open(&source).is_err(), "{assignment:?}");
+    }
+    for text in ["", "name", "[beam]", "name = 1", "\u{0}", "name = \"x\""] {
+        assert!(Scene::from_toml(text).is_err() && Scene::from_toml_in(text, "/nowhere".as_ref()).is_err());
+    }
+}
+
+#[test]
+fn elements_and_meshes_take_any_point() {
+    let mesh = Mesh::beam(Scene::beam(2.0, 1.0).beam.as_ref().unwrap()).unwrap();
+    for bad in BAD {
+        assert_eq!(mesh.locate(Vector2::new(bad, 0.0)), None);
+        assert!((mesh.nearest_node(Vector2::new(bad, 0.0)) as usize) < mesh.nodes().len());
+    }
+    assert_eq!(mesh.weights(MaterialPoint { element: usize::MAX, at: [0.0; 2] }), None);
+    assert_eq!(mesh.edge_nodes(""), None);
+    assert!(matches!(mesh.clone().moved(|_| Vector2::zeros()), Err(MeshError::Degenerate { element: 0, .. })));
+    assert_eq!(side_weights(&[]), Vec::<f64>::new());
+    assert_eq!(side_weights(&[Vector2::zeros()]), [0.0]);
+    for element in ELEMENTS {
+        assert_eq!(element.nodal_areas(&[]), Vec::<f64>::new());
+        assert_eq!(element.jacobian(&[], [0.1, 0.1]), Matrix2::zeros());
+        assert!(matches!(Mesh::from_gmsh("", element.kind), Err(GmshError::Syntax { line: 1, .. })));
+    }
+}
+
+#[test]
+fn solvers_take_empty_and_singular_matrices() {
+    let empty = Symbolic::new(&[0], &[]).unwrap();
+    assert_eq!(empty.size(), 0);
+    let mut factor = Factor::new(&empty).unwrap();
+    assert!(factor.factorize(&[]).is_ok());
+    factor.solve_in_place(&mut []);
+    let one = Symbolic::new(&[0, 1], &[0]).unwrap();
+    let mut factor = Factor::new(&one).unwrap();
+    for singular in [0.0, -1.0, f64::NAN] {
+        assert!(factor.factorize(&[singular]).is_err(), "{singular}");
+    }
+    assert!(!factor.factorize_symmetric(&[-4.0]));
+    let mut b = [2.0];
+    factor.solve_in_place(&mut b);
+    assert_eq!(b, [-0.5]);
+}
+
+#[test]
+fn exact_solutions_and_formats_take_any_number() {
+    for (bad, word) in BAD.into_iter().zip(["NaN", "inf", "-inf", "1e300", "-1e300"]) {
+        let beam = ClampedBeam {
+            length: bad,
+            bending: 1.0,
+            stretch_compliance: 0.0,
+            shear_compliance: 0.0,
+            tip_force: Vector2::new(0.0, 1.0),
+            tip_moment: 0.0,
+            weight: Vector2::zeros(),
+        };
+        assert_eq!(beam.tip(), None, "a length of {bad}");
+        let beam = ClampedBeam { length: 1.0, bending: bad, ..beam };
+        match beam.tip() {
+            // A beam with zero compliance, which a load cannot bend.
+            Some(tip) => assert!(bad.is_finite() && (tip.x - Vector2::x()).norm() < 1e-12, "{bad}: {tip:?}"),
+            None => assert!(!bad.is_finite(), "a bending stiffness of {bad}"),
+        }
+        let rotation = polar(&Matrix2::new(bad, 0.0, 0.0, 1.0));
+        assert_eq!(rotation, bad.is_finite().then_some(Rotation { c: bad.signum(), s: 0.0 }), "{bad}");
+        assert_eq!(Rotation::from_angle(bad).angle().is_finite(), bad.is_finite(), "{bad}");
+        assert!(Affine2::from_triangle([Vector2::new(bad, 0.0); 3], [Vector2::zeros(); 3]).is_err());
+        assert_eq!(number(bad), word);
+    }
+    assert_eq!(ExactBeam::of(&Scene::named("nothing")), None);
+    assert_eq!(
+        (count(0_u32, "step"), count(1_u32, "step"), count(2_u32, "step")),
+        ("0 steps".into(), "1 step".into(), "2 steps".into())
+    );
+}
+
+#[test]
+fn a_scene_without_probes_has_a_result_and_no_reference() {
+    let scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Auto);
+    let simulation = solved(&scene);
+    assert!(simulation.solution().probes.is_empty());
+    assert!(Reference::of(&scene).is_err());
+}

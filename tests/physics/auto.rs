@@ -1,0 +1,216 @@
+//! Tests of `auto`: it skips work that a scene does not need, and its result is within the requested
+//! error of the exact equilibrium.
+
+use crate::common::{ids_of, scene};
+use warpbeam::exact_beam::{ExactBeam, error_percent};
+use warpbeam::method::{AutoReport, Decision};
+use warpbeam::scene::Analysis;
+use warpbeam::{ElementKind, Load, MethodKind, Scene, Simulation, Status};
+
+fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.scale_loads(factor);
+    scene
+}
+
+fn run(scene: &Scene, method: MethodKind) -> Simulation {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.solve();
+    simulation
+}
+
+/// Returns the distance of two results at the first probe, percent of the second's displacement.
+fn distance(a: &Simulation, b: &Simulation) -> f64 {
+    let [a, b] = [a, b].map(|s| s.problem().probes()[0].mean(s.displacement()));
+    100.0 * (a - b).norm() / b.norm()
+}
+
+fn report(simulation: &Simulation) -> AutoReport {
+    simulation.equilibrium().unwrap().auto_report().unwrap()
+}
+
+/// For every scene and element and loads over five decades, the result is within the requested error of Newton's.
+/// Linear theory is used where it is accurate enough, and nowhere else.
+#[test]
+fn every_result_is_within_the_requested_error() {
+    let mut served = 0;
+    for (id, element) in ids_of(Analysis::Static).into_iter().flat_map(|id| scene(id).elements().map(move |e| (id, e)))
+    {
+        let mut whole = scene(id);
+        whole.set_element(element);
+        for factor in [1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.6, 1.0, 1.5] {
+            let mut scene = scaled(&whole, factor);
+            let exact = run(&scene, MethodKind::Newton);
+            let linear = distance(&run(&scene, MethodKind::Linear), &exact);
+            for asked in [10.0, 1.0, 0.1] {
+                scene.solver.max_error_percent = asked;
+                let auto = run(&scene, MethodKind::Auto);
+                let what = format!("{id} {element:?} × {factor}, {asked} %: {:?}", report(&auto));
+                assert_eq!(*auto.status(), Status::Converged, "{what}");
+                let error = distance(&auto, &exact);
+                assert!(error <= asked, "{what}: {error} %");
+                let is_linear = report(&auto).decision == Decision::Linear;
+                assert_eq!(is_linear, auto.is_linear());
+                served += u32::from(is_linear);
+                // The estimate also covers the largest displacement, not only the probe's. Linear theory is
+                // not tried where supports move.
+                let may_skip = !auto.problem().supports().move_the_body();
+                assert!(
+                    is_linear || !may_skip || linear > 0.1 * asked,
+                    "{what}: linear theory is off by {linear} % only"
+                );
+            }
+        }
+    }
+    assert!(served > 150, "{served}");
+}
+
+/// Results are within the requested error of the exact beam, too, on a sufficiently fine mesh.
+#[test]
+fn results_stay_within_the_requested_error_of_the_reference() {
+    for id in ["cantilever", "elastica"] {
+        let mut scene = scene(id);
+        scene.set_element(ElementKind::T6);
+        scene.beam.as_mut().unwrap().cells = [40, 2];
+        scene.solver.method = MethodKind::Auto;
+        scene.solver.max_error_percent = 1.0;
+        let mut decisions = Vec::new();
+        for factor in [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0] {
+            let scene = scaled(&scene, factor);
+            let auto = run(&scene, MethodKind::Auto);
+            let reference = ExactBeam::of(&scene).unwrap().tip_displacement().unwrap();
+            let error = error_percent(auto.probe("tip").unwrap(), reference).unwrap();
+            assert!(error <= 1.0, "{id} × {factor}: {error} %, {:?}", report(&auto));
+            decisions.push(report(&auto).decision);
+        }
+        assert!(decisions.contains(&Decision::Linear) && decisions.contains(&Decision::NewFactor), "{decisions:?}");
+    }
+}
+
+/// A load that grows and rotates a little in every frame, as with a slider: most frames reuse the old factor, and every
+/// frame is within the requested error.
+#[test]
+fn a_dragged_load_seldom_needs_a_new_factor() {
+    for id in ["cantilever", "elastica"] {
+        drag(scene(id), 60, 1.0);
+        // The load changes so slowly that the length of one step does not show how outdated the factor is.
+        drag(scene(id), 300, 0.2);
+    }
+}
+
+fn drag(mut scene: Scene, frames: u32, asked: f64) {
+    scene.solver.method = MethodKind::Auto;
+    scene.solver.max_error_percent = asked;
+    let Load::Force { force, .. } = scene.loads[0].clone() else { unreachable!("a force") };
+    let mut auto: Option<Simulation> = None;
+    let (mut factorizations, mut newtons, mut old) = (0, 0, 0);
+    for frame in 0..frames {
+        let share = f64::from(frame) / f64::from(frames - 1);
+        let (s, c) = (0.5 * share).sin_cos();
+        let size = 0.2 + 0.8 * share;
+        let turned = [size * (c * force[0] - s * force[1]), size * (s * force[0] + c * force[1])];
+        scene.loads[0] = match &scene.loads[0] {
+            Load::Force { place, .. } => Load::force(place.clone(), turned),
+            other => other.clone(),
+        };
+        let simulation = match auto.take() {
+            None => Simulation::new(&scene).unwrap(),
+            Some(mut simulation) => {
+                simulation.change_scene(&scene).unwrap();
+                simulation
+            }
+        };
+        let simulation = auto.insert(simulation);
+        simulation.solve();
+        let exact = run(&scene, MethodKind::Newton);
+        let error = distance(simulation, &exact);
+        assert!(error <= asked, "{} frame {frame}: {error} %, {:?}", scene.name, report(simulation));
+        factorizations += report(simulation).factorizations;
+        newtons += exact.iterations();
+        old += u32::from(report(simulation).decision == Decision::OldFactor);
+    }
+    assert!(old >= frames / 2, "the old factor served {old} of {frames} frames");
+    assert!(3 * factorizations <= newtons, "{factorizations} factorizations, newton's {newtons}");
+}
+
+#[test]
+fn auto_does_not_solve_an_unchanged_scene_again() {
+    for factor in [1e-3, 1.0] {
+        let mut scene = scaled(&scene("elastica"), factor);
+        scene.solver.method = MethodKind::Auto;
+        let mut auto = Simulation::new(&scene).unwrap();
+        auto.solve();
+        assert!(auto.iterations() > 0);
+        let before = auto.displacement().to_vec();
+        scene.probes[0].name = "another name".to_owned();
+        auto.change_scene(&scene).unwrap();
+        assert_eq!((auto.status(), auto.iterations()), (&Status::Converged, 0));
+        assert_eq!(report(&auto).decision, Decision::Unchanged);
+        assert_eq!((report(&auto).solves, report(&auto).factorizations), (0, 0));
+        assert_eq!(auto.displacement(), before);
+        // A smaller allowed error requires another solve; a larger one does not.
+        for (asked, solves) in [(5.0, false), (1e-4, true)] {
+            let estimate = report(&auto).estimated_error;
+            scene.solver.max_error_percent = asked;
+            auto.change_scene(&scene).unwrap();
+            assert_eq!(auto.iterations(), 0);
+            auto.solve();
+            assert_eq!(auto.iterations() > 0, solves, "{asked}");
+            assert!(solves || report(&auto).estimated_error == estimate);
+        }
+        auto.change_scene(&scaled(&scene, 1.001)).unwrap();
+        auto.solve();
+        assert!(auto.iterations() > 0 && report(&auto).decision != Decision::Unchanged);
+        assert!(auto.displacement() != before);
+    }
+}
+
+/// Repeated small loads cost one factorization in total, and three back substitutions per frame.
+#[test]
+fn under_small_loads_nothing_is_factorized() {
+    let mut scene = scaled(&scene("cantilever"), 1e-3);
+    scene.solver.method = MethodKind::Auto;
+    let mut auto = Simulation::new(&scene).unwrap();
+    auto.solve();
+    for frame in 0..5 {
+        scene = scaled(&scene, 0.9);
+        auto.change_scene(&scene).unwrap();
+        auto.solve();
+        let AutoReport { decision, solves, factorizations, .. } = report(&auto);
+        assert_eq!((decision, solves, factorizations), (Decision::Linear, 3, 0), "frame {frame}");
+    }
+}
+
+/// A changed stiffness makes the old factors useless.
+#[test]
+fn a_new_stiffness_is_factorized_again() {
+    for factor in [1e-3, 1.0] {
+        let mut scene = scaled(&scene("elastica"), factor);
+        scene.solver.method = MethodKind::Auto;
+        let mut auto = Simulation::new(&scene).unwrap();
+        auto.solve();
+        for change in [|s: &mut Scene| s.material.young *= 1.5, |s: &mut Scene| s.material.thickness *= 0.7] {
+            change(&mut scene);
+            auto.change_scene(&scene).unwrap();
+            auto.solve();
+            let error = distance(&auto, &run(&scene, MethodKind::Newton));
+            assert!(error <= scene.solver.max_error_percent, "{error}");
+        }
+    }
+}
+
+/// The straight state of a compressed column is its own linear solution; beyond Euler's load it is unstable.
+#[test]
+fn an_unstable_linear_solution_is_not_taken() {
+    let mut column = scene("elastica");
+    let beam = column.beam.clone().unwrap();
+    let bending = column.material.young * column.material.thickness * beam.height.powi(3) / 12.0;
+    let euler = std::f64::consts::PI.powi(2) * bending / (4.0 * beam.length.powi(2));
+    for (share, decides_linear) in [(0.5, true), (0.9, true), (1.1, false), (1.5, false)] {
+        column.loads = vec![Load::force("right", [-share * euler, 0.0])];
+        let auto = run(&column, MethodKind::Auto);
+        assert_eq!(report(&auto).decision == Decision::Linear, decides_linear, "{share}: {:?}", report(&auto));
+    }
+}

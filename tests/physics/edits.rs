@@ -1,0 +1,180 @@
+//! Tests of edits to a solved body: cached data and state that they keep or discard.
+
+use std::sync::Arc;
+
+use crate::common::{scene, scene_with, solved};
+use warpbeam::method::METHODS;
+use warpbeam::{Load, LoadId, Mesh, MethodKind, Scene, Simulation, Status};
+
+fn largest(simulation: &Simulation) -> f64 {
+    simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max)
+}
+
+/// An edit of loads keeps the state of a loaded body, even if it couples unknowns that were not coupled.
+#[test]
+fn edits_of_loads_keep_the_state() {
+    let start = scene_with("cantilever", &["solver.method=newton", "solver.tolerance=1e-12"]);
+    let before = solved(&start);
+    let edits: [(&str, Scene); 5] = [
+        ("a moment is added", start.clone().moment("right", 100.0)),
+        ("a moment on a long edge", start.clone().moment("top", 100.0)),
+        ("a weight is added", start.clone().gravity([0.0, -0.01])),
+        ("a force elsewhere", start.clone().force("top", [1.0, 0.0])),
+        ("loads go", {
+            let mut scene = start.clone();
+            scene.loads.clear();
+            scene
+        }),
+    ];
+    for (what, scene) in edits {
+        let mut simulation = solved(&start);
+        simulation.change_scene(&scene).unwrap();
+        assert_eq!(simulation.displacement(), before.displacement(), "{what}");
+        assert_eq!(*simulation.solve(), Status::Converged, "{what}");
+        let mut fresh = Simulation::new(&scene).unwrap();
+        fresh.solve();
+        for (a, b) in simulation.displacement().iter().zip(fresh.displacement()) {
+            assert!((a - b).norm() < 1e-6, "{what}: {a} {b}");
+        }
+        // The reverse edit needs no other couplings.
+        let system = simulation.system().clone();
+        simulation.change_scene(&start).unwrap();
+        assert!(Arc::ptr_eq(&system, simulation.system()), "{what}");
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert!((simulation.probe("tip").unwrap() - before.probe("tip").unwrap()).norm() < 1e-6);
+    }
+}
+
+/// Unchanged parts are not recomputed by an edit, and simulations share one system.
+#[test]
+fn equations_are_shared_and_kept() {
+    let mut body = solved(&scene("cantilever"));
+    let system = body.system().clone();
+    body.set_force(LoadId::nth(0), [0.0, -1200.0]).unwrap();
+    let mut material = body.scene().material;
+    material.young *= 2.0;
+    body.set_material(material).unwrap();
+    let mut other = body.scene().clone();
+    other.solver.method = MethodKind::Newton;
+    other.solver.tolerance = 1e-10;
+    body.change_scene(&other).unwrap();
+    assert!(Arc::ptr_eq(&system, body.system()));
+    let mut ghost_scene = other.clone();
+    ghost_scene.solver.method = MethodKind::Linear;
+    let ghost = Simulation::with_system(&ghost_scene, system.clone()).unwrap();
+    assert!(Arc::ptr_eq(&system, ghost.system()));
+    // Another mesh needs another system.
+    body.change_scene(&other.clone().with_cells(40, 4)).unwrap();
+    assert!(!Arc::ptr_eq(&system, body.system()));
+    fn shared_between_threads<T: Send + Sync>(_: &T) {}
+    shared_between_threads(&body);
+}
+
+/// A mesh given by the caller is kept by every edit and never replaced by the scene's own.
+#[test]
+fn a_mesh_given_by_the_caller_is_kept_by_every_edit() {
+    let scene = scene("elastica");
+    let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
+    let finer = mesh.refined();
+    for own in [scene.clone(), without_geometry(&scene)] {
+        let mut simulation = Simulation::with_mesh(&own, finer.clone()).unwrap();
+        let dofs = simulation.system().dofs();
+        simulation.solve();
+        let edits: [&dyn Fn(&mut Scene); 6] = [
+            &|s| s.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap(),
+            &|s| s.material.young *= 2.0,
+            &|s| s.solver.method = MethodKind::Warped,
+            &|s| s.loads.push(Load::moment("right", 5.0)),
+            &|s| s.supports.remove(0).fix.clear(),
+            &|s| {
+                if let Some(beam) = &mut s.beam {
+                    beam.cells = [2, 1];
+                }
+            },
+        ];
+        for (i, edit) in edits.iter().enumerate() {
+            let mut edited = simulation.scene().clone();
+            edit(&mut edited);
+            match simulation.change_scene(&edited) {
+                Ok(()) => assert_ne!(i, 4, "a body that nothing holds"),
+                Err(error) => assert_eq!(i, 4, "{error}"),
+            }
+            assert_eq!(simulation.system().dofs(), dofs, "edit {i}");
+            assert_eq!(simulation.system().mesh(), &finer);
+            assert_eq!(*simulation.solve(), Status::Converged, "edit {i}");
+        }
+    }
+}
+
+fn without_geometry(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.beam = None;
+    scene
+}
+
+/// A mesh file is read once, when the scene is opened: edits work after the file has been deleted.
+#[test]
+fn a_mesh_file_is_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let text = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n";
+    let scene = Scene::from_toml_in(text, folder.path()).unwrap();
+    let unread = Scene::from_toml(text).unwrap();
+    let refused = Simulation::new(&unread).unwrap_err().to_string();
+    assert!(refused.contains("square.msh") && refused.contains("open the scene from its folder"), "{refused}");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    folder.close().unwrap();
+    for element in scene.elements() {
+        simulation.change_scene(&scene.clone().with_element(element)).unwrap();
+        simulation.set_force(LoadId::nth(0), [0.0, 50.0]).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert!(largest(&simulation) > 0.0);
+    }
+}
+
+/// A refused edit changes nothing.
+#[test]
+fn a_refused_edit_changes_nothing() {
+    let mut simulation = solved(&scene("cantilever"));
+    let (before, state) = (simulation.scene().clone(), simulation.state().clone());
+    assert!(simulation.set_force(LoadId::nth(0), [f64::NAN, 0.0]).is_err());
+    assert!(simulation.set_force(LoadId::nth(0), [0.0, 1e16]).is_err());
+    assert!(simulation.set_force(LoadId::nth(7), [0.0, 1.0]).is_err());
+    assert!(simulation.set_moment(LoadId::nth(0), 1.0).is_err());
+    assert!(simulation.set_gravity(LoadId::nth(0), [0.0, 1.0]).is_err());
+    let mut material = before.material;
+    material.poisson = 0.7;
+    assert!(simulation.set_material(material).is_err());
+    assert!(simulation.change_scene(&before.clone().clamp("nowhere")).is_err());
+    assert!(simulation.change_scene(&before.clone().with_cells(0, 1)).is_err());
+    assert!(simulation.change_scene(&before.clone().probe("p", [99.0, 0.0])).is_err());
+    assert_eq!((simulation.scene(), simulation.state(), simulation.status()), (&before, &state, &Status::Converged));
+}
+
+/// A snapshot keeps the state of a search at one instant, and can continue by itself to the same end.
+#[test]
+fn a_snapshot_is_unchanged_and_can_continue() {
+    for method in METHODS.iter().map(|method| method.kind) {
+        let mut start = scene("article");
+        start.solver.method = method;
+        let mut search = Simulation::new(&start).unwrap();
+        search.step();
+        let mut copy = search.equilibrium().unwrap().snapshot();
+        let seen = search.solution();
+        assert_eq!(copy.solution(), seen, "{}", method.id());
+        assert_eq!((copy.scene(), copy.state()), (search.scene(), search.state()));
+        assert!(Arc::ptr_eq(copy.system(), search.system()));
+        search.solve();
+        assert_eq!(copy.solution(), seen, "{}: it follows", method.id());
+        copy.solve();
+        assert_eq!(copy.status(), search.status());
+        let off =
+            copy.displacement().iter().zip(search.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(off <= 1e-6 * largest(&search), "{}: {off}", method.id());
+        assert_eq!(copy.certify().stable, search.certify().stable, "{}", method.id());
+        copy.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap();
+        assert_eq!(*copy.solve(), Status::Converged);
+    }
+    assert!(Simulation::new(&scene("swing")).unwrap().equilibrium().is_none(), "of a motion");
+}

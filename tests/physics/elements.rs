@@ -1,0 +1,440 @@
+//! Compares elements with independent numbers. Tests that every element must pass are in `tests/registry`.
+
+use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
+use warpbeam::article::stiffness::ElementStiffness;
+use warpbeam::assembly::{Forces, Matrix, Problem, System};
+use warpbeam::element::{QuadraturePoint, Tangent, side_weights, warped_strain};
+use warpbeam::exact_beam::error_percent;
+use warpbeam::material::Lame;
+use warpbeam::mesh::Mesh;
+use warpbeam::rotation::{Rotation, polar};
+use warpbeam::{ElementKind, Load, Material, MethodKind, Plane, Scene, Simulation, Status};
+
+const X: [[f64; 2]; 3] = [[0.0, 0.0], [2.0, 0.3], [0.4, 1.1]];
+const MOVED: [[f64; 2]; 3] = [[0.1, -0.2], [0.9, 1.7], [-0.8, 0.7]];
+
+fn material(plane: Plane) -> Material {
+    Material { young: 100.0, poisson: 0.3, density: 1.0, thickness: 0.5, plane }
+}
+
+/// Returns the quadrature points of an element with these rest nodes.
+fn points<const N: usize>(kind: ElementKind, nodes: [[f64; 2]; N]) -> Vec<QuadraturePoint<N>> {
+    let rest = nodes.map(Vector2::from);
+    kind.entry().points.iter().map(|p| QuadraturePoint::new(kind.entry(), &rest, p.at, p.weight)).collect()
+}
+
+/// The first two rows of Ke match numbers computed independently in rational arithmetic.
+#[test]
+fn t3_stiffness_matches_independent_numbers() {
+    let rows = [
+        (
+            Plane::Stress,
+            [20.287405, 10.989011, -8.664413, -6.868132, -11.622992, -4.120879],
+            [10.989011, 36.770921, -5.494505, 4.385038, -5.494505, -41.155959],
+        ),
+        (
+            Plane::Strain,
+            [22.189349, 14.792899, -11.279586, -5.917160, -10.909763, -8.875740],
+            [14.792899, 44.378698, -10.724852, 6.286982, -4.068047, -50.665680],
+        ),
+    ];
+    for (plane, first, second) in rows {
+        let ke = ElementStiffness::new(&points(ElementKind::T3, X), material(plane).membrane()).ke;
+        for column in 0..6 {
+            assert!((ke[(0, column)] - first[column]).abs() < 1e-6, "{plane:?} {ke}");
+            assert!((ke[(1, column)] - second[column]).abs() < 1e-6, "{plane:?} {ke}");
+        }
+        assert!((ke.transpose() - &ke).norm() < 1e-12);
+    }
+}
+
+/// F, R, S, the warped force and the energy of the same triangle in a deformed state.
+#[test]
+fn t3_warped_force_matches_independent_numbers() {
+    let cases = [
+        (Plane::Stress, [4.826830, -2.485061, 3.753278, 0.968050, -8.580108, 1.517011], 0.755058787),
+        (Plane::Strain, [5.870381, -4.010955, 4.666842, 1.760800, -10.537223, 2.250155], 0.934735414),
+    ];
+    for (plane, expected, energy) in cases {
+        let moduli = material(plane).membrane();
+        let points = points(ElementKind::T3, X);
+        let [point] = points[..] else { unreachable!("one point") };
+        let u = [0, 1, 2].map(|i| Vector2::from(MOVED[i]) - Vector2::from(X[i]));
+        let h = point.displacement_gradient(&u);
+        let f = Matrix2::identity() + h;
+        assert!((f - Matrix2::new(0.552885, -1.019231, 0.875, 0.5)).amax() < 1e-6);
+        let r = polar(&f).unwrap();
+        assert!((r.c - 0.485831).abs() < 1e-6 && (r.s - 0.874053).abs() < 1e-6);
+        let s = r.matrix().transpose() * f;
+        assert!((s - Matrix2::new(1.033405, -0.058148, -0.058148, 1.133777)).amax() < 1e-6);
+        assert!((warped_strain(r, &h) - (s - Matrix2::identity())).amax() < 1e-14);
+        let force = point.warped_force(moduli, r, &h);
+        for (a, force) in force.iter().enumerate() {
+            assert!((force.x - expected[2 * a]).abs() < 1e-6 && (force.y - expected[2 * a + 1]).abs() < 1e-6);
+        }
+        let strain = warped_strain(r, &h);
+        let psi = point.area * 0.5 * moduli.stress(&strain).dot(&strain);
+        assert!((psi - energy).abs() < 1e-9, "{psi}");
+        assert!((point.area * moduli.energy_density(&strain) - energy).abs() < 1e-9);
+        // Eq. (2) with matrices: R Ke (Rᵀ x − X).
+        let stiffness = ElementStiffness::new(&[point], moduli);
+        let flat = |p: [[f64; 2]; 3]| DVector::from_iterator(6, p.into_iter().flatten());
+        let written_out = stiffness.rkrt(r) * flat(MOVED) - stiffness.force_offset(r, &flat(X));
+        for (ours, theirs) in force.iter().flat_map(|f| [f.x, f.y]).zip(written_out.iter()) {
+            assert!((ours - theirs).abs() < 1e-12);
+        }
+    }
+}
+
+/// Uniaxial stress: axial strain p/E, lateral −ν p/E (the numbers of SOFA's LinearElasticity_test).
+#[test]
+fn uniaxial_stress_gives_the_strains_of_the_book() {
+    for (young, nu, p) in itertools(&[1.0, 2.0], &[0.0, 0.3, 0.49], &[0.2, -0.2, 0.6, -0.6]) {
+        let lame = Material { young, poisson: nu, density: 0.0, thickness: 1.0, plane: Plane::Stress }.lame();
+        let strain = Matrix2::new(p / young, 0.0, 0.0, -nu * p / young);
+        let stress = lame.stress(&strain);
+        assert!((stress - Matrix2::new(p, 0.0, 0.0, 0.0)).amax() < 1e-13, "E {young} ν {nu} p {p}: {stress}");
+    }
+}
+
+fn itertools(a: &[f64], b: &[f64], c: &[f64]) -> Vec<(f64, f64, f64)> {
+    a.iter().flat_map(|&a| b.iter().flat_map(move |&b| c.iter().map(move |&c| (a, b, c)))).collect()
+}
+
+#[test]
+fn plane_strain_has_no_strain_out_of_the_plane() {
+    let m = material(Plane::Strain);
+    let Lame { lambda, mu } = m.lame();
+    // Hooke's law in space: ε_zz = (σ_zz − ν (σ_xx + σ_yy)) / E = 0.
+    let strain = Matrix2::new(0.01, 0.002, 0.002, -0.004);
+    let stress = m.lame().stress(&strain);
+    let szz = m.out_of_plane_stress(stress.trace());
+    assert!((szz - m.poisson * stress.trace()).abs() < 1e-12);
+    let exx = (stress.m11 - m.poisson * (stress.m22 + szz)) / m.young;
+    assert!((exx - strain.m11).abs() < 1e-15);
+    assert!((m.elasticity_matrix().m11 - (lambda + 2.0 * mu)).abs() < 1e-12);
+}
+
+/// The first two rows of the T6 stiffness match numbers computed independently in rational arithmetic.
+#[test]
+fn t6_stiffness_matches_independent_numbers() {
+    let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+    let nodes = [X[0], X[1], X[2], middle(X[0], X[1]), middle(X[1], X[2]), middle(X[2], X[0])];
+    let points = points(ElementKind::T6, nodes);
+    let rows = [
+        (
+            Plane::Stress,
+            [
+                20.287405, 10.989011, 2.888138, 2.289377, 3.874331, 1.373626, -11.552550, -9.157509, 0.0, 0.0,
+                -15.497323, -5.494505,
+            ],
+            [
+                10.989011, 36.770921, 1.831502, -1.461679, 1.831502, 13.718653, -7.326007, 5.846717, 0.0, 0.0,
+                -7.326007, -54.874613,
+            ],
+        ),
+        (
+            Plane::Strain,
+            [
+                22.189349, 14.792899, 3.759862, 1.972387, 3.636588, 2.958580, -15.039448, -7.889546, 0.0, 0.0,
+                -14.546351, -11.834320,
+            ],
+            [
+                14.792899, 44.378698, 3.574951, -2.095661, 1.356016, 16.888560, -14.299803, 8.382643, 0.0, 0.0,
+                -5.424063, -67.554241,
+            ],
+        ),
+    ];
+    for (plane, first, second) in rows {
+        let ke = ElementStiffness::new(&points, material(plane).membrane()).ke;
+        for column in 0..12 {
+            assert!((ke[(0, column)] - first[column]).abs() < 1e-6, "{plane:?} {column} {ke}");
+            assert!((ke[(1, column)] - second[column]).abs() < 1e-6, "{plane:?} {column} {ke}");
+        }
+    }
+}
+
+fn dead_force(scene: &Scene) -> Vec<Vector2<f64>> {
+    let problem = Problem::new(scene, System::new(scene).unwrap().into()).unwrap();
+    problem.loads().dead_force().to_vec()
+}
+
+/// On a mesh with curved sides, gravity is the weight of the true area, and the parts of a traction sum to its force.
+#[test]
+fn loads_on_curved_elements_add_up() {
+    let mut scene = crate::common::scene("bracket");
+    let area = 1.2 * 0.3 + 0.9 * 0.3 + 0.2 * 0.2 * (1.0 - std::f64::consts::FRAC_PI_4);
+    scene.loads = vec![Load::gravity([0.0, -9.81])];
+    let total = |scene: &Scene| dead_force(scene).iter().sum::<Vector2<f64>>();
+    let weight = 9.81 * scene.material.density * scene.material.thickness * area;
+    assert!((total(&scene).y + weight).abs() < 1e-4 * weight, "{} {weight}", total(&scene).y);
+    scene.loads = vec![Load::force("fillet", [3.0, -4.0])];
+    assert!((total(&scene) - Vector2::new(3.0, -4.0)).norm() < 1e-12);
+    // A moment needs a straight edge.
+    scene.loads = vec![Load::moment("fillet", 1.0)];
+    let problem = Problem::new(&scene, System::new(&scene).unwrap().into());
+    assert!(problem.unwrap_err().to_string().contains("expected a straight edge"));
+}
+
+/// A force at a point acts unchanged on the nearest node: the reaction is its opposite, and it does work.
+#[test]
+fn a_force_at_a_point_pulls_the_nearest_node() {
+    let mut scene = crate::common::scene("cantilever");
+    scene.loads.clear();
+    let scene = scene.force([9.97, 0.51], [3.0, -7.0]);
+    let forces = dead_force(&scene);
+    let system = System::new(&scene).unwrap();
+    let pulled: Vec<usize> = (0..forces.len()).filter(|&n| forces[n].norm() > 0.0).collect();
+    assert_eq!(pulled.len(), 1);
+    assert_eq!(system.mesh().nodes()[pulled[0]], Vector2::new(10.0, 0.5));
+    assert_eq!(forces[pulled[0]], Vector2::new(3.0, -7.0));
+    let result = crate::common::solved(&scene).solution();
+    assert!((result.reaction.force + Vector2::new(3.0, -7.0)).norm() < 1e-4);
+    assert!(result.probes[0].u.y < 0.0 && result.energy.external > 0.0);
+}
+
+/// A quadrilateral that is far from a parallelogram.
+const QUAD: [[f64; 2]; 4] = [[0.1, -0.2], [2.0, 0.3], [1.5, 1.4], [-0.3, 1.0]];
+
+/// Returns the stiffness of Taylor, Beresford and Wilson's element in its textbook form: 3 × 12 strain matrices
+/// at 2 × 2 points, the modes' gradients scaled with the Jacobian of the centre over that of the point, and the
+/// last four unknowns condensed.
+fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
+    let gauss = 1.0 / 3f64.sqrt();
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let jacobian = |xi: f64, eta: f64| {
+        let mut j = Matrix2::zeros();
+        for ([a, b], x) in corners.iter().zip(QUAD) {
+            let (dxi, deta) = (0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi));
+            j += Matrix2::new(dxi * x[0], dxi * x[1], deta * x[0], deta * x[1]);
+        }
+        j
+    };
+    let centre = jacobian(0.0, 0.0);
+    let mut all = SMatrix::<f64, 12, 12>::zeros();
+    for [p, q] in corners {
+        let (xi, eta) = (p * gauss, q * gauss);
+        let j = jacobian(xi, eta);
+        let mut strain = SMatrix::<f64, 3, 12>::zeros();
+        let mut put = |a: usize, g: Vector2<f64>| {
+            strain[(0, 2 * a)] = g.x;
+            strain[(1, 2 * a + 1)] = g.y;
+            strain[(2, 2 * a)] = g.y;
+            strain[(2, 2 * a + 1)] = g.x;
+        };
+        for (i, [a, b]) in corners.iter().enumerate() {
+            let local = Vector2::new(0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi));
+            put(i, j.try_inverse().unwrap() * local);
+        }
+        let ratio = centre.determinant() / j.determinant();
+        put(4, centre.try_inverse().unwrap() * Vector2::new(-2.0 * xi, 0.0) * ratio);
+        put(5, centre.try_inverse().unwrap() * Vector2::new(0.0, -2.0 * eta) * ratio);
+        let weight = material.thickness * j.determinant();
+        all += strain.transpose() * material.elasticity_matrix() * strain * weight;
+    }
+    let (uu, uc) = (all.fixed_view::<8, 8>(0, 0), all.fixed_view::<8, 4>(0, 8));
+    uu - uc * all.fixed_view::<4, 4>(8, 8).try_inverse().unwrap() * uc.transpose()
+}
+
+/// Returns the problem of a single free quadrilateral.
+fn one_quad(scene: &Scene) -> Problem {
+    let nodes = QUAD.map(Vector2::from).to_vec();
+    let mesh = Mesh::new(nodes, ElementKind::Q4, vec![0, 1, 2, 3], Default::default()).unwrap();
+    Problem::new(scene, System::with_mesh(scene, mesh).unwrap().into()).unwrap()
+}
+
+/// The element equals the textbook's: its force in linear theory is Ke u, and its A at rest is Ke.
+#[test]
+fn q4_is_the_textbooks_element() {
+    use warpbeam::scene::Analysis;
+    for plane in [Plane::Stress, Plane::Strain] {
+        let mut scene = Scene::named("One").with_material(material(plane));
+        scene.analysis = Analysis::Dynamic;
+        let (problem, ke) = (one_quad(&scene), textbook_q4(&material(plane)));
+        let rest = problem.system().at_rest();
+        let mut matrix = Matrix::new(problem.system().pattern());
+        problem.linearize(&rest, &mut Forces::new(4), Some((Tangent::EXACT, &mut matrix)));
+        for column in 0..8 {
+            let mut unit = [0.0; 8];
+            unit[column] = 1.0;
+            let mut image = [0.0; 8];
+            matrix.multiply(problem.system().pattern(), &unit, &mut image);
+            let u: Vec<_> = unit.chunks(2).map(|u| Vector2::new(u[0], u[1])).collect();
+            let mut forces = Forces::new(4);
+            problem.linearize(&rest.with_displacement(u).unwrap(), &mut forces, None);
+            for (row, image) in image.into_iter().enumerate() {
+                let expected = ke[(row, column)];
+                assert!((image - expected).abs() < 1e-12 * ke.norm(), "{plane:?} {row} {column}: {image} {expected}");
+                let force = forces.internal()[row / 2][row % 2];
+                assert!((force - expected).abs() < 1e-12 * ke.norm(), "{plane:?} {row} {column}: {force} {expected}");
+            }
+        }
+    }
+}
+
+/// Energy, force and Hessian in a strongly deformed state equal those of W(x) = ½ d Ke d, d = Rᵀ(x − x̄) − (X − X̄),
+/// computed with matrices and finite differences.
+#[test]
+fn q4_energy_is_the_linear_energy_in_the_rotated_frame() {
+    const STEP: f64 = 1e-5;
+    let mut scene = Scene::named("One").with_material(material(Plane::Strain));
+    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    let (problem, ke) = (one_quad(&scene), textbook_q4(&material(Plane::Strain)));
+    let rest = QUAD.map(Vector2::from);
+    let element = ElementKind::Q4.entry();
+    let to_rest = element.jacobian(&rest, [0.0; 2]).try_inverse().unwrap();
+    let written_out = |x: &[f64]| {
+        let x: Vec<_> = x.chunks(2).map(|x| Vector2::new(x[0], x[1])).collect();
+        let r = polar(&(element.jacobian(&x, [0.0; 2]) * to_rest)).unwrap().matrix().transpose();
+        let mean = |x: &[Vector2<f64>]| x.iter().sum::<Vector2<f64>>() / 4.0;
+        let (now, then) = (mean(&x), mean(&rest));
+        let d = x.iter().zip(&rest).flat_map(|(x, rest)| <[f64; 2]>::from(r * (x - now) - (rest - then)));
+        let d = SMatrix::<f64, 8, 1>::from_iterator(d);
+        0.5 * (d.transpose() * ke * d)[0]
+    };
+    let x = [0.9, -0.4, 0.3, 1.8, -1.1, 1.3, -0.2, -0.6];
+    let u = x.chunks(2).zip(rest).map(|(x, rest)| Vector2::new(x[0], x[1]) - rest).collect::<Vec<_>>();
+    let state = problem.system().state_of(&u).unwrap();
+    assert!((problem.elastic_energy(&state) - written_out(&x)).abs() < 1e-12 * written_out(&x));
+    let mut forces = Forces::new(4);
+    let mut matrix = Matrix::new(problem.system().pattern());
+    problem.linearize(&state, &mut forces, Some((Tangent::EXACT, &mut matrix)));
+    let scale = ke.norm();
+    let moved = |steps: &[(usize, f64)]| {
+        let mut x = x;
+        steps.iter().for_each(|&(i, step)| x[i] += step);
+        written_out(&x)
+    };
+    let mut numeric = DMatrix::zeros(8, 8);
+    for i in 0..8 {
+        let slope = (moved(&[(i, STEP)]) - moved(&[(i, -STEP)])) / (2.0 * STEP);
+        assert!((slope - forces.internal()[i / 2][i % 2]).abs() < 1e-6 * scale, "{i}: {slope}");
+        for j in 0..8 {
+            let h = 20.0 * STEP;
+            let at = |a: f64, b: f64| moved(&[(i, a * h), (j, b * h)]);
+            numeric[(i, j)] = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0)) / (4.0 * h * h);
+        }
+    }
+    for column in 0..8 {
+        let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
+        unit[column] = 1.0;
+        matrix.multiply(problem.system().pattern(), &unit, &mut image);
+        for (row, image) in image.into_iter().enumerate() {
+            assert!((image - numeric[(row, column)]).abs() < 1e-6 * scale, "{row} {column}: {image} {numeric}");
+        }
+    }
+}
+
+/// A uniform traction is distributed over a side: half to each end of a straight side, Simpson's weights if it has a
+/// middle node. On a curved side, the weights sum to its length, and are symmetric if the nodes are.
+#[test]
+fn a_traction_is_distributed_along_a_side() {
+    let line = [Vector2::new(1.0, 2.0), Vector2::new(2.5, 4.0), Vector2::new(4.0, 6.0)];
+    let close = |found: &[f64], expected: &[f64]| {
+        assert_eq!(found.len(), expected.len());
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
+    };
+    close(&side_weights(&[line[0], line[2]]), &[2.5, 2.5]);
+    close(&side_weights(&line), &[5.0 / 6.0, 20.0 / 6.0, 5.0 / 6.0]);
+    close(&side_weights(&line[..1]), &[0.0]);
+    // A parabola y = 4 b s (1 − s) over a chord of length 1, whose length has a closed form.
+    let b: f64 = 0.1;
+    let arc = side_weights(&[Vector2::zeros(), Vector2::new(0.5, b), Vector2::new(1.0, 0.0)]);
+    let length = 0.5 * (1.0 + 16.0 * b * b).sqrt() + (4.0 * b).asinh() / (8.0 * b);
+    assert!((arc.iter().sum::<f64>() - length).abs() < 1e-5, "{arc:?} {length}");
+    assert!((arc[0] - arc[2]).abs() < 1e-14 && arc[1] > arc[0] && arc[0] > 0.0, "{arc:?}");
+}
+
+/// A small rotation gives no strain, up to a rounding error relative to the squared angle.
+#[test]
+fn a_small_rotation_causes_no_strain() {
+    for angle in [1e-9_f64, 1e-6, 1e-4] {
+        let (s, half) = (angle.sin(), (0.5 * angle).sin());
+        let h = Matrix2::new(-2.0 * half * half, -s, s, -2.0 * half * half);
+        let strain = warped_strain(Rotation::from_angle(angle), &h);
+        assert!(strain.amax() < 1e-15 * angle * angle, "{angle}: {strain:e}");
+    }
+    // The loads' own tangent is added if all of G is, and only then.
+    let exact = [Tangent::EXACT, Tangent::GEOMETRIC, Tangent::WARPED, Tangent::DEFINITE].map(|t| t.is_exact());
+    assert_eq!(exact, [true, true, false, false]);
+}
+
+/// Few cells and few solves suffice. Errors are in percent of the tip's displacement in the scene's reference solution.
+#[test]
+fn q4_bends_with_few_cells() {
+    let cases = [
+        ("article", [5, 1], 3.6),
+        ("article", [10, 1], 1.2),
+        ("cantilever", [10, 1], 0.5),
+        ("cantilever", [20, 2], 0.4),
+        ("elastica", [20, 1], 0.5),
+        ("elastica", [40, 1], 0.1),
+    ];
+    for (id, [along, across], bound) in cases {
+        let scene = crate::common::scene(id).with_element(ElementKind::Q4).with_cells(along, across);
+        let scene = scene.with_method(MethodKind::Newton);
+        let reference = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        assert_eq!(simulation.certify().stable, Some(true));
+        let solution = simulation.solution();
+        let error = error_percent(solution.probes[0].u, reference).unwrap();
+        println!("{id} {along} x {across}: {error:.3} %, {} solves", simulation.iterations());
+        assert!(error <= bound, "{id} {along} × {across}: {error} %");
+        assert!(along == 5 || simulation.iterations() <= 9, "{id} {along} × {across}: {}", simulation.iterations());
+    }
+}
+
+/// Nearly incompressible plane strain under a small load, against Timoshenko's beam with
+/// E/(1 − ν²), stubby and slender.
+#[test]
+fn q4_locks_neither_in_shear_nor_in_volume() {
+    let (young, nu, load) = (1e6, 0.4999, 1e-3);
+    let material = Material { plane: Plane::Strain, ..Material::new(young, nu) };
+    for length in [10.0, 100.0] {
+        let scene = Scene::beam(length, 1.0)
+            .with_element(ElementKind::Q4)
+            .with_cells(20, 1)
+            .with_material(material)
+            .clamp("left")
+            .force("right", [0.0, -load])
+            .with_method(MethodKind::Newton)
+            .probe("tip", "right");
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let bending = load * length.powi(3) / (3.0 * young / (1.0 - nu * nu) / 12.0);
+        let shear = load * length / (5.0 / 6.0 * young / (2.0 * (1.0 + nu)));
+        let error = 100.0 * (-simulation.solution().probes[0].u.y / (bending + shear) - 1.0);
+        println!("L/H = {length}: {error:.3} %");
+        assert!(error.abs() < 0.5, "L/H = {length}: {error} %");
+    }
+}
+
+/// The body is stretched, so that tension alone would make G positive, and twisted, so that the rotational part of G is
+/// not. With the positive part of G, the tangent is no less than the exact one and no less than the one without G.
+#[test]
+fn q4_positive_part_of_g_is_positive() {
+    let mut scene = Scene::named("One").with_material(material(Plane::Stress));
+    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    let problem = one_quad(&scene);
+    let twist = [1.0, -1.0, 1.0, -1.0].map(|h| Vector2::new(0.2, 0.3) * h);
+    let u: Vec<_> = QUAD.iter().zip(twist).map(|(x, twist)| Vector2::from(*x) * 0.5 + twist).collect();
+    let state = problem.system().state_of(&u).unwrap();
+    let [exact, definite, warped] = [Tangent::EXACT, Tangent::DEFINITE, Tangent::WARPED].map(|tangent| {
+        let mut matrix = Matrix::new(problem.system().pattern());
+        problem.linearize(&state, &mut Forces::new(4), Some((tangent, &mut matrix)));
+        let mut dense = DMatrix::zeros(8, 8);
+        for column in 0..8 {
+            let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
+            unit[column] = 1.0;
+            matrix.multiply(problem.system().pattern(), &unit, &mut image);
+            dense.set_column(column, &DVector::from_column_slice(&image));
+        }
+        dense
+    });
+    let rounding = 1e-12 * exact.norm();
+    let over_exact = (&definite - &exact).symmetric_eigenvalues();
+    assert!(over_exact.min() > -rounding && over_exact.max() > 1e-3 * exact.norm(), "{over_exact}");
+    assert!((&definite - &warped).symmetric_eigenvalues().min() > -rounding);
+    assert!((&exact - &warped).symmetric_eigenvalues().min() < -1e-3 * exact.norm());
+}

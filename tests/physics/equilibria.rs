@@ -1,0 +1,528 @@
+//! Tests of exact equilibria: six-node triangles, Newton's method, certificates, and required accuracies.
+
+use crate::common::{cantilever, cantilever_table, scene, scene_with, solved};
+use nalgebra::Vector2;
+use warpbeam::assembly::{Forces, Kinematics};
+use warpbeam::method::{Decision, Reason, rho_text};
+use warpbeam::{Axis, ElementKind, Equilibrium, Load, Mesh, MethodKind, Scene, Simulation, Status};
+
+/// Returns the load factor and the number of load steps of a search.
+fn load_stepping(simulation: &Simulation) -> (f64, u32) {
+    let search = simulation.equilibrium().unwrap();
+    (search.load_factor(), search.load_steps())
+}
+
+fn tip(simulation: &Simulation) -> Vector2<f64> {
+    simulation.solution().probes[0].x
+}
+
+/// The error of T6 20×1 is within its bound in every row of the table; 40×2 has a tighter bound, for slender beams
+/// under moderate loads.
+#[test]
+fn the_reference_table_is_met() {
+    let mut worst = [0.0f64; 3];
+    for row in cantilever_table() {
+        let moderate = row.length_over_height == 50.0 && row.alpha <= 10.0;
+        for (cells, bound, slot) in
+            [("[20,1]", if moderate { 0.003 } else { 0.01 }, usize::from(moderate)), ("[40,2]", 0.0005, 2)]
+        {
+            if slot == 2 && !moderate {
+                continue;
+            }
+            let length = row.length_over_height;
+            let mut scene = cantilever(length, row.alpha, &[&format!("beam.cells={cells}")]);
+            let direction = Vector2::new(row.angle.cos(), row.angle.sin());
+            // EI = 1e6/12; the weight per length is ρ g with ρ = 1000.
+            let per_length = row.alpha * 1e6 / 12.0 / length.powi(3);
+            scene.loads = if row.gravity {
+                vec![Load::gravity(direction * per_length / 1000.0)]
+            } else {
+                vec![Load::force("right", direction * per_length * length)]
+            };
+            let error = (tip(&solved(&scene)) / length - row.reissner).norm();
+            worst[slot] = worst[slot].max(error);
+            assert!(error <= bound, "{cells} {row:?}: {:.4} % of L", 100.0 * error);
+        }
+    }
+    println!(
+        "worst errors, % of L: 20×1 {:.3}, 20×1 slender {:.3}, 40×2 slender {:.4}",
+        100.0 * worst[0],
+        100.0 * worst[1],
+        100.0 * worst[2]
+    );
+}
+
+/// Solves from rest under the whole load need no more iterations than these bounds.
+#[test]
+fn newton_needs_few_solves() {
+    let mut most = [0; 4];
+    for nu in ["0", "0.3", "0.49"] {
+        for (class, lengths, alphas, bound) in [
+            (0, &[10.0, 20.0, 50.0][..], &[0.01, 0.1, 1.0, 3.0, 10.0][..], 9),
+            (1, &[500.0], &[0.01, 0.1, 1.0, 3.0, 10.0], 15),
+            // Some of these follow the path from rest.
+            (2, &[10.0, 20.0, 50.0], &[100.0], 80),
+            (3, &[10.0, 20.0, 50.0], &[1000.0], 160),
+        ] {
+            for &length in lengths {
+                for &alpha in alphas {
+                    let scene = cantilever(length, alpha, &[&format!("material.poisson={nu}")]);
+                    let mut simulation = solved(&scene);
+                    let solves = simulation.iterations();
+                    most[class] = most[class].max(solves);
+                    assert!(solves <= bound, "L/H {length}, α {alpha}, ν {nu}: {solves} solves");
+                    assert_eq!(simulation.certify().stable, Some(true));
+                }
+            }
+        }
+    }
+    println!("most solves: α ≤ 10 {}, L/H = 500 {}, α = 100 {}, α = 1000 {}", most[0], most[1], most[2], most[3]);
+}
+
+/// Every case in the range of parameters ends certified.
+#[test]
+fn every_case_of_the_box_is_certified() {
+    let mut missed = Vec::new();
+    for length in [5.0, 10.0, 50.0, 500.0] {
+        for nu in ["0", "0.3", "0.49"] {
+            for plane in ["stress", "strain"] {
+                for (element, cells) in [("t3", "[80,4]"), ("t6", "[20,1]")] {
+                    for alpha in [0.01, 1.0, 10.0, 30.0, 100.0, 1000.0] {
+                        let set = [
+                            format!("material.poisson={nu}"),
+                            format!("material.plane={plane}"),
+                            format!("beam.element={element}"),
+                            format!("beam.cells={cells}"),
+                        ];
+                        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+                        let mut simulation = Simulation::new(&cantilever(length, alpha, &set)).unwrap();
+                        let status = simulation.solve().clone();
+                        assert!(simulation.displacement().iter().all(|u| u.x.is_finite() && u.y.is_finite()));
+                        if status != Status::Converged || simulation.certify().stable != Some(true) {
+                            missed.push(format!(
+                                "L/H {length} ν {nu} {plane} {element} α {alpha}: {status:?} after {}",
+                                simulation.iterations()
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(missed.is_empty(), "{} missed: {missed:#?}", missed.len());
+}
+
+/// An end moment of 2πEI/L bends the beam into a circle.
+#[test]
+fn the_beam_rolls_up_to_a_circle() {
+    let mut simulation = solved(&scene("roll-up"));
+    let gap = tip(&simulation).norm() / 50.0;
+    assert!(gap < 0.005, "{gap}");
+    assert!(simulation.iterations() <= 30, "{} solves", simulation.iterations());
+    assert_eq!(simulation.certify().stable, Some(true));
+    println!("gap {:.3} % of L after {} solves", 100.0 * gap, simulation.iterations());
+}
+
+/// Under compression beyond buckling, the side load selects the direction, and the result is the
+/// buckled, stable equilibrium.
+#[test]
+fn the_column_buckles() {
+    let mut simulation = solved(&scene("column"));
+    assert_eq!(simulation.certify().stable, Some(true));
+    assert!(tip(&simulation).y > 5.0);
+    let other = solved(&scene_with("column", &["load.0.force=[-700,-2]"]));
+    // The result is the mirror image, except for the mesh's diagonals, which are not symmetric.
+    let mirrored = Vector2::new(tip(&simulation).x, -tip(&simulation).y);
+    assert!((tip(&other) - mirrored).norm() < 0.002 * 20.0, "{} {mirrored}", tip(&other));
+    // Without a side load the straight column is an equilibrium, and is reported as unstable.
+    let mut straight =
+        Simulation::new(&scene_with("column", &["load.0.force=[-700,0]", "beam.diagonals=same"])).unwrap();
+    straight.solve();
+    assert_eq!((straight.certify().stable, straight.status()), (Some(false), &Status::Converged));
+    assert!(tip(&straight).y.abs() < 1e-3, "{}", tip(&straight));
+}
+
+/// ρ predicts the loads for which `warped` converges.
+#[test]
+fn rho_predicts_where_the_warped_iteration_converges() {
+    let (mut below, mut above) = (0, 0);
+    for length in [10.0, 50.0] {
+        for alpha in [0.5, 1.0, 2.0, 2.5, 4.0, 5.0, 7.0, 10.0, 20.0] {
+            let scene = cantilever(length, alpha, &["solver.max_iterations=1000", "solver.tolerance=1e-7"]);
+            let rho = solved(&scene).certify().fixed_point_rho.unwrap();
+            let mut warped = scene.clone();
+            warped.solver.method = MethodKind::Warped;
+            let mut simulation = Simulation::new(&warped).unwrap();
+            let converged = *simulation.solve() == Status::Converged;
+            assert_eq!(converged, rho < 1.0, "L/H {length}, α {alpha}: ρ = {rho}, {:?}", simulation.status());
+            if rho < 1.0 {
+                below += 1
+            } else {
+                above += 1
+            }
+            // ρ is also the ratio of successive steps.
+            if rho < 0.9 {
+                let ratio = simulation.equilibrium().unwrap().step_ratio().unwrap();
+                assert!((ratio - rho).abs() < 0.2 * rho + 0.05, "α {alpha}: ratio {ratio}, ρ {rho}");
+            }
+        }
+    }
+    assert!(below >= 6 && above >= 6, "{below} below 1, {above} above");
+}
+
+/// Cook's membrane on n × n cells: the middle of the loaded edge rises by 23.96.
+#[test]
+fn cooks_membrane_converges() {
+    let middle = |element: ElementKind, n: u32| {
+        // A unit square, mapped to the membrane.
+        let square = Scene::beam(1.0, 1.0).with_cells(n, n).with_element(element);
+        let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
+        let map = |x: Vector2<f64>| {
+            let (a, b) = (x.x, x.y + 0.5);
+            let (low, high) = (44.0 * a, 44.0 + 16.0 * a);
+            Vector2::new(48.0 * a, low + b * (high - low))
+        };
+        let rename = |name: &str| if name == "left" { "clamp" } else { "end" }.to_owned();
+        let edges = ["left", "right"].map(|name| (rename(name), mesh.edges()[name].clone()));
+        let mesh = mesh.moved(map).unwrap().with_edges(edges.into()).unwrap();
+        let mut simulation = Simulation::with_mesh(&scene("cook"), mesh).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        simulation.solution().probes[0].u.y
+    };
+    let t3: Vec<f64> = [8, 16, 32, 64].map(|n| middle(ElementKind::T3, n)).to_vec();
+    let t6: Vec<f64> = [4, 8, 16, 32].map(|n| middle(ElementKind::T6, n)).to_vec();
+    println!("Cook's membrane: T3 {t3:?}, T6 {t6:?}");
+    for values in [&t3, &t6] {
+        let errors: Vec<f64> = values.iter().map(|v| (v - 23.96).abs()).collect();
+        assert!(errors.windows(2).all(|w| w[1] < 0.7 * w[0] || w[1] < 0.01), "{values:?}");
+    }
+    assert!((t6[3] - 23.96).abs() < 0.01, "{t6:?}");
+    assert!((t3[3] - 23.96).abs() < 0.15, "{t3:?}");
+}
+
+/// Out of iterations, Newton keeps the last equilibrium that it reached, and reports its part of the load.
+#[test]
+fn a_failure_keeps_the_last_good_state() {
+    let mut kept = 0;
+    for limit in 1..30 {
+        let set = format!("solver.max_iterations={limit}");
+        let mut simulation = Simulation::new(&scene_with("column", &[&set])).unwrap();
+        let status = simulation.solve().clone();
+        let size = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        assert!(size < 40.0, "after {limit}: {size}");
+        if status != Status::Converged {
+            assert_eq!(simulation.iterations(), limit);
+            assert_eq!(simulation.certify().stable, Some(true), "after {limit}: not a stable state");
+            kept += 1;
+        }
+    }
+    assert!(kept > 10);
+}
+
+/// If the load of a solved body changes, the solve continues from its state and gives the result of a start at rest.
+#[test]
+fn a_changed_load_is_followed_from_where_the_body_is() {
+    let mut dragged = solved(&cantilever(20.0, 2.0, &[]));
+    for alpha in [4.0, 30.0, 200.0, 1.0, 50.0] {
+        let scene = cantilever(20.0, alpha, &[]);
+        dragged.change_scene(&scene).unwrap();
+        assert_eq!(*dragged.solve(), Status::Converged);
+        assert!((tip(&dragged) - tip(&solved(&scene))).norm() < 1e-6, "α {alpha}");
+    }
+}
+
+/// The straight column is an equilibrium under any axial load (exactly so for ν = 0); beyond Euler's load it is
+/// certified as unstable.
+#[test]
+fn an_unstable_equilibrium_is_reported_as_unstable() {
+    let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 / (4.0 * 20.0 * 20.0);
+    for (share, stable) in [(0.5, true), (0.95, true), (1.05, false), (1.5, false)] {
+        let force = share * euler;
+        for method in ["warped", "newton"] {
+            let set = [format!("load.0.force=[{},0]", -force), format!("solver.method={method}")];
+            let set: Vec<&str> = set.iter().map(String::as_str).collect();
+            let mut simulation = Simulation::new(&scene_with("column", &set)).unwrap();
+            let u: Vec<_> =
+                simulation.system().mesh().nodes().iter().map(|x| Vector2::new(-force / 1e6 * x.x, 0.0)).collect();
+            simulation.start_from(&u).unwrap();
+            assert_eq!(*simulation.status(), Status::Converged, "residual {:e}", simulation.residual());
+            assert_eq!(simulation.certify().stable, Some(stable), "{share} of Euler's load, {method}");
+        }
+    }
+}
+
+/// Out of iterations, `newton` keeps the last equilibrium that it found, for the part of the load that it reports. The
+/// residual is that of the whole load.
+#[test]
+fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
+    let moment = |factor: f64, most: u32| {
+        let mut scene = scene("roll-up");
+        scene.scale_loads(factor);
+        scene.solver.max_iterations = most;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.solve();
+        simulation
+    };
+    let mut stopped = moment(3.0, 50);
+    assert!(matches!(stopped.status(), Status::NotConverged(_)), "{:?}", stopped.status());
+    let (share, steps) = load_stepping(&stopped);
+    assert!(share > 0.0 && share < 1.0 && steps > 1, "{share} {steps}");
+    assert!(stopped.residual() > 1e-3, "{}", stopped.residual());
+    assert_eq!(stopped.certify().stable, Some(true));
+    let exact = moment(3.0 * share, 400);
+    let [a, b] = [&stopped, &exact].map(|s| s.probe("tip").unwrap());
+    assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
+}
+
+/// The steps of the warped iteration finally decrease by the factor ρ, which grows with the load.
+/// Newton's method has no such ratio.
+#[test]
+fn steps_shrink_by_rho() {
+    let mut before = 0.0;
+    for factor in [0.6, 0.8, 1.0] {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        (scene.solver.tolerance, scene.solver.max_iterations) = (1e-11, 2000);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(simulation.equilibrium().unwrap().step_ratio(), None, "two steps have a ratio");
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let (ratio, rho) =
+            (simulation.equilibrium().unwrap().step_ratio().unwrap(), simulation.certify().fixed_point_rho.unwrap());
+        assert!((ratio / rho - 1.0).abs() < 0.01, "{factor}: {ratio} {rho}");
+        assert!(ratio > before && ratio < 1.0);
+        before = ratio;
+        let says = rho_text(rho).to_string();
+        assert!(says.contains("converges near") && says.contains(&format!("{rho:.3}")), "{says}");
+    }
+    let mut newton = Simulation::new(&scene("cantilever").with_method(MethodKind::Newton)).unwrap();
+    newton.solve();
+    assert_eq!(newton.equilibrium().unwrap().step_ratio(), None);
+    let mut auto = Simulation::new(&scene("cantilever").with_method(MethodKind::Auto)).unwrap();
+    auto.solve();
+    assert!(
+        auto.iterations() > 2
+            && auto.equilibrium().unwrap().step_ratio().is_some_and(|ratio| ratio > 0.0 && ratio < 0.5)
+    );
+    for (rho, text) in [(1.0, "grows by ρ = 1.000"), (999.0, "ρ = 999.000"), (1e3, "ρ = 1.0e3")] {
+        assert!(rho_text(rho).to_string().contains(text), "{}", rho_text(rho));
+    }
+}
+
+/// Supports fix exactly their unknowns, node by node.
+#[test]
+fn supports_fix_the_components_that_they_name() {
+    let scene = Scene::beam(4.0, 1.0).with_cells(4, 2).clamp("left").support([4.0, -0.5], &[Axis::Y]);
+    let simulation = Simulation::new(&scene.support([4.0, 0.5], &[Axis::X])).unwrap();
+    let (mesh, pattern) = (simulation.system().mesh(), simulation.system().pattern());
+    for (node, x) in (0..).zip(mesh.nodes()) {
+        let expected = match (x.x, x.y) {
+            (0.0, _) => [true, true],
+            (4.0, -0.5) => [false, true],
+            (4.0, 0.5) => [true, false],
+            _ => [false, false],
+        };
+        assert_eq!(pattern.fixed(node), expected, "at {x}");
+        assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
+    }
+    // The product of a nodal vector with one over the free unknowns: fixed unknowns do not count.
+    let nodal: Vec<_> = mesh.nodes().iter().map(|x| Vector2::new(1.0 + x.x, 2.0 - 3.0 * x.y)).collect();
+    let free: Vec<f64> = (0..simulation.system().dofs()).map(|i| (i as f64 + 1.0).sqrt()).collect();
+    let mut spread = vec![Vector2::zeros(); nodal.len()];
+    pattern.add_free(&free, 1.0, &mut spread);
+    let product: f64 = nodal.iter().zip(&spread).map(|(a, b)| a.dot(b)).sum();
+    assert!((pattern.dot(&nodal, &free) / product - 1.0).abs() < 1e-12 && product > 1.0);
+    // Its norm, for vectors of any magnitude.
+    let plain = pattern.norm(&spread);
+    assert!((plain / free.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs() < 1e-12);
+    for size in [1e-250, 1e-160, 1e160, 1e250] {
+        let scaled: Vec<_> = spread.iter().map(|v| v * size).collect();
+        assert!((pattern.norm(&scaled) / (plain * size) - 1.0).abs() < 1e-12, "{size:e}");
+    }
+    assert_eq!(pattern.fixed(mesh.nodes().len() as u32), [true, true], "no node moves where there is none");
+}
+
+/// The check of the supports gives the same result for bodies of any size at any position.
+#[test]
+fn a_clamp_is_a_clamp_at_any_size_and_place() {
+    for size in [1e-4, 1.0, 1e4] {
+        let scene = Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0]);
+        let simulation = Simulation::new(&scene);
+        assert!(simulation.is_ok(), "{size} m: {:?}", simulation.err());
+        // A body supported along its middle line only can rotate, at any position.
+        let hinged = Scene::beam(10.0 * size, size).with_cells(4, 2).support([0.0, 0.0], &[Axis::X, Axis::Y]);
+        assert!(Simulation::new(&hinged).is_err());
+        let two = hinged.support([10.0 * size, 0.0], &[Axis::X]);
+        assert!(Simulation::new(&two).is_err(), "two bars in line");
+        assert!(Simulation::new(&two.support([10.0 * size, 0.0], &[Axis::Y])).is_ok());
+    }
+    let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Linear);
+    let near = solved(&scene);
+    let far = near.system().mesh().moved(|x| x + Vector2::new(1e6, -3e6)).unwrap();
+    let mut far = Simulation::with_mesh(&scene, far).unwrap();
+    assert_eq!(*far.solve(), Status::Converged);
+    let off = near.displacement().iter().zip(far.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(off < 1e-6 * near.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max), "{off}");
+}
+
+/// A reset before, at or after the end restores the start of the scene and discards all results.
+#[test]
+fn a_reset_goes_back_to_the_start() {
+    for id in ["cantilever", "swing", "spin"] {
+        for method in [MethodKind::Newton, MethodKind::Auto] {
+            let mut scene = scene(id).with_method(method);
+            if id != "cantilever" {
+                scene.dynamics.duration = 0.2;
+            }
+            let fresh = Simulation::new(&scene).unwrap();
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let place = |s: &Simulation| (s.displacement().to_vec(), s.state().velocity().to_vec(), s.state().time());
+            assert!(place(&simulation) != place(&fresh));
+            if id == "cantilever" {
+                assert!(simulation.residual() <= scene.solver.tolerance.max(1e-3), "{:e}", simulation.residual());
+                assert_eq!(simulation.equilibrium().unwrap().certificate(), None, "nobody has asked");
+                let certificate = simulation.certify();
+                assert_eq!(
+                    (certificate.stable, simulation.equilibrium().unwrap().certificate()),
+                    (Some(true), Some(certificate))
+                );
+            }
+            simulation.reset();
+            assert!(place(&simulation) == place(&fresh), "{id} {method:?}");
+            assert_eq!((simulation.status(), simulation.iterations()), (fresh.status(), 0));
+            assert_eq!(
+                (simulation.residual(), simulation.equilibrium().and_then(Equilibrium::certificate)),
+                (fresh.residual(), None)
+            );
+        }
+    }
+}
+
+/// Supports balance the moment of the loads with the lever arms of the deformed body: with a clamp, and with a roller
+/// that has moved. Before the first iteration the reactions are zero, although the load is applied.
+#[test]
+fn reactions_balance_moments() {
+    let beam = || Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
+    let clamped = beam().clamp("left").force("right", [300.0, -900.0]);
+    let rolling = beam()
+        .support([0.0, -0.5], &[Axis::X, Axis::Y])
+        .support([10.0, -0.5], &[Axis::Y])
+        .force([5.0, 0.5], [100.0, -6000.0]);
+    for scene in [clamped, rolling] {
+        let unmoved = Simulation::new(&scene).unwrap().solution().reaction;
+        assert!(unmoved.force.norm() < 1e-9 && unmoved.moment.abs() < 1e-9, "{unmoved:?}");
+        let simulation = solved(&scene);
+        let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+        let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+        for (x, f) in places.zip(simulation.forces().external()) {
+            force += f;
+            moment += x.perp(f);
+        }
+        let reaction = simulation.solution().reaction;
+        assert!((reaction.force + force).norm() < 1e-6 * force.norm(), "{reaction:?} {force}");
+        assert!((reaction.moment + moment).abs() < 1e-6 * moment.abs(), "{reaction:?} {moment}");
+        let farthest = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        assert!(farthest > 0.3, "it is bent, so that lever arms differ: {farthest}");
+    }
+}
+
+/// If nothing else converges, `auto` applies the load in steps, as Newton's method does, with the same result. Out of
+/// iterations, it keeps an equilibrium of less load.
+#[test]
+fn auto_takes_load_steps_where_needed() {
+    for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
+        let mut scene = scene(id);
+        scene.scale_loads(factor);
+        let newton = solved(&scene.clone().with_method(MethodKind::Newton));
+        let auto = solved(&scene.with_method(MethodKind::Auto));
+        assert_eq!(auto.equilibrium().unwrap().auto_report().unwrap().decision, Decision::LoadSteps, "{id}");
+        assert_eq!(load_stepping(&auto), load_stepping(&newton), "{id}");
+        assert!(auto.equilibrium().unwrap().load_steps() > 1);
+        assert!((tip(&auto) - tip(&newton)).norm() < 1e-6 * tip(&newton).norm(), "{id}");
+    }
+    for method in [MethodKind::Newton, MethodKind::Auto] {
+        let mut scene = scene("roll-up").with_method(method);
+        scene.scale_loads(30.0);
+        scene.solver.max_iterations = 60;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(matches!(simulation.solve(), Status::NotConverged(Reason::IterationLimit(60))));
+        let (reached, steps) = load_stepping(&simulation);
+        assert!(reached > 0.0 && reached < 1.0 && steps > 3, "{method:?}: {reached} in {steps} steps");
+        let (problem, state) = (simulation.problem(), simulation.state());
+        let mut forces = Forces::new(state.displacement().len());
+        problem.linearize(state, &mut forces, None);
+        let residual = problem.balance(state, Kinematics::Corotated, reached, &mut forces);
+        assert!(residual < 2e-3, "{method:?}: {residual}");
+    }
+}
+
+/// The warped iteration reports why it ends: it converges, stalls, or diverges.
+#[test]
+fn the_warped_iteration_reports_why_it_ends() {
+    let end = |factor: f64, tolerance: f64| {
+        let mut scene = scene("cantilever").with_method(MethodKind::Warped);
+        scene.scale_loads(factor);
+        scene.solver.tolerance = tolerance;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let end = (simulation.solve().clone(), simulation.iterations(), simulation.residual());
+        assert_eq!(load_stepping(&simulation), (1.0, 1), "all of the load at once");
+        assert_eq!(simulation.status().is_success(), *simulation.status() == Status::Converged);
+        end
+    };
+    let (status, _, residual) = end(1.0, 1e-8);
+    assert_eq!(status, Status::Converged);
+    assert!(residual <= 1e-8);
+    let (status, _, residual) = end(0.5, 1e-14);
+    assert_eq!(status, Status::Converged);
+    assert!(residual <= 1e-14);
+    let (status, iterations, residual) = end(10.0, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::Stalled(30))), "{status:?}");
+    assert!(residual > 1e-3 && iterations < 60, "{residual} {iterations}");
+    let (status, iterations, _) = end(1e8, 1e-8);
+    assert!(matches!(status, Status::Diverged(Reason::RanAway(_))) && iterations == 1, "{status:?} {iterations}");
+}
+
+/// The body starts from rest if a new support fixes an unknown that has moved; otherwise it keeps its state.
+#[test]
+fn a_support_on_moved_nodes_restarts_the_search() {
+    let scene = Scene::beam(10.0, 1.0).with_cells(10, 2).clamp("left").force("right", [50.0, -300.0]);
+    let mut scene = scene.with_method(MethodKind::Newton);
+    scene.solver.max_iterations = 100;
+    for axis in [Axis::X, Axis::Y] {
+        let mut simulation = solved(&scene);
+        assert!(simulation.displacement().iter().any(|u| u.x.abs() > 1e-3 && u.y.abs() > 1e-3));
+        simulation.change_scene(&scene.clone().support([10.0, 0.5], &[axis])).unwrap();
+        assert!(simulation.displacement().iter().all(|u| u.norm() == 0.0), "{axis:?}");
+    }
+    let mut simulation = solved(&scene);
+    simulation.change_scene(&scene.clone().support([0.0, 0.5], &[Axis::X])).unwrap();
+    assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
+}
+
+/// A scene that accepts its result after some iterations has the state of a search at that point, and reports this. If
+/// the search converges earlier, the status is converged.
+#[test]
+fn a_result_is_accepted_after_the_iterations_that_a_scene_asks_for() {
+    for method in ["newton", "warped"] {
+        for n in [1, 3, 5] {
+            let asked = [format!("solver.method={method}"), format!("solver.accept_after={n}")];
+            let scene = scene_with("cantilever", &asked.each_ref().map(String::as_str));
+            let mut accepted = Simulation::new(&scene).unwrap();
+            let status = accepted.solve().clone();
+            let mut whole = scene.clone();
+            whole.solver.accept_after = 0;
+            let mut stepped = Simulation::new(&whole).unwrap();
+            (0..n).for_each(|_| {
+                stepped.step();
+            });
+            let converged = *stepped.status() == Status::Converged;
+            assert_eq!(status, if converged { Status::Converged } else { Status::Accepted }, "{method} {n}");
+            assert!(status.is_success() && accepted.iterations() <= n);
+            assert_eq!(accepted.solution().probes[0].u, stepped.solution().probes[0].u, "{method} {n}");
+        }
+    }
+    let moving = scene_with("swing", &[]);
+    let mut refused = moving.clone();
+    refused.solver.accept_after = 2;
+    assert!(Simulation::new(&refused).unwrap_err().to_string().contains("solver.accept_after"));
+}

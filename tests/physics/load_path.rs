@@ -1,0 +1,133 @@
+//! Compares load paths with theory: critical loads with Euler's, and the work of supports with the stored energy. Also
+//! tests paths that end early.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use crate::common::{scene, scene_with, solve_json, solved, stdout, warpbeam};
+use warpbeam::study::{LoadPath, PathEndReason};
+use warpbeam::{Axis, ElementKind, Scene};
+
+const LENGTH: f64 = 40.0;
+
+/// Returns a straight column of height and thickness 1, E = 1 MPa, compressed by `part` times π² E I/L².
+fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
+    let mut scene = Scene::beam(LENGTH, 1.0).with_cells(24, 1);
+    (scene.material.young, scene.material.poisson) = (1e6, 0.0);
+    let euler = PI * PI * 1e6 / 12.0 / (LENGTH * LENGTH);
+    hold(scene).force("right", [-part * euler, 0.0]).probe("tip", "right")
+}
+
+/// Every kind of support has its critical load; a longer path passes the higher ones, each of
+/// which adds an unstable mode.
+#[test]
+fn columns_buckle_at_eulers_loads() {
+    type Hold = fn(Scene) -> Scene;
+    let free: Hold = |scene| scene.clamp("left");
+    let pinned: Hold = |scene| scene.clamp("left").support("right", &[Axis::Y]);
+    for (name, hold, part, factors) in [
+        // Critical loads over π² E I/L²: 1/4, 9/4, 25/4 for a free end; 2.0457 for a pinned one (tan k = k).
+        ("free", free, 0.4, &[0.25][..]),
+        ("free", free, 3.0, &[0.25, 2.25]),
+        ("free", free, 7.0, &[0.25, 2.25, 6.25]),
+        ("pinned", pinned, 3.0, &[2.0457]),
+    ] {
+        for element in ElementKind::all().filter(|&e| e != ElementKind::T3) {
+            let path = LoadPath::of(&column(part, hold).with_element(element)).unwrap();
+            let words = format!("{name} {part} {element:?}: {:?}, {:?}", path.bifurcations, path.jump);
+            assert!(path.end.is_none() && path.jump.is_none(), "{words}");
+            assert_eq!(path.bifurcations.len(), factors.len(), "{words}");
+            for (i, (found, factor)) in path.bifurcations.iter().zip(factors).enumerate() {
+                // For a beam this slender, shear and shortening change the load by a few thousandths, and for higher
+                // modes by a few hundredths.
+                let bound = [0.01, 0.03, 0.08][i];
+                assert!((found.factor * part / factor - 1.0).abs() < bound, "{words}");
+                assert_eq!(found.unstable_modes, [i, i + 1], "{words}");
+            }
+            for state in &path.states {
+                let stable = state.factor < path.bifurcations[0].factor;
+                assert_eq!(state.stable, Some(stable), "{words}: {}", state.factor);
+            }
+        }
+    }
+    // Below the critical load, or with a side load, the column does not buckle.
+    assert_eq!(LoadPath::of(&column(0.2, free)).unwrap().bifurcations, []);
+    assert_eq!(LoadPath::of(&column(0.4, free).force("right", [0.0, 0.3])).unwrap().bifurcations, []);
+}
+
+/// The stored energy is the work of the supports, integrated along the path.
+#[test]
+fn moved_supports_do_the_work_that_is_stored() {
+    let beam = || Scene::beam(10.0, 1.0).with_cells(10, 1).clamp("left").clamp("right").probe("middle", [5.0, 0.0]);
+    let scenes = [
+        ("snap", scene("snap")),
+        ("turned", beam().moved([0.0, 0.0], 1.2)),
+        ("turned far", beam().moved([-2.0, 1.0], -2.5)),
+        ("pulled", beam().moved([0.5, 0.0], 0.0)),
+        ("bent", beam().moved([-3.0, 2.0], 0.4)),
+    ];
+    for (name, scene) in scenes {
+        let simulation = solved(&scene);
+        let path = LoadPath::to_result(&simulation, &mut |_| ControlFlow::Continue(())).unwrap();
+        let (work, stored) = (path.supports_work.unwrap(), simulation.solution().energy.elastic);
+        println!("{name}: work {work} J, stored {stored} J");
+        assert!((work - stored).abs() < 0.005 * stored, "{name}: work {work} J, stored {stored} J");
+    }
+    let energy = &solve_json(&["snap"])["energy"];
+    let [work, stored] = ["supports", "elastic"].map(|key| energy[key].as_f64().unwrap());
+    assert!((work - stored).abs() < 0.005 * stored, "{energy}");
+}
+
+#[test]
+fn a_cancelled_path_is_reported_as_interrupted() {
+    let mut asked = 0;
+    let path = LoadPath::follow(&scene("jump"), &mut |_| {
+        asked += 1;
+        if asked < 20 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    let end = path.unwrap().end.unwrap();
+    assert_eq!(end.reason, PathEndReason::Interrupted);
+    assert!(end.factor > 0.0 && end.factor < 1.0 && end.to_string().contains("interrupted"), "{end}");
+}
+
+/// The command `curve` names the critical load, draws it, and calls states beyond it unstable; so does `solve`.
+#[test]
+fn commands_name_the_critical_load() {
+    // About twice Euler's load, which is 514 N.
+    let set = ["column", "--set", "load.0.force=[-1043,0]"];
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("path.svg");
+    let args = [&["curve"][..], &set, &["--picture", picture.to_str().unwrap()]].concat();
+    let text = stdout(&warpbeam(&args));
+    let buckles = |text: &str| -> f64 {
+        let percent = text.split("buckles at ").nth(1).unwrap_or_else(|| panic!("{text}"));
+        percent.split(' ').next().unwrap().parse().unwrap()
+    };
+    assert!((buckles(&text) - 49.3).abs() < 0.1, "{text}");
+    assert!(text.contains("the exact beam buckles at 49.2") && text.contains("converged, unstable"), "{text}");
+    let beyond = text.lines().filter(|line| line.ends_with("unstable") && line.contains(" %  (")).count();
+    assert!(beyond > 3, "{text}");
+    assert!(std::fs::read_to_string(picture).unwrap().contains("buckles at 49.3 %"));
+    let json = solve_json(&set);
+    assert!((json["buckles_at"].as_f64().unwrap() - 0.493).abs() < 1e-3 && json["stable"] == false, "{json}");
+    assert!((buckles(&stdout(&warpbeam(&[&["solve"][..], &set].concat()))) - 49.3).abs() < 0.1);
+    // An unstable equilibrium has no reference solution.
+    assert!(json["probes"][0]["error_percent"].is_null(), "{json}");
+    assert!(solve_json(&["column"])["buckles_at"].is_null());
+}
+
+/// With moving supports, the residual is a positive number, not a zero in place of the rounding error.
+#[test]
+fn moved_supports_have_a_residual() {
+    for moved in ["[0.0,0.0]", "[0.3,-2.0]"] {
+        let set = format!("support.0.displacement={moved}");
+        let json = solve_json(&["cantilever", "--set", &set, "--reference", "none"]);
+        let [residual, floor] = ["residual", "residual_floor"].map(|key| json[key].as_f64());
+        assert!(residual.unwrap() > 0.0, "{json}");
+        assert!(residual.unwrap() <= 1e-8 || floor.is_some_and(|floor| residual.unwrap() <= floor), "{json}");
+    }
+    // A body that is only translated has no forces to compare the residual with.
+    let carried = scene_with("stretch", &["load.0.force=[0,0]", "support.0.displacement=[0.5,0]"]);
+    let simulation = solved(&carried);
+    assert!(simulation.residual().is_finite());
+}

@@ -1,0 +1,36 @@
+//! Tests of the numbers: elements, methods, motions, stresses and references, against exact and independent solutions.
+//! `cargo test --test physics TOPIC` runs one file.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod allocations;
+mod api;
+mod article;
+mod auto;
+mod beam_theory;
+mod calculix;
+mod dynamics;
+mod edits;
+mod elements;
+mod equilibria;
+mod exact_beams;
+mod gmsh;
+mod grab;
+mod load_path;
+mod meshes;
+mod moments;
+#[cfg(target_os = "linux")]
+mod path_from_rest;
+mod point_values;
+mod precision;
+mod pulses;
+mod reference;
+#[cfg(feature = "rivals")]
+mod rivals;
+mod rotation;
+mod stress;
+mod study;
+mod supports;
+mod units;

@@ -1,0 +1,154 @@
+//! Tests of the values at a material point: F, R and S, strain and stress.
+
+use crate::common::{scene, solved};
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::mesh::MaterialPoint;
+use warpbeam::rotation::Rotation;
+use warpbeam::scene::{ElementKind, MethodKind};
+use warpbeam::simulation::{Field, PointState, PointValues, Simulation};
+use warpbeam::{Material, Plane, Scene};
+
+/// A body that is stretched by S and rotated by R has F = R S everywhere, and its stress follows from the strain S − I.
+#[test]
+fn a_rotated_and_stretched_body_has_its_f_r_and_s_at_every_point() {
+    let rotation = Rotation::from_angle(1.1);
+    let stretch = Matrix2::new(1.2, 0.07, 0.07, 0.9);
+    let f = rotation.matrix() * stretch;
+    for element in ElementKind::all() {
+        let scene = Scene::beam(3.0, 1.0).with_cells(3, 2).with_element(element);
+        let scene = scene.with_material(Material::new(1e5, 0.25)).moving(warpbeam::IntegratorKind::TrBdf2, 0.01);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mesh = simulation.system().mesh().clone();
+        let u: Vec<_> = mesh.nodes().iter().map(|x| f * x - x).collect();
+        simulation.start_from(&u).unwrap();
+        for at in [Vector2::new(0.3, 0.2), Vector2::new(1.6, -0.4), Vector2::new(2.95, 0.01)] {
+            let point = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Raw).unwrap();
+            assert!((point.rest - at).norm() < 1e-12, "{element:?}");
+            assert!((point.displacement - (f * at - at)).norm() < 1e-12, "{element:?}");
+            assert!((point.gradient - f).norm() < 1e-12, "{element:?}: {}", point.gradient);
+            assert!((point.rotation.angle() - 1.1).abs() < 1e-12, "{element:?}");
+            assert!((point.stretch - stretch).norm() < 1e-12, "{element:?}: {}", point.stretch);
+            assert!((point.strain.plane - (stretch - Matrix2::identity())).norm() < 1e-9, "{element:?}");
+            // Plane stress: T = E/(1 − ν²) ((1 − ν) ε + ν tr ε I), thinned by ε₃₃ = −ν/(1 − ν) tr ε; σ = R T S Rᵀ/J.
+            let strain = stretch - Matrix2::identity();
+            let biot = (strain * 0.75 + Matrix2::identity() * (0.25 * strain.trace())) * (1e5 / (1.0 - 0.0625));
+            let thinned = 1.0 - strain.trace() / 3.0;
+            let turned = rotation.matrix() * biot * stretch * rotation.matrix().transpose();
+            let stress = turned / (f.determinant() * thinned);
+            let stress = (stress + stress.transpose()) * 0.5;
+            let own = point.cauchy.unwrap().plane;
+            assert!((own - stress).norm() < 1e-7 * stress.norm(), "{element:?}: {own} {stress}");
+            // The recovered values of a uniform deformation are the same.
+            let smooth = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Recovered).unwrap();
+            assert!((smooth.gradient - f).norm() < 1e-9, "{element:?}: {}", smooth.gradient);
+            assert!((smooth.cauchy.unwrap().plane - stress).norm() < 1e-7 * stress.norm(), "{element:?}");
+        }
+    }
+}
+
+/// A point's values are those of the fields that colour the body: recovered ones, and the elements' own.
+#[test]
+fn a_point_has_the_values_of_the_fields() {
+    for (id, method) in
+        [("cantilever", MethodKind::Newton), ("bracket", MethodKind::Newton), ("article", MethodKind::Linear)]
+    {
+        let mut scene = scene(id);
+        scene.solver.method = method;
+        let simulation = solved(&scene);
+        let mesh = simulation.system().mesh();
+        let points = mesh.element().entry().points;
+        for element in [0, mesh.element_count() / 2, mesh.element_count() - 1] {
+            for rule in points {
+                let point = MaterialPoint { element, at: rule.at };
+                let nodal = simulation.nodal_stress();
+                let recovered = simulation.point_state(point, PointValues::Recovered).unwrap();
+                let raw = simulation.point_state(point, PointValues::Raw).unwrap();
+                for field in Field::ALL.into_iter().filter(|field| !field.is_of_elements()) {
+                    let mut values = Vec::new();
+                    simulation.field(field, &mut values);
+                    let of_fields =
+                        [field.smooth_at(mesh, &nodal, point).unwrap(), Field::raw_at(mesh, &values, point).unwrap()];
+                    for (state, value) in [recovered, raw].iter().zip(of_fields) {
+                        let own = state.field(field).unwrap();
+                        let same = (value - own).abs() < 1e-9 * (own.abs() + 1e-6);
+                        assert!(same, "{id} {field:?} {:?}: {value} {own}", state.values);
+                    }
+                }
+            }
+        }
+        let beyond = MaterialPoint { element: mesh.element_count(), at: [0.2, 0.2] };
+        assert!(simulation.point_state(beyond, PointValues::Raw).is_none());
+        assert_eq!(Field::raw_at(mesh, &[], MaterialPoint { element: 0, at: [0.2, 0.2] }), None);
+    }
+}
+
+/// Checks that F, R, S, ε and σ of a point belong to one deformation: each follows from the
+/// previous one by its definition.
+fn check_consistency(point: &PointState, material: &Material, about: &str) {
+    let identity = Matrix2::identity();
+    let (f, size) = (point.gradient, 1.0 + point.gradient.norm());
+    let strain = if point.is_linear {
+        (f + f.transpose()) * 0.5 - identity
+    } else {
+        // The polar factors of F.
+        let r = Rotation::from_angle((f.m21 - f.m12).atan2(f.m11 + f.m22)).matrix();
+        assert!((r - point.rotation.matrix()).norm() < 1e-9 * size, "{about}: {r}");
+        assert!((r.transpose() * f - point.stretch).norm() < 1e-9 * size, "{about}: {}", point.stretch);
+        r.transpose() * f - identity
+    };
+    assert!((strain - point.strain.plane).norm() < 1e-9 * size, "{about}: {strain} {}", point.strain.plane);
+    let largest = strain.symmetric_eigenvalues().amax();
+    assert!((largest - point.field(Field::LargestStrain).unwrap()).abs() < 1e-9 * size, "{about}: {largest}");
+    // σ = J⁻¹ R T S Rᵀ in plane strain and plane stress; T itself in linear theory.
+    let biot = material.lame().stress(&strain);
+    let zz = if material.plane == Plane::Strain {
+        0.0
+    } else {
+        -strain.trace() * material.poisson / (1.0 - material.poisson)
+    };
+    let stress = if point.is_linear {
+        biot
+    } else {
+        let r = point.rotation.matrix();
+        r * biot * point.stretch * r.transpose() / (f.determinant() * (1.0 + zz))
+    };
+    // An inverted point has no stress.
+    let Some(own) = point.cauchy.map(|stress| stress.plane) else {
+        return assert!(point.stretch.determinant() <= 0.0 || 1.0 + zz <= 0.0, "{about}: no stress");
+    };
+    assert!((own - stress).norm() < 1e-7 * (stress.norm() + 1e-3 * material.young), "{about}: {own} {stress}");
+}
+
+#[test]
+fn the_numbers_of_a_point_follow_from_each_other() {
+    let mut scenes = Vec::new();
+    for id in ["article", "shear", "cantilever", "bracket", "jelly", "swing"] {
+        for element in scene(id).elements() {
+            let mut scene = scene(id);
+            scene.set_element(element);
+            scenes.push((format!("{id} {element:?}"), scene));
+        }
+    }
+    let mut linear = scene("article");
+    linear.solver.method = MethodKind::Linear;
+    scenes.push(("linear".to_owned(), linear));
+    let mut differ = 0;
+    for (about, scene) in scenes {
+        let mut simulation = Simulation::new(&scene).unwrap();
+        // Motions stop halfway; other scenes are solved to equilibrium.
+        for _ in 0..40 {
+            simulation.step();
+        }
+        let mesh = simulation.system().mesh();
+        let count = mesh.element_count();
+        for (element, at) in [(0, [0.2, 0.3]), (count / 2, [0.5, 0.1]), (count - 1, [0.0, 0.4])] {
+            let point = MaterialPoint { element, at };
+            let states = [PointValues::Recovered, PointValues::Raw].map(|v| simulation.point_state(point, v).unwrap());
+            for state in &states {
+                check_consistency(state, &scene.material, &format!("{about} {element} {:?}", state.values));
+            }
+            differ += u32::from((states[0].gradient - states[1].gradient).norm() > 1e-4);
+        }
+    }
+    assert!(differ > 10, "recovered and raw values are the same");
+}

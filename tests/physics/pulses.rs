@@ -1,0 +1,162 @@
+//! Tests of loads in time: a pulse has its impulse and a motion its duration, for every time step and integrator.
+
+use crate::common::motion::momentum;
+use crate::common::random::Random;
+use crate::common::{scene_with, stdout, warpbeam};
+use nalgebra::Vector2;
+use warpbeam::dynamics::INTEGRATORS;
+use warpbeam::scene::{Damping, Load, Pulse};
+use warpbeam::{IntegratorKind, MethodKind, Scene, Simulation, Status};
+
+const STEP: f64 = 1.0 / 60.0;
+
+/// Returns a free, soft beam under a pulse. Explicit steps are short enough to be stable.
+fn pushed(kind: IntegratorKind, method: MethodKind, iterations: u32, load: Load, pulse: Pulse) -> Scene {
+    let mut scene = Scene::beam(1.0, 0.2).with_cells(5, 1).with_method(method).moving(kind, STEP);
+    (scene.material.young, scene.dynamics.iterations) = (1e3, iterations);
+    scene.loads = vec![load];
+    match &mut scene.loads[0] {
+        Load::Force { pulse: own, .. } | Load::Gravity { pulse: own, .. } | Load::Moment { pulse: own, .. } => {
+            *own = Some(pulse);
+        }
+        _ => {}
+    }
+    scene.dynamics.duration = pulse.start + pulse.duration + 3.0 * STEP;
+    scene
+}
+
+/// A pulse sin²(π t/d) of size F has the impulse F d/2, and gives a free body this momentum, to rounding.
+#[test]
+fn a_pulse_leaves_its_impulse_whatever_the_step() {
+    let mut random = Random(18);
+    let force = Vector2::new(0.4, -1.0);
+    for integrator in INTEGRATORS {
+        for method in [MethodKind::Newton, MethodKind::Linear, MethodKind::Auto, MethodKind::Warped] {
+            for steps in [0.01, 0.3, 0.6, 1.0, 1.7, 2.5, 6.3] {
+                for iterations in [1, 0] {
+                    let pulse = Pulse { start: random.between(0.0, 2.0) * STEP, duration: steps * STEP };
+                    for load in [Load::force("right", force), Load::gravity(force / 200.0)] {
+                        let scene = pushed(integrator.kind, method, iterations, load, pulse);
+                        let mut simulation = Simulation::new(&scene).unwrap();
+                        assert_eq!(*simulation.solve(), Status::Finished);
+                        let expected = force * (0.5 * pulse.duration);
+                        let found = momentum(&simulation).linear;
+                        let words = format!("{} {} {steps} {iterations}", integrator.id, method.id());
+                        // `auto` solves to a fraction of its allowed error.
+                        let rounding = if method == MethodKind::Auto { 1e-6 } else { 1e-10 };
+                        assert!((found - expected).norm() < rounding * expected.norm(), "{words}: {found} {expected}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A pulse of a moment changes the angular momentum by exactly M d/2 under the energy–momentum
+/// method, which conserves it.
+#[test]
+fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
+    for steps in [0.2, 1.3, 4.0] {
+        let pulse = Pulse { start: 0.7 * STEP, duration: steps * STEP };
+        let load = Load::moment("right", 0.05);
+        let mut scene = pushed(IntegratorKind::EnergyMomentum, MethodKind::Newton, 0, load, pulse);
+        scene.solver.tolerance = 1e-13;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Finished);
+        let (found, expected) = (momentum(&simulation).angular, 0.05 * 0.5 * pulse.duration);
+        assert!((found - expected).abs() < 1e-7 * expected, "{steps}: {found} {expected}");
+    }
+}
+
+/// The ledger balances: a rigid push gives the body ½ p²/m, and all entries of the ledger sum to the total energy.
+#[test]
+fn the_ledger_has_the_work_of_pulses() {
+    // Explicit integrators are left out: the forces on lumped masses differ from the body's
+    // weight, so that it would vibrate.
+    for integrator in INTEGRATORS.iter().filter(|integrator| !integrator.is_explicit()) {
+        for steps in [0.3, 1.0, 2.5] {
+            let pulse = Pulse { start: 0.4 * STEP, duration: steps * STEP };
+            let load = Load::gravity([1.0, -2.0]);
+            let mut scene = pushed(integrator.kind, MethodKind::Newton, 0, load, pulse);
+            scene.dynamics.damping = Damping::default();
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let ledger = *simulation.motion().unwrap().ledger();
+            let mass = 200.0;
+            let kinetic = 0.5 * mass * 5.0 * (0.5 * pulse.duration).powi(2);
+            let words = format!("{} {steps}: {ledger:?}", integrator.id);
+            assert!((ledger.kinetic - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
+            assert!(ledger.imbalance().abs() < 1e-10 * ledger.throughput, "{words}");
+            // Under a force that is constant over each step, the work is the energy except for
+            // the integrator's dissipation.
+            assert!((ledger.pulses - ledger.integrator - kinetic).abs() < 1e-9 * kinetic, "{words}, {kinetic} J");
+        }
+    }
+}
+
+/// Second-order integrators keep their order under pulses that the step resolves.
+#[test]
+fn resolved_pulses_are_followed_in_second_order() {
+    for kind in [IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum] {
+        for load in [
+            "[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -30.0]",
+            "[[load]]\nkind = \"moment\"\nedge = \"right\"\nmoment = 20.0",
+        ] {
+            let tip = |step: f64| {
+                let toml = format!(
+                    "name = \"pulse\"\nanalysis = \"dynamic\"\n[beam]\nlength = 1.0\nheight = 0.1\ncells = [5, 1]\nelement = \"t6\"\n\
+                     [material]\nyoung = 1e6\npoisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n{load}\n\
+                     pulse = {{ start = 0.013, duration = 0.4 }}\n[[probe]]\nname = \"tip\"\nedge = \"right\"\n\
+                     [dynamics]\nintegrator = \"{}\"\ntime_step = {step}\nduration = 0.5\niterations = 0\n",
+                    kind.id()
+                );
+                let mut simulation = Simulation::new(&Scene::from_toml(&toml).unwrap()).unwrap();
+                simulation.solve();
+                simulation.probe("tip").unwrap()
+            };
+            let fine = tip(0.000_5);
+            let errors = [0.01, 0.005].map(|step| (tip(step) - fine).norm());
+            let ratio = errors[0] / errors[1];
+            assert!((3.0..6.5).contains(&ratio), "{} {load}: {errors:?}", kind.id());
+        }
+    }
+}
+
+#[test]
+fn a_motion_ends_at_its_duration() {
+    for (step, duration) in
+        [("7", "10"), ("0.016666666666666666", "0.11"), ("0.02", "0.1"), ("0.3", "0.1"), ("0.1", "0.3")]
+    {
+        for integrator in ["tr-bdf2", "energy-momentum", "implicit-euler"] {
+            let set = [
+                format!("dynamics.time_step={step}"),
+                format!("dynamics.duration={duration}"),
+                format!("dynamics.integrator=\"{integrator}\""),
+            ];
+            let args: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+            // Steps of 7 s gain energy, which the exit code tells.
+            let output = warpbeam(&[&["solve", "--json", "swing"][..], &args].concat());
+            let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            let duration: f64 = duration.parse().unwrap();
+            assert_eq!(json["time"].as_f64(), Some(duration), "{set:?}");
+            let steps = (duration / step.parse::<f64>().unwrap() - 1e-6).ceil();
+            assert_eq!(json["steps"].as_f64(), Some(steps), "{set:?}");
+        }
+    }
+    // A motion that continues after its end takes whole steps again.
+    let mut simulation = Simulation::new(&scene_with("swing", &["dynamics.duration=0.11"])).unwrap();
+    simulation.solve();
+    simulation.step();
+    assert!((simulation.state().time() - 0.11 - STEP).abs() < 1e-12 && *simulation.status() == Status::Finished);
+}
+
+#[test]
+fn a_pulse_shorter_than_a_step_is_reported() {
+    let said = |duration: &str| {
+        let set = format!("load.1.pulse={{start=0.2,duration={duration}}}");
+        stdout(&warpbeam(&["solve", "sway", "--set", &set, "--set", "dynamics.duration=0.3"]))
+    };
+    let text = said("0.004");
+    assert!(text.contains("load.1") && text.contains("its shape is not resolved"), "{text}");
+    assert!(!said("0.5").contains("not resolved"));
+}

@@ -1,0 +1,200 @@
+//! Compares reference solutions with independent solutions: the claimed error is right to
+//! within the reference's own error.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::common::random;
+use nalgebra::Vector2;
+use warpbeam::mesh::{Mesh, Segment};
+use warpbeam::scene::{Beam, Load, MethodKind, Place};
+use warpbeam::simulation::Status;
+use warpbeam::study::{Effort, Reference};
+use warpbeam::{ElementKind, Scene, Simulation};
+
+/// Returns a mesh of six-node triangles on a grid that has a line at every point of a scene. Cells between
+/// lines are cut once, from lower left to upper right. Written for these tests, it shares no code with the
+/// meshes of reference solutions.
+fn six_node_grid(scene: &Scene, beam: &Beam, cells: [usize; 2]) -> Mesh {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut add = |place: &Place| {
+        if let Place::At(at) = place {
+            points.push(*at);
+        }
+    };
+    scene.supports.iter().for_each(|s| add(&s.place));
+    scene.probes.iter().for_each(|p| add(&p.place));
+    for load in &scene.loads {
+        if let Load::Force { place, .. } = load {
+            add(place);
+        }
+    }
+    let ends = [[0.0, beam.length], [-0.5 * beam.height, 0.5 * beam.height]];
+    // Corners and midpoints alternate. Cells are smaller towards the ends, where slender beams are clamped.
+    let lines = [0, 1].map(|axis| {
+        let [low, high] = ends[axis];
+        let graded = |t: f64| 0.5 * (t + 0.5 * (1.0 - (std::f64::consts::PI * t).cos()));
+        let mut lines: Vec<f64> =
+            (0..=cells[axis]).map(|i| low + (high - low) * graded(i as f64 / cells[axis] as f64)).collect();
+        for point in &points {
+            // The nearest inner line moves to the point.
+            let at = point[axis];
+            let inner = 1..lines.len() - 1;
+            let near = |v: f64| (v - at).abs() < 1e-9 * (high - low);
+            if !lines.iter().any(|&v| near(v)) {
+                let nearest = inner.clone().min_by(|&a, &b| (lines[a] - at).abs().total_cmp(&(lines[b] - at).abs()));
+                let taken =
+                    nearest.is_none_or(|n| points.iter().any(|p| p[axis] != at && (lines[n] - p[axis]).abs() < 1e-12));
+                match nearest.filter(|_| !taken) {
+                    Some(n) => lines[n] = at,
+                    None => lines.push(at),
+                }
+            }
+        }
+        lines.sort_by(f64::total_cmp);
+        let middles: Vec<f64> = lines.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+        lines
+            .iter()
+            .zip(middles.iter().map(Some).chain([None]))
+            .flat_map(|(&a, m)| [Some(a), m.copied()])
+            .flatten()
+            .collect::<Vec<f64>>()
+    });
+    let [nx, ny] = [lines[0].len(), lines[1].len()];
+    let node = |i: usize, j: usize| (i * ny + j) as u32;
+    let nodes = lines[0].iter().flat_map(|&x| lines[1].iter().map(move |&y| Vector2::new(x, y))).collect();
+    let mut connectivity = Vec::new();
+    for (i, j) in (0..nx - 1).step_by(2).flat_map(|i| (0..ny - 1).step_by(2).map(move |j| (i, j))) {
+        let [a, b, c, d] = [node(i, j), node(i + 2, j), node(i + 2, j + 2), node(i, j + 2)];
+        let middle = node(i + 1, j + 1);
+        connectivity.extend([a, b, c, node(i + 1, j), node(i + 2, j + 1), middle]);
+        connectivity.extend([a, c, d, middle, node(i + 1, j + 2), node(i, j + 1)]);
+    }
+    let edge = |points: Vec<u32>| points.windows(3).step_by(2).filter_map(Segment::new).collect::<Vec<_>>();
+    let edges = BTreeMap::from([
+        ("left".to_owned(), edge((0..ny).map(|j| node(0, j)).collect())),
+        ("right".to_owned(), edge((0..ny).map(|j| node(nx - 1, j)).collect())),
+        ("bottom".to_owned(), edge((0..nx).map(|i| node(i, 0)).collect())),
+        ("top".to_owned(), edge((0..nx).map(|i| node(i, ny - 1)).collect())),
+    ]);
+    Mesh::new(nodes, ElementKind::T6, connectivity, edges).unwrap()
+}
+
+/// Returns the equilibrium of a scene on a mesh of about `nodes` nodes. The search starts from rest, or from the
+/// equilibrium on a coarser mesh.
+fn independent(scene: &Scene, nodes: f64, coarser: Option<&Simulation>) -> Option<Simulation> {
+    let beam = scene.beam.clone().unwrap();
+    let ratio = beam.length / beam.height;
+    // The grid has (2 nx + 1) (2 ny + 1) nodes, with square cells if there are enough of them.
+    let across = (0.25 * nodes / ratio.max(1.0 / ratio)).sqrt().round().max(2.0);
+    let along = (0.25 * nodes / across).round();
+    let cells = if ratio >= 1.0 { [along, across] } else { [across, along] }.map(|n| n as usize);
+    let mut scene = scene.clone();
+    (scene.solver.method, scene.solver.max_iterations) = (MethodKind::Newton, 300);
+    let mesh = six_node_grid(&scene, &beam, cells);
+    let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();
+    if let Some(coarser) = coarser {
+        let start: Vec<_> = simulation.system().mesh().nodes().iter().map(|&x| displacement_at(coarser, x)).collect();
+        simulation.start_from(&start).unwrap();
+    }
+    (*simulation.solve() == Status::Converged).then_some(simulation)
+}
+
+/// Returns the displacement at the rest position `x`, m.
+fn displacement_at(simulation: &Simulation, x: Vector2<f64>) -> Vector2<f64> {
+    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
+    match mesh.locate(x).and_then(|point| mesh.weights(point)) {
+        Some(weights) => weights.iter().map(|&(node, weight)| u[node as usize] * weight).sum(),
+        // By rounding, a node of a side may lie outside.
+        None => u[mesh.nearest_node(x) as usize],
+    }
+}
+
+/// Results of the comparison of scenes with two independent solutions each.
+#[derive(Debug, Default)]
+struct Tally {
+    judged: usize,
+    /// Number of references whose own error is below 0.3 %.
+    sharp: usize,
+    /// Number of scenes in which the independent solutions are more accurate than the reference.
+    severe: usize,
+    none: usize,
+    wrong: Vec<String>,
+}
+
+impl Tally {
+    /// Returns the sum of both.
+    fn with(mut self, mut other: Self) -> Self {
+        self.judged += other.judged;
+        self.sharp += other.sharp;
+        self.severe += other.severe;
+        self.none += other.none;
+        self.wrong.append(&mut other.wrong);
+        self
+    }
+}
+
+/// Checks for random scenes that |claimed − true error| is at most the claimed own error. The true error is taken from
+/// the finer of two independent solutions, and 1.5 times their distance is allowed for their own error.
+fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
+    let mut tally = Tally::default();
+    for seed in seeds {
+        let scene = random::scene(seed);
+        let mut own = Simulation::new(&scene).unwrap();
+        own.solve();
+        let reference = Reference::find(&scene, Some(&own), Effort::Bounded, &mut |_| ControlFlow::Continue(()));
+        let why = reference.as_ref().err().map(ToString::to_string);
+        let Some(first) = reference.ok().and_then(|r| r.first()) else {
+            println!("{seed}: {}, own result {:?}", why.unwrap_or_else(|| "no bound".to_owned()), own.status());
+            tally.none += 1;
+            continue;
+        };
+        let Some(coarse) = independent(&scene, 5e3, None) else { continue };
+        let Some(fine) = independent(&scene, 14e3, Some(&coarse)) else { continue };
+        let [coarse, fine] = [coarse, fine].map(|solved| solved.probe("probe").unwrap());
+        let claimed = first.error_percent(&own.solution().probes[0]).unwrap();
+        let percent = |a: Vector2<f64>, b: Vector2<f64>| 100.0 * (a - b).norm() / fine.norm();
+        let apart = percent(coarse, fine);
+        if apart > 5.0 {
+            // The independent solutions are too inaccurate to judge.
+            continue;
+        }
+        let error = percent(own.probe("probe").unwrap(), fine);
+        let text = format!(
+            "{seed}: claimed {claimed:.4} %, true {error:.4} %, own {:.4} %, independent ones {apart:.4} % apart, {}",
+            first.own_error_percent, first.source
+        );
+        println!("{text}");
+        // The errors are percentages of different displacements, so that a large error has a large difference.
+        let scale = 1.0 + 0.01 * error;
+        if (claimed - error).abs() > (first.own_error_percent + 1.5 * apart) * scale + 1e-5 {
+            tally.wrong.push(text);
+        }
+        tally.judged += 1;
+        tally.sharp += usize::from(first.own_error_percent < 0.3);
+        tally.severe += usize::from(apart < first.own_error_percent);
+    }
+    tally
+}
+
+#[test]
+fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
+    // All 300 scenes take a quarter of an hour; by default, every fifth is used.
+    let all = std::env::var_os("WARPBEAM_ALL_SCENES").is_some();
+    let seeds: Vec<u64> = (0..300).step_by(if all { 1 } else { 5 }).collect();
+    // One thread per core: the test is the only one of its program.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let untaken = || std::iter::from_fn(|| seeds.get(next.fetch_add(1, Ordering::Relaxed)).copied());
+    let tally = std::thread::scope(|scope| {
+        let parts: Vec<_> = (0..threads).map(|_| scope.spawn(|| judge(untaken()))).collect();
+        parts.into_iter().map(|part| part.join().unwrap()).fold(Tally::default(), Tally::with)
+    });
+    println!("{tally:?}");
+    assert!(tally.wrong.is_empty(), "{:#?}", tally.wrong);
+    let scenes = if all { 300 } else { 60 };
+    assert!(tally.judged * 10 >= scenes * 7, "{tally:?}");
+    assert!(tally.severe * 2 >= tally.judged, "{tally:?}");
+    assert!(tally.sharp * 5 >= tally.judged * 2, "{tally:?}");
+}

@@ -1,0 +1,433 @@
+//! Tests of the speed–accuracy study of bodies at rest and in motion, the atlas of motions, and
+//! the scaling of an iteration.
+
+use std::fs;
+use std::ops::ControlFlow;
+
+use crate::common::{scene, scene_with, stderr, stdout, warpbeam};
+use nalgebra::Vector2;
+use warpbeam::element::ELEMENTS;
+use warpbeam::method::METHODS;
+use warpbeam::scene::Scene;
+use warpbeam::study::extremes::motion::{MotionOutcome, cases};
+use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, MotionReference};
+use warpbeam::study::{Demand, Extent, Measurement, MotionStudy, Study, StudyError, Tuning};
+use warpbeam::{ElementKind, IntegratorKind, MethodKind};
+
+fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// The study measures single rows of quadrilaterals under every method. They reach an error for which six-node
+/// triangles need at least twice the unknowns. The corresponding times depend on the machine.
+#[test]
+fn single_rows_of_bending_elements_are_studied() {
+    for id in ["cantilever", "elastica"] {
+        let study = Study::new(&scene(id), Extent::Quick, &mut go_on).unwrap();
+        let fewest = |element| {
+            let close = study.measurements.iter().filter(|m| m.setting.element == element && m.error.bound() <= 1.0);
+            close.min_by_key(|m| m.dofs).unwrap()
+        };
+        let [q4, t6] = [ElementKind::Q4, ElementKind::T6].map(fewest);
+        assert!(
+            2 * q4.dofs <= t6.dofs,
+            "{id}: {} unknowns {}, {} unknowns {}",
+            q4.dofs,
+            q4.setting,
+            t6.dofs,
+            t6.setting
+        );
+        for method in METHODS.iter().map(|m| m.kind) {
+            for cells in [5, 10, 20, 40].map(|along| [along, 1]) {
+                let measured = |m: &Measurement| {
+                    let s = m.setting;
+                    (s.element, s.cells, s.method) == (ElementKind::Q4, Some(cells), method)
+                };
+                assert!(study.measurements.iter().any(measured), "{id}: {} {cells:?}", method.id());
+            }
+        }
+    }
+}
+
+/// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first,
+/// and the measurements of each element are listed from coarse to fine.
+#[test]
+fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
+    let (mut last, mut elements) = (0.0, Vec::new());
+    let mut observe = |progress: warpbeam::study::Progress<'_>, so_far: Option<&Study>| {
+        assert!((last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+        last = progress.fraction;
+        if let Some(study) = so_far {
+            let mut known: Vec<ElementKind> = study.measurements.iter().map(|m| m.setting.element).collect();
+            known.dedup();
+            elements.push(known);
+        }
+        ControlFlow::Continue(())
+    };
+    let study = Study::observed(&scene("cantilever"), Extent::Quick, &mut observe).unwrap();
+    assert!((last - 1.0).abs() < 1e-9, "it ends at {last}");
+    assert_eq!(elements[0], [ElementKind::T6]);
+    let all: Vec<ElementKind> = scene("cantilever").elements().collect();
+    assert_eq!(elements.last(), Some(&all));
+    let unknowns = |element| {
+        let own = study.measurements.iter().filter(|m| m.setting.element == element);
+        own.map(|m| (m.setting.cells.unwrap()[0], m.setting.cells.unwrap()[1])).collect::<Vec<_>>()
+    };
+    assert!(all.into_iter().all(|element| unknowns(element).is_sorted()), "coarse to fine");
+}
+
+/// The swing's study: errors follow the orders of the integrators, energies behave as the integrators promise, and no
+/// setting on the front is dominated.
+#[test]
+fn a_swing_is_studied() {
+    let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &mut go_on).unwrap();
+    let own = study.reference.error_percent;
+    assert!(own > 0.0 && own < 0.5, "{own}");
+    assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 1.0);
+    let at = |kind, rate: f64, iterations| -> &MotionMeasurement {
+        let found = study.measurements.iter().find(|m| {
+            let s = &m.setting;
+            (s.element, s.cells, s.method) == (ElementKind::T6, Some([20, 1]), MethodKind::Newton)
+                && (s.integrator, s.iterations) == (kind, iterations)
+                && (s.time_step * rate - 1.0).abs() < 1e-9
+        });
+        found.unwrap()
+    };
+    let steps = |kind, iterations| {
+        [60.0, 120.0, 240.0].map(|rate| at(kind, rate, iterations)).map(|m| m.error.unwrap().integration)
+    };
+    for (kind, iterations, overall, last) in [
+        (IntegratorKind::TrBdf2, 1, 8.0..11.0, 3.0..4.5),
+        (IntegratorKind::TrBdf2, 0, 7.5..11.0, 2.8..4.5),
+        (IntegratorKind::EnergyMomentum, 0, 7.0..11.0, 2.4..4.5),
+        (IntegratorKind::ImplicitEuler, 1, 2.8..4.2, 1.6..2.2),
+        (IntegratorKind::ImplicitEuler, 0, 2.8..4.2, 1.6..2.2),
+    ] {
+        let [a, b, c] = steps(kind, iterations);
+        assert!(overall.contains(&(a / c)) && last.contains(&(b / c)), "{} {iterations}: {a} {b} {c}", kind.id());
+    }
+    for m in &study.measurements {
+        let setting = m.setting;
+        assert_eq!(m.ending, Ending::Finished, "{setting}");
+        let e = m.error.unwrap();
+        let parts = [e.total, e.rms, e.discretization, e.integration, e.model, m.drift_percent, m.milliseconds];
+        assert!(parts.iter().all(|v| v.is_finite()) && m.milliseconds > 0.0 && m.counts.halvings == 0, "{m:?}");
+        // The parts are distances along a chain from the path to the reference's path.
+        assert!(e.total <= e.bound() * (1.0 + 1e-9) && e.rms <= e.total, "{setting}: {e:?}");
+        assert_eq!(e.model == 0.0, setting.method != MethodKind::Linear, "{setting}");
+        match setting.integrator {
+            IntegratorKind::EnergyMomentum => assert!(m.drift_percent.abs() < 1e-3, "{setting}: {}", m.drift_percent),
+            IntegratorKind::ImplicitEuler => assert_eq!(m.energy(), EnergyBehaviour::Lost, "{setting}"),
+            _ => {}
+        }
+    }
+    // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they
+    // end with those of the others.
+    let explicit = study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler);
+    for m in explicit {
+        let parts = 1.0 / 60.0 / m.setting.time_step;
+        assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
+    }
+    // No setting is better than the front, every other setting is worse, and the front is sorted by time and by error.
+    let pair = |m: &MotionMeasurement| (m.milliseconds, study.resolved(m.error.unwrap().bound()));
+    for m in &study.measurements {
+        let (time, error) = pair(m);
+        let beaten =
+            study.measurements.iter().map(pair).any(|(t, e)| t <= time && e <= error && (t, e) != (time, error));
+        assert_eq!(m.pareto, !beaten, "{}", m.setting);
+    }
+    let front: Vec<_> = study.front().into_iter().map(pair).collect();
+    assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
+    // The error of the chosen setting and the reference's own error are together within the requested error.
+    let chosen = study.fastest_within(10.0).unwrap();
+    assert!(chosen.error.unwrap().bound() + own <= 10.0);
+    assert!(study.fastest_within(0.5 * own).is_none());
+}
+
+/// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
+/// study keeps its measurements.
+#[test]
+fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
+    let scene = scene_with("swing", &["dynamics.duration=0.1"]);
+    let until = |is_enough: &dyn Fn(usize, usize) -> bool| {
+        let (mut last, mut timed, mut meshes) = (0.0, 0, Vec::new());
+        let mut observe = |progress: warpbeam::study::Progress<'_>| {
+            assert!((last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+            last = progress.fraction;
+            let now = progress.now.to_string();
+            if now.ends_with("paths of its settings") {
+                meshes.push(now);
+                meshes.dedup();
+            } else {
+                timed += usize::from(!meshes.is_empty());
+            }
+            if is_enough(meshes.len(), timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let study = MotionStudy::new(&scene, Extent::Quick, &mut observe).unwrap();
+        assert!(!study.front().is_empty() && !study.summary().contains("NaN"));
+        let mut meshes: Vec<_> = study.measurements.iter().map(|m| (m.setting.element, m.setting.cells)).collect();
+        meshes.dedup();
+        (study.is_partial, meshes.len(), study.measurements.len())
+    };
+    // The study is cancelled when it reports the fourth setting, which is then not measured.
+    assert_eq!(until(&|_, timed| timed == 4), (true, 1, 3));
+    let (is_partial, meshes, measured) = until(&|meshes, _| meshes == 2);
+    assert!(is_partial && meshes == 1 && measured > 20, "{is_partial} {meshes} {measured}");
+    // Two meshes of every element.
+    let all = 2 * ELEMENTS.len();
+    assert_eq!(until(&|_, _| false), (false, all, all * measured));
+}
+
+/// Compares the reference with a trajectory computed independently on the same mesh: `tests/data/swing.py`.
+#[test]
+fn the_reference_equals_an_independent_trajectory() {
+    // The independent mesh has six-node triangles, twice as fine as these cells.
+    let scene = scene_with("swing", &["beam.element=t3", "dynamics.duration=1"]);
+    let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
+    assert_eq!(reference.cells, Some([20, 1]));
+    let rows = include_str!("../data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
+    let independent: Vec<(f64, Vector2<f64>)> = rows
+        .map(|row| {
+            let v: Vec<f64> = row.split(',').map(|v| v.parse().unwrap()).collect();
+            (v[0], Vector2::new(v[1], v[2]))
+        })
+        .collect();
+    // Every fourth of the 240 samples per second.
+    let independent: Vec<_> = independent.iter().skip(3).step_by(4).take(reference.path.len()).collect();
+    assert_eq!(independent.len(), 60);
+    for (i, (time, _)) in independent.iter().enumerate() {
+        assert!((time - reference.interval * (i + 1) as f64).abs() < 1e-9);
+    }
+    let places: Vec<_> = independent.iter().map(|(_, u)| *u).collect();
+    let [distance, _] = reference.distance(&places, &reference.path);
+    assert!(distance <= reference.error_percent, "{distance} {}", reference.error_percent);
+    // The mesh is the same, so that the only difference is due to the time step.
+    assert!(distance < 0.01, "{distance}");
+    let size = places.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    assert!((reference.size / size - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn scenes_that_cannot_be_studied_are_refused() {
+    let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &mut go_on).unwrap_err();
+    assert_eq!(refused(&scene("cantilever")), StudyError::AtRest);
+    assert_eq!(refused(&scene_with("swing", &["probe=[]"])), StudyError::NoProbe);
+    assert_eq!(refused(&scene_with("swing", &["load=[]", "beam.cells=[2,1]"])), StudyError::NoProbe);
+    let moving = scene("swing");
+    assert_eq!(Study::new(&moving, Extent::Quick, &mut go_on), Err(StudyError::InMotion));
+    assert_eq!(Tuning::of(&moving, Demand::default(), &mut go_on).unwrap_err(), StudyError::InMotion);
+    for after in [0, 3] {
+        let mut heard = 0;
+        let mut observe = |progress: warpbeam::study::Progress<'_>| {
+            assert!((0.0..=1.0).contains(&progress.fraction));
+            heard += 1;
+            if heard > after { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        assert_eq!(MotionStudy::new(&moving, Extent::Quick, &mut observe).unwrap_err(), StudyError::Cancelled);
+    }
+}
+
+/// Tuning refuses to choose a setting if no bound of the error below the requested one is known: a block sheared until
+/// its elements invert, a force on the measured point, and an error smaller than the reference's.
+#[test]
+fn tuning_refuses_demands_below_the_known_error() {
+    let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
+    let point = Scene::beam(2.0, 1.0).clamp("left").force([2.0, 0.5], [0.0, -100.0]).probe("tip", [2.0, 0.5]);
+    for (name, scene, asked) in [("block", block, 5.0), ("point", point, 1.0), ("shear", scene("shear"), 0.01)] {
+        let demand = Demand { max_error_percent: Some(asked), max_time_ms: None };
+        let refused = Tuning::of(&scene, demand, &mut go_on);
+        assert!(refused.as_ref().is_err_and(StudyError::is_unknown), "{name}: {:?}", refused.map(|t| t.chosen));
+    }
+    let output = warpbeam(&["tune", "shear", "--error", "0.01%"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("not known which settings meet at most 0.01 % error"), "{}", stdout(&output));
+}
+
+/// A cancelled search for a setting chooses from the measurements taken so far.
+#[test]
+fn a_cancelled_tuning_chooses_from_what_was_measured() {
+    let demand = Demand { max_error_percent: Some(1e-3), max_time_ms: None };
+    let scene = scene("elastica");
+    let mut measured = 0;
+    let mut observe = |progress: warpbeam::study::Progress<'_>| {
+        measured += u32::from(progress.now.to_string().contains("×"));
+        if measured < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
+    let demand = Demand { max_error_percent: Some(own * 1.001), ..demand };
+    let tuning = Tuning::of(&scene, demand, &mut observe).unwrap();
+    assert!(tuning.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
+    assert!(tuning.study.measurements.len() < 60);
+}
+
+/// The command writes the same study: its files, columns and finite numbers. A step that is too short to be
+/// run to the end is reported.
+#[test]
+fn study_of_a_motion_writes_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, set) in [("swing", "dynamics.duration=0.25"), ("chime", "dynamics.duration=0.01")] {
+        let out = folder.path().join(id);
+        let output = warpbeam(&["study", id, "--quick", "--set", set, "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let summary = stdout(&output);
+        assert_eq!(summary, fs::read_to_string(out.join("study.txt")).unwrap());
+        for text in ["its own error about", "real time", "an error of 10 % costs", "auto compared with newton"] {
+            assert!(summary.contains(text), "{text}: {summary}");
+        }
+        let csv = fs::read_to_string(out.join("study.csv")).unwrap();
+        let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        assert_eq!(
+            header.join(","),
+            "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,\
+             error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,\
+             resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided"
+        );
+        let rows: Vec<_> = lines.collect();
+        let text = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto", "undecided"];
+        for row in &rows {
+            assert_eq!(row.len(), header.len());
+            let finished = row[8] == "finished";
+            for (column, value) in header.iter().zip(row).filter(|(column, _)| !text.contains(column)) {
+                // A run that did not finish has no error.
+                let empty = value.is_empty() && !finished && column.ends_with("_percent");
+                assert!(empty || value.parse::<f64>().unwrap().is_finite(), "{column}: {row:?}");
+            }
+        }
+        let has = |column: usize, word: &str| rows.iter().any(|row| row[column] == word);
+        assert!(["tr-bdf2", "energy-momentum", "implicit-euler", "symplectic-euler"].iter().all(|i| has(4, i)));
+        assert!(["linear", "newton", "auto"].iter().all(|m| has(5, m)) && has(0, "t3") && has(0, "t6"));
+        assert!(has(22, "true") && has(22, "false") && has(18, "lost") && has(18, "kept"));
+        assert_eq!(has(8, "cut_short"), id == "chime");
+        assert_eq!(summary.contains("too many steps to the end"), id == "chime", "{summary}");
+        let svg = fs::read_to_string(out.join("study.svg")).unwrap();
+        assert!(svg.contains("Pareto front") && svg.contains("real time") && svg.contains("t6 energy-momentum"));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
+    }
+    let refused = warpbeam(&["tune", "swing"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("expected a scene with analysis = \"static\""), "{}", stderr(&refused));
+}
+
+/// For any stiffness, step and weight, a motion ends with a message and finite numbers. Implicit integrators run to the
+/// end, and no integrator gains energy.
+#[test]
+fn motions_at_the_extremes_end_with_a_stated_reason() {
+    let cases = cases(Extent::Quick);
+    assert!(cases.len() >= 72);
+    for case in cases {
+        let entry = case.run().unwrap();
+        let numbers = [entry.drift, entry.tip[0], entry.tip[1]];
+        assert!(numbers.iter().all(|v| v.is_finite()), "{entry:?}");
+        let explicit = case.integrator.entry().is_explicit();
+        match entry.outcome {
+            MotionOutcome::Finished | MotionOutcome::Inverted => assert_eq!(entry.steps, 100, "{entry:?}"),
+            MotionOutcome::Exploded => assert!(explicit && entry.steps < 100, "{entry:?}"),
+            MotionOutcome::GainedEnergy | MotionOutcome::Stopped => unreachable!("{entry:?}"),
+        }
+        // Far above its critical step, the explicit integrator explodes and is reported.
+        if explicit && case.young >= 1e6 {
+            assert_eq!(entry.outcome, MotionOutcome::Exploded, "{entry:?}");
+        }
+    }
+}
+
+/// The time of an iteration against the number of unknowns, for every element from coarse to fine,
+/// as table, picture and text.
+#[test]
+fn scaling_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let done = warpbeam(&["study", "cantilever", "--scaling", "--quick", "--out", out]);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let table = fs::read_to_string(folder.path().join("scaling.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    for element in ElementKind::all() {
+        let own: Vec<_> = rows.iter().filter(|row| row[0] == element.id()).collect();
+        let dofs: Vec<u32> = own.iter().map(|row| row[3].parse().unwrap()).collect();
+        assert!(dofs.len() >= 5 && dofs.is_sorted() && dofs[0] < 200 && *dofs.last().unwrap() > 1000, "{dofs:?}");
+        assert!(own.iter().all(|row| row[4].parse::<f64>().unwrap() > 0.0), "{table}");
+        let text = stdout(&done);
+        assert!(text.contains(&format!("{}: time ∝ unknowns^", element.id())), "{text}");
+    }
+    let picture = fs::read_to_string(folder.path().join("scaling.svg")).unwrap();
+    assert_eq!(picture.matches("<polyline").count(), ElementKind::all().count());
+    assert!(folder.path().join("scaling.png").is_file());
+    let moving = warpbeam(&["study", "swing", "--scaling", "--quick", "--out", out]);
+    assert!(moving.status.code() == Some(2) && stderr(&moving).contains("static"), "{}", stderr(&moving));
+}
+
+/// A motion is studied over its duration, or over periods of its lowest natural frequency, however slow it is: linear
+/// theory is wrong for a body that sags.
+#[test]
+fn slow_motions_are_studied_over_their_periods() {
+    for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
+        let slow = scene(&format!("tests/data/scenes/{name}.toml"));
+        let study = MotionStudy::new(&slow, Extent::Quick, &mut go_on).unwrap();
+        assert!(duration.contains(&study.duration), "{name}: {} s", study.duration);
+        let linear = study.measurements.iter().filter(|m| m.setting.method == MethodKind::Linear);
+        let model = linear.filter_map(|m| Some(m.error?.model)).fold(0.0, f64::max);
+        assert!(model > 1.0, "{name}: the error of linear theory is {model} %");
+        // The body moves through the whole of its vibration.
+        let highest = study.reference.path.iter().map(|u| u.y).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = study.reference.path.iter().map(|u| u.y).fold(f64::INFINITY, f64::min);
+        assert!(highest > 0.5 * lowest && lowest < 0.0, "{name}: from {lowest} to {highest} m");
+    }
+    // A short scene with a short period, and a free body.
+    for (id, set) in [("chime", "dynamics.duration=0.01"), ("spin", "dynamics.duration=0.2")] {
+        let reference = MotionReference::new(&scene_with(id, &[set]), Extent::Quick, &mut go_on).unwrap();
+        let studied = reference.interval * reference.path.len() as f64;
+        let whole: f64 = set.split('=').nth(1).unwrap().parse().unwrap();
+        assert!(studied <= whole * (1.0 + 1e-9) && studied > 0.8 * whole, "{id}: {studied} s of {whole} s");
+    }
+}
+
+/// A stated bound of an error is its measured parts plus the reference's own error, in the summary and in the table, and
+/// ranks that the reference cannot tell apart are marked.
+#[test]
+fn bounds_of_a_study_include_the_error_of_the_reference() {
+    let study = Study::new(&scene("shear"), Extent::Quick, &mut go_on).unwrap();
+    let own = study.against.own_error_percent;
+    assert!(own > 0.0);
+    let (table, summary) = (study.table(), study.summary());
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let undecided = study.undecided();
+    for ((row, m), undecided) in rows.zip(&study.measurements).zip(&undecided) {
+        let at_most: f64 = row[column("at_most_percent")].parse().unwrap();
+        assert!((at_most - m.error.bound() - own).abs() < 1e-9 * at_most, "{row:?}");
+        assert!((study.error_bound(m) - at_most).abs() < 1e-9 * at_most);
+        assert_eq!(row[column("undecided")], undecided.to_string());
+        let faster = study.measurements.iter().filter(|o| *o != m && o.milliseconds() <= m.milliseconds());
+        let best = faster.map(|o| o.error.bound()).fold(f64::INFINITY, f64::min);
+        assert_eq!(*undecided, (best - m.error.bound()).abs() < own, "{}", m.setting);
+    }
+    assert!(undecided.contains(&true) && undecided.contains(&false));
+    let front = summary.lines().skip_while(|line| !line.contains("at most, %")).skip(1);
+    let mut marked = false;
+    for (line, m) in front.zip(study.front()) {
+        let stated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+        assert!(stated >= own && (stated - study.error_bound(m)).abs() < 1e-4, "{line}");
+        let index = study.measurements.iter().position(|o| o == m).unwrap();
+        assert_eq!(line.ends_with("(rank undecided)"), undecided[index], "{line}");
+        marked |= undecided[index];
+        // A bound within one percent costs some time.
+        let within = summary.lines().any(|line| line.starts_with("an error of 1 % costs "));
+        assert!(stated > 1.0 || within, "{summary}");
+    }
+    assert_eq!(summary.contains("rank undecided: a faster setting"), marked, "{summary}");
+    // `tune` states the same bound.
+    let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
+    let tuning = Tuning::of(&scene("shear"), demand, &mut go_on).unwrap();
+    let bound = format!("error at most {:.4} %", tuning.study.error_bound(&tuning.chosen));
+    assert!(tuning.to_string().contains(&bound), "{tuning}");
+    let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &mut go_on).unwrap();
+    let own = moving.reference.error_percent;
+    for m in moving.front() {
+        let bound = moving.error_bound(m).unwrap();
+        assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12 && moving.is_within(m, bound));
+        assert!(moving.summary().contains(&format!(" {bound:.4} ")), "{}", moving.summary());
+    }
+}

@@ -1,0 +1,426 @@
+//! Tests of moving supports: their effect on the body, their reactions and work, and their errors.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::common::solved;
+use nalgebra::{Matrix2, Vector2};
+use warpbeam::assembly::Forces;
+use warpbeam::element::ELEMENTS;
+use warpbeam::method::{METHODS, Workspace, is_stable};
+use warpbeam::scene::{Axis, Support, SupportId};
+use warpbeam::study::LoadPath;
+use warpbeam::{Field, Material, Mesh, MethodKind, Scene, Simulation, SimulationError, Status};
+
+const BOTH: &[Axis] = &[Axis::X, Axis::Y];
+
+fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
+    let (s, c) = angle.sin_cos();
+    Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y)
+}
+
+/// Returns a beam clamped at both ends.
+fn clamped() -> Scene {
+    let mut scene = Scene::beam(10.0, 1.0).with_cells(16, 2).clamp("left").clamp("right").probe("middle", [5.0, 0.0]);
+    scene.solver.tolerance = 1e-11;
+    scene
+}
+
+/// Edges that are moved apart along x and together along y strain all elements equally, whatever their shape.
+#[test]
+fn moved_edges_strain_a_patch_uniformly() {
+    let (a, b) = (0.03, -0.05);
+    for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e, m))) {
+        let scene = Scene::beam(2.0, 1.0)
+            .with_cells(4, 3)
+            .with_element(element.kind)
+            .with_method(method.kind)
+            .support("left", &[Axis::X])
+            .support("bottom", &[Axis::Y])
+            .support("right", &[Axis::X])
+            .moved([2.0 * a, 0.0], 0.0)
+            .support("top", &[Axis::Y])
+            .moved([0.0, b], 0.0);
+        let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
+        // The cells have irregular shapes; the sides of the rectangle are unchanged.
+        let mesh = mesh.moved(|x| {
+            let bump = (PI * x.x / 2.0).sin() * (PI * (x.y + 0.5)).sin();
+            x + Vector2::new(0.06, 0.04) * (bump * (1.0 + x.x * x.y))
+        });
+        let mut simulation = Simulation::with_mesh(&scene, mesh.unwrap()).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged, "{} {}", element.id, method.id);
+        let (problem, state) = (simulation.problem(), simulation.state());
+        let lame = problem.material().lame();
+        let expected = Matrix2::new(a, 0.0, 0.0, b);
+        let mut points = 0;
+        problem.system().elements().visit_strains(
+            lame,
+            state.displacement(),
+            state.rotations(),
+            &mut |_, _, strain| {
+                assert!((strain - expected).amax() < 1e-9, "{} {}: {strain}", element.id, method.id);
+                points += 1;
+            },
+        );
+        assert!(points >= 12);
+        // Reactions are σ t times the length of the side.
+        let stress = lame.stress(&expected);
+        let [left, bottom, right, top] = [0, 1, 2, 3].map(|i| simulation.support_reactions()[i].force);
+        assert!((right.x - stress.m11).abs() < 1e-8 * stress.m11.abs(), "{}: {right}", element.id);
+        assert!((top.y - 2.0 * stress.m22).abs() < 1e-8 * stress.m22.abs(), "{}: {top}", element.id);
+        assert!((left + right).norm() < 1e-8 * right.norm() && (bottom + top).norm() < 1e-8 * top.norm());
+    }
+}
+
+/// If all supports rotate about one point, the body rotates with them without stress, by any angle.
+#[test]
+fn a_rigid_rotation_of_all_supports_leaves_no_stress() {
+    let centre = Vector2::new(3.0, 2.0);
+    for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e, m))) {
+        for angle in [0.4, 3.0, -7.0] {
+            let mut scene = clamped().with_element(element.kind).with_method(method.kind);
+            for (support, middle) in [Vector2::new(0.0, 0.0), Vector2::new(10.0, 0.0)].into_iter().enumerate() {
+                let arm = middle - centre;
+                let increment = match method.kind {
+                    MethodKind::Linear => Vector2::new(-arm.y, arm.x) * angle,
+                    _ => rotated(arm, angle) - arm,
+                };
+                scene.move_support(SupportId::nth(support), increment, angle).unwrap();
+            }
+            let simulation = solved(&scene);
+            let solution = simulation.solution();
+            // Forces and energies are compared with those that a strain of about 1 would need.
+            let scale = 1e6 * 10.0;
+            assert!(solution.energy.elastic < 1e-18 * scale, "{} {}: {:?}", element.id, method.id, solution.energy);
+            assert!(solution.supports.iter().all(|s| s.force.norm() < 1e-7 * scale), "{:?}", solution.supports);
+            if method.kind == MethodKind::Linear {
+                continue;
+            }
+            for (x, u) in simulation.system().mesh().nodes().iter().zip(simulation.displacement()) {
+                let expected = rotated(x - centre, angle) + centre - x;
+                assert!((u - expected).norm() < 1e-9, "{} {} {angle}: {u} {expected}", element.id, method.id);
+            }
+            // The rotations of edges count full turns.
+            assert!(
+                simulation.state().edge_angles().iter().all(|t| (t - angle).abs() < 1e-9),
+                "{:?}",
+                simulation.state().edge_angles()
+            );
+        }
+    }
+}
+
+/// A rotating clamp carries a cantilever along. Its weight then bends it like a cantilever built in that direction.
+#[test]
+fn a_rotated_clamp_equals_a_rotated_gravity() {
+    for method in METHODS.iter().filter(|m| m.kind != MethodKind::Linear) {
+        let mut straight = Scene::beam(10.0, 1.0).with_method(method.kind).clamp("left").probe("tip", "right");
+        straight.solver.max_error_percent = 1e-6;
+        let angle = 2.5;
+        let weight = Vector2::new(0.0, -0.15);
+        let turned = solved(&straight.clone().gravity(weight).moved([0.5, 0.25], angle));
+        let built = solved(&straight.gravity(rotated(weight, -angle)));
+        let [turned, built] = [&turned, &built].map(|s| Vector2::new(10.0, 0.0) + s.probe("tip").unwrap());
+        let expected = rotated(built, angle) + Vector2::new(0.5, 0.25);
+        assert!((turned - expected).norm() < 1e-5, "{}: {turned} {expected}", method.id);
+    }
+}
+
+/// A rotation of more than a full turn winds up the beam: it differs from the state at rest with
+/// the same support positions.
+#[test]
+fn a_full_rotation_of_one_end_is_not_rest() {
+    let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
+    scene.move_support(SupportId::nth(1), [-8.0, 0.0], TAU).unwrap();
+    let mut simulation = solved(&scene);
+    let turn =
+        simulation.state().edge_angles()[simulation.system().edges().iter().position(|e| e.name() == "right").unwrap()];
+    assert!((turn - TAU).abs() < 1e-9, "{turn}");
+    assert!(simulation.solution().energy.elastic > 10.0, "{:?}", simulation.solution().energy);
+    assert!(simulation.equilibrium().unwrap().load_steps() > 6);
+    // Rotated back in small steps, it is at rest again.
+    let mut angle = TAU;
+    while angle > 0.0 {
+        angle = f64::max(angle - 0.4, 0.0);
+        simulation.move_support(SupportId::nth(1), [-8.0 * angle / TAU, 0.0], angle).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged, "{angle}");
+    }
+    assert!(simulation.solution().energy.elastic < 1e-9);
+}
+
+/// The supports carry the loads, as forces and as moments.
+#[test]
+fn reactions_balance_the_loads() {
+    for element in ELEMENTS {
+        let scene = clamped().with_element(element.kind).gravity([0.0, -0.1]).force("top", [40.0, -30.0]);
+        let scene = scene.moment("right", 20.0);
+        // A moment on a supported edge goes into its support.
+        let mut scene = scene;
+        scene.move_support(SupportId::nth(1), [-0.3, 0.8], 0.4).unwrap();
+        let simulation = solved(&scene);
+        let solution = simulation.solution();
+        let dead = simulation.problem().loads().dead_force();
+        let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement());
+        let (mut force, mut moment) = (Vector2::zeros(), 20.0);
+        for ((x, u), f) in nodes.zip(dead) {
+            force += f;
+            moment += (x + u).perp(f);
+        }
+        for support in &solution.supports {
+            force += support.force;
+            moment += support.middle.perp(&support.force) + support.moment;
+        }
+        let scale = solution.supports.iter().map(|s| s.force.norm()).sum::<f64>();
+        assert!(force.norm() < 1e-7 * scale, "{}: {force}", element.id);
+        assert!(moment.abs() < 1e-6 * scale, "{}: {moment}", element.id);
+        let sum: Vector2<f64> = solution.supports.iter().map(|s| s.force).sum();
+        assert!((sum - solution.reaction.force).norm() < 1e-9 * scale);
+    }
+}
+
+/// The reaction force of a moved support displaces the free body by the same distance.
+#[test]
+fn displacement_control_agrees_with_force_control() {
+    for (element, method) in
+        ELEMENTS.iter().flat_map(|e| [MethodKind::Linear, MethodKind::Newton, MethodKind::Auto].map(|m| (e, m)))
+    {
+        let tip = [10.0, 0.0];
+        let mut beam = Scene::beam(10.0, 1.0).with_cells(10, 2).with_element(element.kind).with_method(method);
+        (beam.solver.tolerance, beam.solver.max_error_percent) = (1e-12, 1e-6);
+        let beam = beam.clamp("left").probe("tip", tip);
+        let driven = solved(&beam.clone().support(tip, &[Axis::Y]).moved([0.0, -4.0], 0.0));
+        let reaction = driven.support_reactions()[1].force;
+        assert!(reaction.x == 0.0 && reaction.y < -100.0, "{reaction}");
+        let loaded = solved(&beam.force(tip, reaction));
+        let [a, b] = [&driven, &loaded].map(|s| s.probe("tip").unwrap());
+        assert!((a.y + 4.0).abs() < 1e-12);
+        assert!((a - b).norm() < 1e-6, "{} {}: {a} {b}", element.id, method.id());
+    }
+}
+
+/// Returns a scene in which the right end is displaced and rotated at once.
+fn wrenched(factor: f64) -> Scene {
+    let mut scene = clamped();
+    scene.move_support(SupportId::nth(1), [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
+    scene
+}
+
+/// The work of supports along their path is the elastic energy, and Clapeyron's theorem holds for linear theory.
+#[test]
+fn the_work_of_the_reactions_is_the_elastic_energy() {
+    const STEPS: u32 = 48;
+    let mut simulation = solved(&wrenched(0.0));
+    let (mut work, mut power) = (0.0, Vec::new());
+    for step in 0..=STEPS {
+        simulation.change_scene(&wrenched(f64::from(step) / f64::from(STEPS))).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        let reaction = &simulation.support_reactions()[1];
+        power.push(reaction.force.dot(&Vector2::new(-2.0, 3.0)) + reaction.moment * 1.2);
+    }
+    // Simpson's rule.
+    for three in power.windows(3).step_by(2) {
+        work += (three[0] + 4.0 * three[1] + three[2]) / (3.0 * f64::from(STEPS));
+    }
+    let energy = simulation.solution().energy;
+    assert!((work - energy.elastic).abs() < 2e-5 * energy.elastic, "{work} {energy:?}");
+    // The same path in one step.
+    let direct = solved(&wrenched(1.0)).solution().energy;
+    assert!((direct.elastic - energy.elastic).abs() < 1e-8 * energy.elastic, "{direct:?} {energy:?}");
+
+    let linear = solved(&wrenched(1.0).with_method(MethodKind::Linear).gravity([1.0, -2.0]).force("top", [0.0, 1e4]));
+    let energy = linear.solution().energy;
+    let supports = energy.supports.unwrap();
+    assert!(energy.external.abs() > 1.0 && supports.abs() > 1.0, "{energy:?}");
+    // The loads do their work at full size. The work of the supports along the path is half of that at full size.
+    assert!((energy.external + 2.0 * supports - 2.0 * energy.elastic).abs() < 1e-9 * energy.elastic, "{energy:?}");
+}
+
+/// Force and moment of a support are the derivatives of the energy with respect to its displacement and rotation.
+#[test]
+fn reactions_are_derivatives_of_the_energy() {
+    const H: f64 = 1e-4;
+    let at = |d: [f64; 2], turn: f64| {
+        let mut scene = clamped();
+        scene.move_support(SupportId::nth(1), d, turn).unwrap();
+        solved(&scene).solution()
+    };
+    let ([x, y], turn) = ([-0.4, 1.5], 0.7);
+    let there = at([x, y], turn);
+    let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * H);
+    let by_x = slope(at([x + H, y], turn).energy.elastic, at([x - H, y], turn).energy.elastic);
+    let by_y = slope(at([x, y + H], turn).energy.elastic, at([x, y - H], turn).energy.elastic);
+    let by_turn = slope(at([x, y], turn + H).energy.elastic, at([x, y], turn - H).energy.elastic);
+    let reaction = &there.supports[1];
+    let scale = reaction.force.norm();
+    assert!((reaction.force.x - by_x).abs() < 1e-5 * scale, "{} {by_x}", reaction.force.x);
+    assert!((reaction.force.y - by_y).abs() < 1e-5 * scale, "{} {by_y}", reaction.force.y);
+    assert!((reaction.moment - by_turn).abs() < 1e-5 * scale, "{} {by_turn}", reaction.moment);
+}
+
+/// A dragged support gives the same result as a solve from rest; dragged back, the body is at rest again.
+#[test]
+fn dragged_supports_end_where_they_would_from_rest() {
+    for method in METHODS {
+        let scene = |y: f64| {
+            let mut scene = clamped().with_method(method.kind);
+            scene.solver.max_error_percent = 1e-6;
+            scene.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
+            scene
+        };
+        let mut dragged = solved(&scene(0.0));
+        for y in [0.1, 0.4, 0.9, 0.3] {
+            dragged.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
+            assert_eq!(*dragged.solve(), Status::Converged, "{} {y}", method.id);
+            let fresh = solved(&scene(y));
+            let [a, b] = [&dragged, &fresh].map(|s| s.probe("middle").unwrap());
+            assert!((a - b).norm() < 1e-6, "{} {y}: {a} {b}", method.id);
+        }
+        dragged.move_support(SupportId::nth(1), [0.0, 0.0], 0.0).unwrap();
+        assert_eq!(*dragged.solve(), Status::Converged, "{}", method.id);
+        assert!(dragged.displacement().iter().all(|u| u.norm() < 1e-7), "{}", method.id);
+    }
+}
+
+/// `start_from` and a change of stiffness begin with the supports in their prescribed positions.
+#[test]
+fn other_starts_and_stiffnesses_end_in_the_same_place() {
+    let mut simulation = solved(&wrenched(0.5));
+    let expected = simulation.probe("middle").unwrap();
+    simulation.set_material(Material::new(3e6, 0.3)).unwrap();
+    assert_eq!(*simulation.solve(), Status::Converged);
+    assert!((simulation.probe("middle").unwrap() - expected).norm() < 1e-6);
+    let near: Vec<_> = simulation.displacement().iter().map(|u| u * 0.9).collect();
+    simulation.start_from(&near).unwrap();
+    assert_eq!(*simulation.solve(), Status::Converged);
+    assert!((simulation.probe("middle").unwrap() - expected).norm() < 1e-6);
+    let mut values = Vec::new();
+    simulation.field(Field::VonMises, &mut values);
+    assert!(values.iter().all(Option::is_some));
+}
+
+/// Returns the limit load of a clamped shallow arch under a force in its middle, N, and the displacement of
+/// its middle there, m. The source is beam theory of small slopes, EI w⁗ + N (w″ − 1/R) = −P δ, with the
+/// thrust N = EI k² from the shortening of the axis. For every k the deflection is linear in P, and the
+/// shortening gives a quadratic equation for P.
+fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) -> [f64; 2] {
+    use nalgebra::{Matrix4, Vector4};
+    const POINTS: usize = 400;
+    let (half, curvature) = (0.5 * length, 8.0 * rise / (length * length));
+    let mut best = [0.0, 0.0];
+    for i in 1..2000 {
+        let k = f64::from(i) * 8.9 / (2000.0 * length);
+        let (s, c) = (k * half).sin_cos();
+        // w = a + b x + c cos kx + d sin kx + x²/2R; w = w′ = 0 at the clamp, w′ = 0 and EI w‴ = P/2 in the middle.
+        #[rustfmt::skip]
+        let conditions = Matrix4::new(
+            1.0, 0.0, 1.0, 0.0,
+            0.0, 1.0, 0.0, k,
+            0.0, 1.0, -k * s, k * c,
+            0.0, 0.0, k.powi(3) * s, -k.powi(3) * c,
+        );
+        let Some(inverse) = conditions.try_inverse() else { continue };
+        let alone = inverse * Vector4::new(0.0, 0.0, -curvature * half, 0.0);
+        let unit = inverse * Vector4::new(0.0, 0.0, 0.0, 0.5 / bending);
+        let slope = |v: &Vector4<f64>, x: f64| v[1] - v[2] * k * (k * x).sin() + v[3] * k * (k * x).cos();
+        let mut q = [bending * k * k * length / stiffness, 0.0, 0.0];
+        for j in 0..POINTS {
+            let x = half * (j as f64 + 0.5) / POINTS as f64;
+            let rest = 4.0 * rise / length * (1.0 - 2.0 * x / length);
+            let (a, b) = (slope(&alone, x) + curvature * x, slope(&unit, x));
+            let weight = length / POINTS as f64;
+            q[0] += weight * (rest * a + 0.5 * a * a);
+            q[1] += weight * (rest * b + a * b);
+            q[2] += weight * 0.5 * b * b;
+        }
+        let root = q[1] * q[1] - 4.0 * q[2] * q[0];
+        for sign in [1.0, -1.0] {
+            let force = (-q[1] + sign * root.sqrt()) / (2.0 * q[2]);
+            let middle = |v: &Vector4<f64>| v[0] + v[1] * half + v[2] * c + v[3] * s;
+            let increment = -(middle(&alone) + 0.5 * curvature * half * half + force * middle(&unit));
+            // Only states count in which the crown is above the ends.
+            if force > best[0] && (0.0..rise).contains(&increment) {
+                best = [force, increment];
+            }
+        }
+    }
+    best
+}
+
+/// The arch of `snap` passes the limit load of beam theory. Where it is unstable under force control, its exact tangent
+/// with a free crown is indefinite; with the crown supported, it is stable everywhere.
+#[test]
+fn the_arch_passes_its_limit_load() {
+    let scene = crate::common::scene("snap");
+    let path = LoadPath::of(&scene).unwrap();
+    assert!(path.end.is_none() && path.jump.is_none());
+    let pairs: Vec<[f64; 2]> = path.states.iter().map(|s| path.driven_pair(&scene, s).unwrap()).collect();
+    // A parabola through the three highest points.
+    let top = pairs[..30].iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])).unwrap().0;
+    let [a, b, c] = [0, 1, 2].map(|i| pairs[top - 1 + i][1]);
+    let limit = b + (c - a).powi(2) / (8.0 * (2.0 * b - a - c));
+    let (e, h, t) = (210e9, 0.001_f64, 0.02);
+    let [expected, increment] = shallow_arch_limit(0.2, 0.008, [e * t * h.powi(3) / 12.0, e * t * h]);
+    println!(
+        "limit load {limit} N at {} mm, of shallow beam theory {expected} N at {} mm",
+        1e3 * pairs[top][0],
+        1e3 * increment
+    );
+    assert!((limit - expected).abs() < 0.005 * expected, "{limit} {expected}");
+    assert!((pairs[top][0] - increment).abs() < 3e-4, "{} {increment}", pairs[top][0]);
+    // The same scene with the crown free along its path.
+    let mut free = scene.clone();
+    free.supports[2] = Support::new(free.supports[2].place.clone(), &[Axis::X]);
+    let free = Simulation::new(&free).unwrap();
+    let (mut unstable, mut agree) = (0, 0);
+    for state in &path.states {
+        let mut part = scene.clone();
+        part.scale_loads(state.factor);
+        let held = solved(&part);
+        let mut forces = Forces::new(held.displacement().len());
+        let mut workspace = Workspace::new(free.system()).unwrap();
+        let stable = is_stable(free.problem(), held.state(), 1.0, &mut forces, &mut workspace);
+        agree += u32::from(state.stable == Some(stable));
+        unstable += u32::from(!stable);
+    }
+    assert_eq!(agree as usize, path.states.len());
+    assert!((20..50).contains(&unstable), "{unstable}");
+}
+
+#[test]
+fn invalid_supports_are_refused_with_a_reason() {
+    let refused = |scene: &Scene| match Simulation::new(scene) {
+        Err(error @ SimulationError::System(_)) => error.to_string(),
+        other => format!("{other:?}"),
+    };
+    let beam = || Scene::beam(10.0, 1.0).clamp("left");
+    let cases = [
+        (beam().support("right", &[Axis::Y]).moved([0.1, 0.0], 0.0), "support.1.displacement: expected 0 along x"),
+        (beam().support("right", &[Axis::Y]).moved([0.0, 0.0], 0.1), "support.1.turn: expected fix = "),
+        (beam().clamp([5.0, 0.0]).moved([0.0, 0.0], 0.1), "support.1.turn: expected edge = "),
+        (beam().clamp("right").moved([f64::NAN, 0.0], 0.0), "support.1.displacement: expected -1000000 to 1000000 m"),
+        (beam().clamp("right").moved([0.0, 0.0], 1e3), "support.1.turn: expected -100 to 100 rad, got 1000"),
+        (
+            beam().clamp("bottom").moved([0.0, 0.1], 0.0),
+            "support.1: expected the same displacement as support.0 at the node (0, -0.5)",
+        ),
+        (
+            beam().moved([0.0, 0.1], 0.0).moving(warpbeam::IntegratorKind::TrBdf2, 0.01),
+            "supports of a dynamic scene cannot move",
+        ),
+        (
+            beam().clamp([5.0, 3.0]),
+            "support.1.at: expected a point in the body, or at most one element size (1.414 m) from a node",
+        ),
+        (beam().force([-50.0, 0.0], [0.0, 1.0]), "is 50 m from the nearest node, at (0, 0)"),
+    ];
+    for (scene, expected) in cases {
+        let message = refused(&scene);
+        assert!(message.contains(expected), "{message}");
+    }
+    // A point inside an element selects a node.
+    assert!(Simulation::new(&beam().force([10.4, 0.0], [0.0, 1.0])).is_ok());
+    assert!(Simulation::new(&Scene::beam(10.0, 1.0)).is_err());
+    assert!(
+        beam().move_support(SupportId::nth(3), [0.0, 0.0], 0.0).is_err_and(|e| e.to_string().contains("support.3"))
+    );
+    assert!(!Support::new("left", BOTH).moves());
+}

@@ -1,0 +1,230 @@
+//! Tests of numbers with units, in every place that accepts numbers.
+
+use crate::common::{scene, scene_with};
+use warpbeam::Scene;
+use warpbeam::scene::registry;
+use warpbeam::scene::units::parse;
+
+#[test]
+fn units_are_read_to_the_last_digit() {
+    for (text, unit, value) in [
+        ("210 GPa", "Pa", 2.1e11),
+        ("210GPa", "Pa", 2.1e11),
+        ("1 N/mm²", "Pa", 1e6),
+        ("1 N/mm^2", "Pa", 1e6),
+        ("12 kN", "N", 12e3),
+        ("-12 kN", "N", -12e3),
+        ("3 mm", "m", 0.003),
+        ("0.1 mm", "m", 0.0001),
+        ("5 µm", "m", 5e-6),
+        ("5 μm", "m", 5e-6),
+        ("5 um", "m", 5e-6),
+        ("1 in", "m", 0.0254),
+        ("7.8 g/cm³", "kg/m³", 7800.0),
+        ("7.8 g/cm^3", "kg/m³", 7800.0),
+        ("7.8 g/cm3", "kg/m³", 7800.0),
+        ("7.85e-9 t/mm³", "kg/m³", 7850.0),
+        ("16 ms", "s", 0.016),
+        ("2 1/s", "1/s", 2.0),
+        ("2 s^-1", "1/s", 2.0),
+        ("2 s⁻¹", "1/s", 2.0),
+        ("9.81 m/s²", "m/s²", 9.81),
+        ("9.81 m/s/s", "m/s²", 9.81),
+        ("981 cm/s^2", "m/s²", 9.81),
+        ("30 N m", "N m", 30.0),
+        ("30 N·m", "N m", 30.0),
+        ("30 kNm", "N m", 3e4),
+        ("30 J", "N m", 30.0),
+        ("180°", "rad", std::f64::consts::PI),
+        ("90 deg", "°", 90.0),
+        ("360 °/s", "rad/s", 2.0 * std::f64::consts::PI),
+        ("1 rad", "°", 180.0 / std::f64::consts::PI),
+        ("1.5 %", "%", 1.5),
+        ("30 %", "", 0.3),
+        ("0.3", "", 0.3),
+        ("1e3", "N", 1e3),
+        (" 1 kN ", "N", 1e3),
+    ] {
+        let read = parse(text, unit).unwrap();
+        assert!((read - value).abs() <= 2.0 * f64::EPSILON * value.abs(), "{text} is {read} {unit}");
+    }
+    // Powers of ten are rounded once.
+    assert_eq!(
+        (parse("3 mm", "m"), parse("0.7 mm", "m"), parse("7.8 g/cm³", "kg/m³")),
+        (Ok(3e-3), Ok(7e-4), Ok(7.8e3))
+    );
+}
+
+#[test]
+fn wrong_units_are_refused_with_the_expected_ones() {
+    for (text, unit, message) in [
+        ("12 kN", "Pa", "`12 kN` is a force (N); expected a pressure (Pa)"),
+        ("3 mm", "N", "`3 mm` is a length (m); expected a force (N)"),
+        ("2 1/s", "rad/s", "`2 1/s` is a rate (1/s); expected an angular velocity (rad/s)"),
+        ("2 Pa s", "s", "`2 Pa s` is a quantity in m^-1 kg s^-1; expected a time (s)"),
+        ("1 N", "", "`1 N` is a force (N); expected a pure number"),
+        ("12 kn", "N", "`12 kn` has the unknown unit `kn`; expected a force (N)"),
+        ("12 kkN", "N", "unknown unit `kkN`"),
+        ("1 m/", "m", "unknown unit"),
+        ("1 /", "m", "unknown unit"),
+        ("1 m^99", "m", "unknown unit"),
+        ("1 m^0", "m", "unknown unit"),
+        ("two", "N", "`two` is not a number; expected a force (N)"),
+        ("", "m", "is not a number"),
+        ("kN", "N", "is not a number"),
+    ] {
+        let error = parse(text, unit).unwrap_err().to_string();
+        assert!(error.contains(message), "{text}: {error}");
+    }
+}
+
+const WITH_UNITS: &str = r#"name = "12 kN"
+analysis = "dynamic"
+beam = { length = "100 cm", height = """10 mm""", cells = [4, 1] }
+
+[material]
+young = "210 GPa"   # "210 MPa"
+poisson = "30 %"
+density = '7.8 g/cm³'
+thickness = "2 mm"
+
+[[support]]
+at = ["0 mm", 0]
+fix = ["x", "y"]
+
+[[load]]
+kind = "force"
+edge = "right"
+force = [
+    "0 N",
+    "-12 kN",
+]
+pulse = { start = "10 ms", duration = "0.5 s" }
+
+[[load]]
+kind = "gravity"
+acceleration = [0, "-981 cm/s²"]
+
+[[probe]]
+name = "3 mm"
+at = ["1 m", "5 mm"]
+
+[dynamics]
+time_step = "1 ms"
+damping.mass = "2 1/s"
+damping.stiffness = "1 ms"
+
+[start]
+velocity = ["1 mm/s", "2 m/s"]
+spin = "180 °/s"
+"#;
+
+const PLAIN: &str = r#"name = "12 kN"
+analysis = "dynamic"
+[beam]
+length = 1.0
+height = 0.01
+cells = [4, 1]
+[material]
+young = 2.1e11
+poisson = 0.3
+density = 7800.0
+thickness = 0.002
+[[support]]
+at = [0.0, 0.0]
+fix = ["x", "y"]
+[[load]]
+kind = "force"
+edge = "right"
+force = [0.0, -12000.0]
+pulse = { start = 0.01, duration = 0.5 }
+[[load]]
+kind = "gravity"
+acceleration = [0.0, -9.81]
+[[probe]]
+name = "3 mm"
+at = [1.0, 0.005]
+[dynamics]
+time_step = 0.001
+damping = { mass = 2.0, stiffness = 0.001 }
+[start]
+velocity = [0.001, 2.0]
+spin = 3.141592653589793
+"#;
+
+/// A scene with units equals the same scene without units, and is written without units.
+#[test]
+fn scene_files_take_units() {
+    let scene = Scene::from_toml(WITH_UNITS).unwrap();
+    assert_eq!(scene, Scene::from_toml(PLAIN).unwrap());
+    assert_eq!(Scene::from_toml(&scene.to_toml().unwrap()).unwrap(), scene);
+    assert!(scene.to_toml().unwrap().contains("young = 210000000000.0"));
+    // Errors of numbers with units name the line of the file.
+    for (old, new, line) in [
+        ("poisson = \"30 %\"", "poisson = 0.9", 7),
+        ("spin = \"180 °/s\"", "spon = 1.0", 39),
+        ("\"-12 kN\"", "\"-12 kg\"", 20),
+        ("[0, \"-981 cm/s²\"]", "[0, \"-981 cm/s\"]", 26),
+        ("damping.mass = \"2 1/s\"", "damping.mass = \"2 s\"", 34),
+    ] {
+        assert!(WITH_UNITS.contains(old));
+        let error = Scene::from_toml(&WITH_UNITS.replacen(old, new, 1)).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("line {line}: ")), "{new}: {error}");
+    }
+}
+
+#[test]
+fn assignments_take_units_with_and_without_quotes() {
+    let plain = scene_with("article", &["material.young=2.1e11", "load.0.force=[0,-12000]"]);
+    for young in ["210 GPa", "\"210 GPa\"", "'210 GPa'", "2.1e11 Pa", "210000 N/mm²"] {
+        for force in ["[\"0 N\", \"-12 kN\"]", "[0 N, -12 kN]", "[0, -12 kN]", "[0, \"-12 kN\"]"] {
+            let set = [format!("material.young={young}"), format!("load.0.force={force}")];
+            assert_eq!(scene_with("article", &[&set[0], &set[1]]), plain, "{set:?}");
+        }
+    }
+    assert_eq!(scene_with("article", &["material.young=210 GPa", "load.0.force.0=0", "load.0.force.1=-12 kN"]), plain);
+    let material = scene_with("article", &["material={ young = \"1 GPa\", poisson = 0.3 }"]).material;
+    assert_eq!((material.young, material.poisson), (1e9, 0.3));
+    // Text fields are not parsed as numbers.
+    assert_eq!(scene_with("article", &["name=12 kN"]).name, "12 kN");
+}
+
+/// A scene of plain numbers is unchanged by the parser of units.
+#[test]
+fn plain_numbers_are_si() {
+    // Some built-in scenes have units and are left out.
+    let plain = registry::BUILT_IN.iter().filter_map(|b| Some((b, toml::from_str::<Scene>(b.toml).ok()?)));
+    assert!(plain.clone().count() > 12);
+    for (built_in, direct) in plain {
+        let mut opened = scene(built_in.id);
+        if let Some(mesh) = &mut opened.mesh {
+            (mesh.text, mesh.element) = (None, direct.mesh.as_ref().unwrap().element);
+        }
+        assert_eq!(opened, direct, "{}", built_in.id);
+    }
+}
+
+/// Groups of three digits may be separated by commas or spaces. A possible decimal comma is
+/// refused, with the correct notation.
+#[test]
+fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
+    for (text, value) in [
+        ("30,000", 3e4),
+        ("30 000", 3e4),
+        ("30\u{a0}000 N", 3e4),
+        ("-1,234,567.5 N", -1_234_567.5),
+        ("\u{2212}2.5", -2.5),
+        ("1 200 kN", 1.2e6),
+        ("12kN", 12e3),
+        ("1.2e4", 1.2e4),
+        ("30 N", 30.0),
+    ] {
+        assert_eq!(parse(text, "N"), Ok(value), "{text}");
+    }
+    for text in
+        ["0,5", "-0,5", "1,5 kN", "30,00", "30 00", "1,234 567", "30.000,5", "0,500", "1,,000", ",5", "1234,567"]
+    {
+        let refused = parse(text, "N").unwrap_err().to_string();
+        assert!(refused.contains("two ways") && refused.contains("decimal point"), "{text}: {refused}");
+    }
+}

@@ -1,0 +1,10 @@
+//! Tests that read the source text: layers, the public face, the language of the comments. `cargo test --test style
+//! TOPIC` runs one file.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod architecture;
+mod comments;
+#[path = "../common/files.rs"]
+mod files;
+mod public_api;
+mod topics;

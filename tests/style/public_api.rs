@@ -1,0 +1,120 @@
+//! The library's public face: `tests/data/public_api.txt` lists the types at the root of the crate with their fields,
+//! variants and methods, so that a change of the face is visible. `UPDATE_PUBLIC_API=1` rewrites the list.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::files::rust_files;
+
+const LIST: &str = "tests/data/public_api.txt";
+/// Largest number of public types.
+const MOST_TYPES: usize = 60;
+
+/// Public type: its documentation, its fields or variants, and its methods.
+#[derive(Default)]
+struct Face {
+    doc: String,
+    items: BTreeSet<String>,
+}
+
+/// Returns the names that `src/lib.rs` re-exports at the root.
+fn exported() -> BTreeSet<String> {
+    let text = std::fs::read_to_string("src/lib.rs").unwrap();
+    let uses = text.split("\npub use ").skip(1).map(|rest| rest.split(';').next().unwrap());
+    let names = uses.flat_map(|list| list.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    names.filter(|name| name.starts_with(char::is_uppercase)).map(str::to_owned).collect()
+}
+
+/// Returns the type of an inherent implementation; `None` for implementations of traits.
+fn implemented(line: &str) -> Option<&str> {
+    let rest = line.strip_prefix("impl")?;
+    let rest = if rest.starts_with('<') { rest.split_once("> ")?.1 } else { rest.trim_start() };
+    if rest.contains(" for ") {
+        return None;
+    }
+    rest.split(|c: char| !c.is_alphanumeric()).next()
+}
+
+/// Reads the types named `names` from the library's sources.
+fn faces(names: &BTreeSet<String>) -> BTreeMap<String, Face> {
+    let mut faces: BTreeMap<String, Face> = names.iter().map(|name| (name.clone(), Face::default())).collect();
+    let outside = ["src/app", "src/cli", "src/plot", "src/render", "src/bin", "src/study/extremes"];
+    for file in rust_files("src".as_ref()) {
+        if outside.iter().any(|folder| file.starts_with(folder)) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, line) in lines.iter().enumerate() {
+            let is_type = line.starts_with("pub struct ") || line.starts_with("pub enum ");
+            let name = if is_type { line.split(|c: char| !c.is_alphanumeric()).nth(2) } else { implemented(line) };
+            let Some(face) = name.and_then(|name| faces.get_mut(name)) else { continue };
+            if is_type {
+                let above =
+                    lines[..number].iter().rev().take_while(|line| line.starts_with("///") || line.starts_with('#'));
+                face.doc = above.map(|line| format!("{line}\n")).collect();
+            }
+            if line.ends_with('{') {
+                let block: Vec<&str> = lines[number + 1..].iter().copied().take_while(|line| *line != "}").collect();
+                face.items.extend(items(&block, line.starts_with("pub enum ")));
+            }
+        }
+    }
+    faces
+}
+
+/// Returns the public fields and methods, or the variants, in the lines of a block; items with `doc(hidden)` are left out.
+fn items(block: &[&str], is_enum: bool) -> Vec<String> {
+    let (mut items, mut hidden) = (Vec::new(), false);
+    let mut lines = block.iter().filter_map(|line| line.strip_prefix("    "));
+    while let Some(line) = lines.next() {
+        if line.starts_with("pub ") || is_enum && line.starts_with(char::is_uppercase) {
+            let mut item = line.to_owned();
+            // A signature ends where all of its parentheses are closed.
+            while item.matches('(').count() > item.matches(')').count() {
+                let Some(next) = lines.next() else { break };
+                item = format!("{item}{}{}", if item.ends_with('(') { "" } else { " " }, next.trim());
+            }
+            if !hidden {
+                items.push(item.trim_end_matches([' ', '{', ';', ',', '=']).replace(", )", ")"));
+            }
+        }
+        hidden = line == "#[doc(hidden)]" || hidden && (line.starts_with("#[") || line.starts_with("///"));
+    }
+    items
+}
+
+#[test]
+fn the_public_face_is_the_listed_one() {
+    let names = exported();
+    assert!(names.len() <= MOST_TYPES, "{} public types: expected at most {MOST_TYPES}", names.len());
+    let mut list = String::new();
+    for (name, face) in faces(&names) {
+        list += &format!("{name}\n");
+        face.items.iter().for_each(|item| list += &format!("    {item}\n"));
+    }
+    if std::env::var_os("UPDATE_PUBLIC_API").is_some() {
+        std::fs::write(LIST, &list).unwrap();
+    }
+    let kept = std::fs::read_to_string(LIST).unwrap();
+    let (now, before): (BTreeSet<&str>, BTreeSet<&str>) = (list.lines().collect(), kept.lines().collect());
+    let changed: Vec<_> = now.symmetric_difference(&before).collect();
+    assert!(list == kept, "the public face has changed (UPDATE_PUBLIC_API=1 accepts it): {changed:#?}");
+}
+
+#[test]
+fn every_public_type_has_an_example_or_names_one() {
+    let without: Vec<_> = faces(&exported())
+        .into_iter()
+        .filter(|(_, face)| !face.doc.contains("```") && !face.doc.to_lowercase().contains("see [`"))
+        .map(|(name, face)| format!("{name}: {}", face.doc.lines().next().unwrap_or_default()))
+        .collect();
+    assert!(without.is_empty(), "no example and no link to one: {without:#?}");
+}
+
+#[test]
+fn modules_outside_the_face_are_hidden() {
+    let text = std::fs::read_to_string("src/lib.rs").unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let shown = lines.windows(2).filter(|pair| pair[1].starts_with("pub mod ") && pair[0] != "#[doc(hidden)]");
+    assert_eq!(shown.map(|pair| pair[1]).collect::<Vec<_>>(), ["pub mod export;"]);
+}

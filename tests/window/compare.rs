@@ -1,0 +1,410 @@
+//! Tests of the mode Compare, operated by pointer, keys and labels.
+
+use std::time::{Duration, Instant};
+
+use crate::common::lab::pick;
+use crate::common::pictures::{distance, pixel};
+use crate::common::{scene, scene_with};
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use warpbeam::app::{Lab, Pane, PaneSetting, parse_panes, picture};
+use warpbeam::format::{count, percent};
+use warpbeam::render::Gpu;
+use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
+use warpbeam::simulation::{Simulation, Status};
+use warpbeam::study::Reference;
+
+fn lab_of(id: &str, scene: Scene) -> Lab {
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
+}
+
+fn harness_of(id: &str, scene: Scene) -> Harness<'static, Lab> {
+    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab_of(id, scene),
+    )
+}
+
+/// Draws frames until a condition holds.
+fn wait(harness: &mut Harness<'_, Lab>, what: &str, holds: impl Fn(&Lab) -> bool) {
+    let start = Instant::now();
+    while !holds(harness.state()) {
+        assert!(start.elapsed() < Duration::from_secs(120), "waiting for {what}");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    harness.step();
+    harness.step();
+}
+
+fn have_ended(lab: &Lab) -> bool {
+    !lab.panes().is_empty() && lab.panes().iter().all(|pane| pane.end().is_some())
+}
+
+fn are_judged(lab: &Lab) -> bool {
+    let judged = |pane: &Pane| pane.error_percent().is_some() || pane.end().is_some_and(|e| !e.status.is_success());
+    have_ended(lab) && lab.panes().iter().all(judged)
+}
+
+/// Returns every label and value in the window.
+fn labels(harness: &Harness<'_, Lab>) -> Vec<String> {
+    let nodes = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
+    nodes.flat_map(|node| [node.label(), node.value()]).flatten().collect()
+}
+
+fn compared(id: &str, panes: &str) -> Harness<'static, Lab> {
+    let mut harness = harness_of(id, scene(id));
+    harness.state_mut().show_comparison(&parse_panes(panes).unwrap());
+    wait(&mut harness, "the panes", are_judged);
+    harness
+}
+
+fn load(scene: &Scene) -> f64 {
+    scene
+        .loads
+        .iter()
+        .find_map(|l| if let Load::Force { force, .. } = l { Some(force[0].hypot(force[1])) } else { None })
+        .unwrap()
+}
+
+/// Checks that error and iterations of every pane equal those of a separate simulation, and are shown in its header.
+fn panes_agree_with_solves(harness: &Harness<'_, Lab>) {
+    let lab = harness.state();
+    let reference = Reference::of(lab.scene()).unwrap();
+    for (number, pane) in lab.panes().iter().enumerate() {
+        let scene = pane.setting().apply(lab.scene());
+        let mut alone = Simulation::new(&scene).unwrap();
+        alone.solve();
+        let end = pane.end().unwrap();
+        assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
+        assert!(end.seconds > 0.0);
+        if !alone.status().is_success() {
+            continue;
+        }
+        let error = reference.first().unwrap().error_percent(&alone.solution().probes[0]).unwrap();
+        assert!((pane.error_percent().unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting());
+        let said = labels(harness).into_iter().find(|l| l.starts_with(&format!("Pane {}: ", number + 1))).unwrap();
+        assert!(said.contains(&format!("error {}", percent(error))), "{said}");
+        assert!(said.contains(&count(alone.iterations(), "iteration")), "{said}");
+        assert!(said.contains(&pane.setting().of(lab.scene()).to_string()), "{said}");
+    }
+}
+
+#[test]
+fn presets_make_panes_with_the_results_of_independent_solves() {
+    let mut harness = harness_of("article", scene("article"));
+    harness.run();
+    harness.key_press(Key::K);
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    let methods = |lab: &Lab| lab.panes().iter().map(|pane| pane.setting().method).collect::<Vec<_>>();
+    let expected = [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton].map(Some);
+    assert_eq!(methods(harness.state()), expected);
+    panes_agree_with_solves(&harness);
+    // The scene's own 30 kN is too large for the fixed-point iteration of more accurate elements.
+    harness.get_by_label("t3 | t6 | q4").click();
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    let elements: Vec<_> = harness.state().panes().iter().map(|pane| pane.setting().element).collect();
+    assert_eq!(elements, [ElementKind::T3, ElementKind::T6, ElementKind::Q4].map(Some));
+    panes_agree_with_solves(&harness);
+    // Panes follow the panel in all settings except their own.
+    let newton = scene_with("article", &["solver.method=\"newton\""]);
+    harness.state_mut().set_scene(newton).unwrap();
+    harness.step();
+    wait(&mut harness, "the panes", are_judged);
+    assert!(harness.state().panes().iter().all(|p| p.scene().unwrap().solver.method == MethodKind::Newton));
+    panes_agree_with_solves(&harness);
+    // A pane can be closed if more than two are left.
+    harness.get_by_label("Close pane 2").click();
+    harness.step();
+    harness.step();
+    assert_eq!(harness.state().panes().len(), 2);
+    assert!(harness.query_by_label("Close pane 1").is_none());
+}
+
+/// Large meshes are solved in the background, and a pane with an iteration limit stops at it.
+#[test]
+fn large_panes_and_stopped_ones_agree_with_solves_too() {
+    let mut harness = compared("cantilever", "newton:t3:100x21,warped:4,warped");
+    let lab = harness.state();
+    panes_agree_with_solves_of(lab, 0);
+    panes_agree_with_solves_of(lab, 2);
+    let stopped = lab.panes()[1].end().unwrap();
+    assert_eq!((&stopped.status, stopped.iterations), (&Status::Running, 4));
+    // If the load changes during a solve, the result is that of the last load.
+    for force in [-2000.0, -1500.0] {
+        let changed = scene_with("cantilever", &[&format!("load.0.force=[0,{force}]")]);
+        harness.state_mut().set_scene(changed).unwrap();
+        harness.step();
+        harness.step();
+    }
+    wait(&mut harness, "the panes", are_judged);
+    assert!(harness.state().panes().iter().all(|pane| load(pane.scene().unwrap()) == 1500.0));
+    panes_agree_with_solves_of(harness.state(), 0);
+}
+
+fn panes_agree_with_solves_of(lab: &Lab, number: usize) {
+    let pane = &lab.panes()[number];
+    let mut alone = Simulation::new(&pane.setting().apply(lab.scene())).unwrap();
+    alone.solve();
+    let end = pane.end().unwrap();
+    assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
+    assert!((end.probes[0].u - alone.solution().probes[0].u).norm() < 1e-12);
+}
+
+#[test]
+fn panes_that_do_not_converge_are_named() {
+    let harness = compared("article", "warped:t3,warped:t6,newton:t6");
+    let labels = labels(&harness);
+    let failed = labels.iter().find(|label| label.starts_with("Pane 2: warped t6 5×1: ")).unwrap();
+    assert!(failed.contains("Does not converge: "), "{failed}");
+    assert!(labels.contains(&"warped t6 5×1: does not converge".to_owned()), "{labels:?}");
+    assert!(!labels.iter().any(|label| label.starts_with("newton") && label.contains("does not converge")));
+    let traced = harness.state().traced();
+    assert!(traced.iter().all(|(setting, _)| setting.to_string() != "warped t6 5×1"), "{traced:?}");
+    assert_eq!(traced.len(), 2, "{traced:?}");
+}
+
+/// While everything iterates under a dragged load, earlier dots and the curve stay. An edit costs one iteration.
+#[test]
+fn the_trace_keeps_its_dots_while_panes_iterate() {
+    let mut harness = compared("article", "linear,warped,newton");
+    let before = harness.state().traced();
+    assert_eq!(before.len(), 3, "{before:?}");
+    // From this point on, the pointer moves.
+    harness.hover_at(egui::pos2(1100.0, 600.0));
+    harness.run();
+    for (i, newtons) in [26e3, 24e3, 22e3].into_iter().enumerate() {
+        harness.hover_at(egui::pos2(1100.0, 605.0 + 5.0 * i as f32));
+        let dragged = scene_with("article", &[&format!("load.0.force=[0,-{newtons}]")]);
+        harness.state_mut().set_scene(dragged).unwrap();
+        harness.step();
+        let iterations: Vec<_> = harness.state().panes().iter().map(|p| p.simulation().unwrap().iterations()).collect();
+        assert!(iterations.iter().all(|&n| n <= 1), "{iterations:?} iterations in a frame");
+        assert!(harness.state().panes().iter().any(|pane| pane.end().is_none()), "nothing iterates");
+        let traced = harness.state().traced();
+        assert!(before.iter().all(|dot| traced.contains(dot)), "dots went: {traced:?}");
+        assert!(harness.query_by_role_and_label(Role::Image, "Load curve").is_some(), "the curve is gone");
+    }
+    wait(&mut harness, "the panes", are_judged);
+    let traced = harness.state().traced();
+    // Linear theory also has results for the loads in between.
+    assert!(traced.len() >= 6 && before.iter().all(|dot| traced.contains(dot)), "{traced:?}");
+    let last: Vec<_> = traced.iter().filter(|(_, dot)| dot[0] == 22e3).collect();
+    assert_eq!(last.len(), 3, "{traced:?}");
+    for (setting, [_, x, y]) in last {
+        let mut alone = Simulation::new(&setting.apply(harness.state().scene())).unwrap();
+        alone.solve();
+        let u = alone.solution().probes[0].u;
+        assert!((nalgebra::Vector2::new(*x, *y) - u).norm() < 1e-6 * u.norm());
+    }
+    // Another load direction has another curve.
+    harness.state_mut().set_scene(scene_with("article", &["load.0.force=[100,-2e4]"])).unwrap();
+    harness.step();
+    assert!(harness.state().traced().iter().all(|(_, dot)| dot[0] != 22e3));
+}
+
+/// While a dragged load makes a pane diverge, its huge stresses do not set the common range of colours.
+#[test]
+fn a_diverging_pane_does_not_set_the_range_of_colours() {
+    let mut harness = compared("cantilever", "linear,warped,newton");
+    let mut has_diverged = false;
+    // The pointer is pressed, as while a load is dragged.
+    harness.hover_at(egui::pos2(1100.0, 600.0));
+    harness.drag_at(egui::pos2(1100.0, 600.0));
+    for i in 0..60_u8 {
+        harness.hover_at(egui::pos2(1100.0, 600.0 + f32::from(i)));
+        let dragged = scene_with("cantilever", &[&format!("load.0.force=[0,-{}]", 1e3 + 1e2 * f64::from(i))]);
+        harness.state_mut().set_scene(dragged).unwrap();
+        harness.step();
+        let panes = harness.state().panes();
+        let [linear, warped] = [0, 1].map(|number| panes[number].simulation().unwrap());
+        let largest = |simulation: &Simulation| simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        has_diverged |= largest(warped) > 2.0 * largest(linear);
+        let high = panes[1].color_range()[1];
+        assert!(high < 1e6, "{high} Pa under {} N", load(harness.state().scene()));
+    }
+    assert!(has_diverged);
+}
+
+#[test]
+fn a_press_in_the_load_curve_sets_the_load() {
+    let mut harness = compared("article", "linear,newton");
+    harness.get_by_label("u_y").click();
+    harness.run();
+    let area = harness.get_by_role_and_label(Role::Image, "Load curve").rect();
+    let press = |harness: &mut Harness<'_, Lab>, share: f32| {
+        let at = egui::pos2(area.left() + share * area.width(), area.center().y);
+        harness.hover_at(at);
+        harness.step();
+        harness.drag_at(at);
+        harness.step();
+        harness.drop_at(at);
+        harness.step();
+        wait(harness, "the panes", are_judged);
+    };
+    press(&mut harness, 0.4);
+    let set = load(harness.state().scene());
+    assert!((set - 0.4 * 1.25 * 30e3).abs() < 400.0, "{set} N");
+    // A press near a dot sets the exact load of the dot.
+    press(&mut harness, 0.8 + 2.0 / area.width());
+    assert_eq!(load(harness.state().scene()), 30e3);
+    let traced = harness.state().traced();
+    assert_eq!(traced.len(), 4, "{traced:?}");
+}
+
+/// All panes share one camera: a pan in one moves the body in all of them, to where it is drawn.
+#[test]
+fn panning_one_pane_pans_all() {
+    let mut harness = compared("article", "linear,warped,newton,newton:t6");
+    let before = harness.state().camera();
+    let place = harness.state().panes()[1].place().unwrap();
+    let from = place.left_bottom() + egui::vec2(20.0, -20.0);
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    harness.step();
+    harness.hover_at(from + egui::vec2(15.0, -9.0));
+    harness.step();
+    harness.drop_at(from + egui::vec2(15.0, -9.0));
+    harness.run();
+    let after = harness.state().camera();
+    let moved = (after.center - before.center) * before.scale;
+    assert!((moved.x + 15.0).abs() < 0.1 && (moved.y + 9.0).abs() < 0.1, "{before:?} {after:?}");
+    assert_eq!(after.scale, before.scale);
+
+    let Ok(gpu) = Gpu::headless() else { return };
+    let drawn = picture(&gpu, harness.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    let lab = harness.state();
+    let background = lab.frame().background;
+    for pane in lab.panes() {
+        let place = pane.place().unwrap();
+        let simulation = pane.simulation().unwrap();
+        let mesh = simulation.system().mesh();
+        let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize];
+        let mut seen = 0;
+        for nodes in mesh.elements() {
+            let middle = (at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0;
+            let [x, y] = lab.camera().to_view(middle);
+            let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
+            seen += u32::from(distance(pixel, background) > 8);
+        }
+        assert_eq!(seen as usize, mesh.element_count(), "{}: the body is elsewhere", pane.setting());
+    }
+    harness.key_press(Key::F);
+    harness.run();
+    assert_eq!(harness.state().camera(), before);
+}
+
+/// Every control exists, has a name, and is inside the window, down to 640×480.
+#[test]
+fn compare_fits_small_windows() {
+    let mut harness = compared("article", "linear,warped,newton,newton:t6");
+    for size in [[1280.0, 800.0], [800.0, 600.0], [640.0, 480.0]] {
+        harness.set_size(size.into());
+        harness.run();
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        for number in 1..=4 {
+            for what in ["method", "element", "mesh"] {
+                let name = format!("Pane {number} {what}");
+                let rect = harness.get_by_role_and_label(Role::ComboBox, &name).rect();
+                assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?}");
+            }
+            let rect = harness.get_by_label(&format!("Close pane {number}")).rect();
+            assert!(window.contains_rect(rect), "{size:?}: {rect:?}");
+            let place = harness.state().panes()[number - 1].place().unwrap();
+            assert!(
+                window.contains_rect(place) && place.width() > 200.0 && place.height() > 60.0,
+                "{size:?}: {place:?}"
+            );
+        }
+        let names = ["Explore", "Compare", "Budget", "linear | warped | newton", "t3 | t6 | q4", "+ Pane", "Panel"];
+        let rects: Vec<_> = names.iter().map(|name| harness.get_by_label(name).rect()).collect();
+        for (i, rect) in rects.iter().enumerate() {
+            assert!(window.contains_rect(*rect), "{size:?}: {} at {rect:?}", names[i]);
+            assert!(rects[..i].iter().all(|other| !other.intersects(*rect)), "{size:?}: {} is covered", names[i]);
+        }
+    }
+}
+
+/// The picker of a pane changes that pane only.
+#[test]
+fn pickers_change_their_pane_alone() {
+    let mut harness = compared("article", "linear,newton");
+    pick(&mut harness, "Pane 2 mesh", "20×4");
+    wait(&mut harness, "the panes", are_judged);
+    let settings: Vec<PaneSetting> = harness.state().panes().iter().map(|pane| *pane.setting()).collect();
+    assert_eq!(settings, parse_panes("linear,newton:20x4").unwrap());
+    assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, [5, 1]);
+    panes_agree_with_solves(&harness);
+}
+
+/// Returns the positions of painted texts with this beginning, and the texts.
+fn painted(harness: &Harness<'_, Lab>, begin: &str) -> Vec<(egui::Pos2, String)> {
+    fn texts(shape: &egui::Shape, found: &mut Vec<(egui::Pos2, String)>) {
+        match shape {
+            egui::Shape::Text(text) => found.push((text.pos, text.galley.text().to_owned())),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut found));
+    found.retain(|(_, text)| text.starts_with(begin));
+    found
+}
+
+/// Every pane shows the value at the point of the body under the pointer, for any mesh.
+#[test]
+fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
+    let mut harness = compared("article", "linear,warped,newton:t6");
+    let panes = |lab: &Lab| -> Vec<egui::Rect> { lab.panes().iter().map(|pane| pane.place().unwrap()).collect() };
+    let places = panes(harness.state());
+    // Near the clamp, the bodies of all panes overlap.
+    let lab = harness.state();
+    let pane = lab.panes()[1].simulation().unwrap();
+    let rest = nalgebra::Vector2::new(1.0, 0.1);
+    let mesh = pane.system().mesh();
+    let weights = mesh.weights(mesh.locate(rest).unwrap()).unwrap();
+    let u: nalgebra::Vector2<f64> = weights.iter().map(|&(n, w)| pane.displacement()[n as usize] * w).sum();
+    let [x, y] = lab.camera().to_view(rest + u);
+    harness.hover_at(places[1].center() + egui::vec2(x as f32, y as f32));
+    harness.step();
+    harness.step();
+    let said = painted(&harness, "von Mises (Cauchy): ");
+    assert_eq!(said.len(), 3, "{said:?}");
+    for (place, (at, text)) in places.iter().zip(&said) {
+        assert!(place.contains(*at), "{text} at {at:?}, not in {place:?}");
+    }
+    assert!(
+        said[1].1.contains(&format!("u = {}", {
+            let round = [u.x, u.y].map(warpbeam::format::three_digits);
+            warpbeam::format::engineering_pair(round, "m")
+        })),
+        "{said:?} {u}"
+    );
+    // Away from the body no value is shown.
+    harness.hover_at(places[1].left_bottom() + egui::vec2(8.0, -8.0));
+    harness.step();
+    harness.step();
+    assert!(painted(&harness, "von Mises (Cauchy): ").is_empty());
+}
+
+/// A motion is compared in panes of its own, while the panes of equilibria are inactive.
+#[test]
+fn motions_have_panes_of_their_own() {
+    let mut harness = harness_of("swing", scene("swing"));
+    harness.step();
+    harness.key_press(Key::K);
+    harness.step();
+    harness.step();
+    assert!(harness.state().panes().iter().all(|pane| pane.place().is_none()));
+    assert!(harness.state().motion_panes().iter().all(|pane| pane.place().is_some()));
+}

@@ -1,0 +1,610 @@
+//! Tests of the real window on a virtual display, driven by xdotool.
+//!
+//! If Xvfb, xdotool or openbox is missing, the test reports this and passes, unless `WARPBEAM_REQUIRE_XVFB` is set, as
+//! `scripts/test` does after installing them.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write as _};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use crate::common::drop::drop_file;
+use crate::common::{scene, solve_json, warpbeam};
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use warpbeam::app::{Lab, Recovery};
+use warpbeam::scene::{Load, Source};
+use warpbeam::simulation::Simulation;
+use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
+
+/// Longest time to wait for a condition: a busy machine takes half a minute to compile shaders for the first time.
+const PATIENCE: Duration = Duration::from_secs(240);
+/// Time after which a key or a click without an effect is repeated, because it may be lost.
+const AGAIN: Duration = Duration::from_secs(5);
+
+/// Runs one desktop at a time, so that windows do not compete for processors.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// A virtual display with a window manager. Both end when the value is dropped.
+struct Desktop {
+    _turn: MutexGuard<'static, ()>,
+    server: Child,
+    manager: Child,
+    name: String,
+    /// Folder for the programs' settings, so that those of the user are not touched.
+    config: tempfile::TempDir,
+}
+
+impl Drop for Desktop {
+    fn drop(&mut self) {
+        for child in [&mut self.manager, &mut self.server] {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+impl Desktop {
+    /// Starts the display and the window manager; returns `None` if a program is missing.
+    fn start() -> Option<Self> {
+        let turn = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let there = |program: &str| {
+            let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
+            found.status.success()
+        };
+        let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|p| !there(p)).collect();
+        if !missing.is_empty() {
+            assert!(std::env::var_os("WARPBEAM_REQUIRE_XVFB").is_none(), "missing: {missing:?}");
+            // Writes to the stream directly: the test harness shows captured output of failed tests only.
+            let _ =
+                writeln!(std::io::stderr(), "skipped: {missing:?} not installed; `scripts/setup test` installs them");
+            return None;
+        }
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1600x1100x24", "-nolisten", "tcp", "-noreset"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        let name = format!(":{}", number.trim());
+        let config = tempfile::tempdir().unwrap();
+        // openbox announces itself before it has read its files, and loses windows that are mapped in the meantime. It
+        // runs this command when it is ready.
+        let ready = config.path().join("ready");
+        let manager = Command::new("openbox")
+            .args(["--startup", &format!("touch '{}'", ready.display())])
+            .env("DISPLAY", &name)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let desktop = Self { _turn: turn, server, manager, name, config };
+        wait_for("the window manager", || ready.exists().then_some(()));
+        Some(desktop)
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.env("XDG_CONFIG_HOME", self.config.path());
+        command
+    }
+
+    fn xdotool(&self, args: &[&str]) -> String {
+        let output = self.command("xdotool").args(args).output().unwrap();
+        assert!(output.status.success(), "xdotool {args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    }
+}
+
+/// The program and its window.
+struct Window<'a> {
+    desktop: &'a Desktop,
+    process: Child,
+    id: String,
+    /// Output of the program. It is a file because a pipe that is not read would block the program.
+    output: tempfile::NamedTempFile,
+}
+
+impl<'a> Window<'a> {
+    fn open(desktop: &'a Desktop, args: &[&str]) -> Self {
+        Self::open_in(desktop, std::path::Path::new("."), args)
+    }
+
+    fn open_in(desktop: &'a Desktop, folder: &std::path::Path, args: &[&str]) -> Self {
+        let output = tempfile::NamedTempFile::new().unwrap();
+        let stream = || Stdio::from(output.as_file().try_clone().unwrap());
+        let process = desktop
+            .command(env!("CARGO_BIN_EXE_warpbeam"))
+            .args(args)
+            .current_dir(folder)
+            .stderr(stream())
+            .stdout(stream())
+            .spawn()
+            .unwrap();
+        let mut window = Self { desktop, process, id: String::new(), output };
+        let start = Instant::now();
+        while window.id.is_empty() {
+            let ended = window.process.try_wait().unwrap();
+            let said = window.said();
+            assert!(ended.is_none() && start.elapsed() < PATIENCE, "no window ({ended:?}); the program said: {said:?}");
+            let search = ["search", "--onlyvisible", "--pid", &window.process.id().to_string(), "--name", "warpbeam"];
+            let found = desktop.command("xdotool").args(search).output().unwrap();
+            window.id = String::from_utf8(found.stdout).unwrap().lines().last().unwrap_or_default().to_owned();
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        window.settle();
+        window
+    }
+
+    /// Returns the program's output up to now.
+    fn said(&self) -> String {
+        std::fs::read_to_string(self.output.path()).unwrap()
+    }
+
+    /// Returns `true` if every thread of the program sleeps; a thread that waits for a processor counts as running.
+    fn sleeps(&self) -> bool {
+        let tasks = std::fs::read_dir(format!("/proc/{}/task", self.process.id())).unwrap();
+        tasks.flatten().all(|task| {
+            // A thread may end in the meantime.
+            let stat = std::fs::read_to_string(task.path().join("stat")).unwrap_or_default();
+            stat.rsplit(')').next().is_none_or(|rest| !rest.trim_start().starts_with(['R', 'D']))
+        })
+    }
+
+    /// Returns the window's pixels, four bytes each; empty while the window is not on the screen.
+    fn image(&self) -> Vec<u8> {
+        let (connection, _) = x11rb::connect(Some(&self.desktop.name)).unwrap();
+        let id: u32 = self.id.parse().unwrap();
+        let geometry = connection.get_geometry(id).unwrap().reply().unwrap();
+        let image = connection.get_image(ImageFormat::Z_PIXMAP, id, 0, 0, geometry.width, geometry.height, !0);
+        image.unwrap().reply().map(|reply| reply.data).unwrap_or_default()
+    }
+
+    /// Waits until the program sleeps and its picture does not change, and returns the picture.
+    fn settle(&self) -> Vec<u8> {
+        const LOOKS: u32 = 6;
+        let mut last = Vec::new();
+        let mut same = 0;
+        wait_for("a picture that stands still", || {
+            let image = self.image();
+            let drawn = image.chunks(4).any(|p| p[..3] != image[..3]);
+            same = if drawn && image == last && self.sleeps() { same + 1 } else { 0 };
+            last = image;
+            (same >= LOOKS).then_some(())
+        });
+        last
+    }
+
+    /// Returns the window's size, and `true` if it is on the screen.
+    fn geometry(&self) -> ([u16; 2], bool) {
+        let (connection, _) = x11rb::connect(Some(&self.desktop.name)).unwrap();
+        let id: u32 = self.id.parse().unwrap();
+        let size = connection.get_geometry(id).unwrap().reply().unwrap();
+        let attributes = connection.get_window_attributes(id).unwrap().reply().unwrap();
+        ([size.width, size.height], attributes.map_state == MapState::VIEWABLE)
+    }
+
+    /// Waits until the window shows this picture.
+    fn wait_for_picture(&self, what: &str, picture: &[u8]) {
+        wait_for(what, || {
+            let image = self.image();
+            (image.len() == picture.len() && changed(&image, picture) < 2_000).then_some(())
+        });
+    }
+
+    /// Presses a key; returns `true` if there was a window to receive it.
+    fn key(&self, key: &str) -> bool {
+        let keys = ["windowactivate", "--sync", &self.id, "key", "--clearmodifiers", key];
+        self.desktop.command("xdotool").args(keys).output().unwrap().status.success()
+    }
+
+    fn point(&self, x: f32, y: f32) {
+        self.desktop.xdotool(&["mousemove", "--window", &self.id, &format!("{x:.0}"), &format!("{y:.0}")]);
+    }
+
+    /// Returns the processor time used since the start, in clock ticks.
+    fn ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap();
+        let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
+    /// Closes the window as a window manager does; returns the program's exit code and its output.
+    fn close(self) -> (Option<i32>, String) {
+        self.close_by(&["alt+F4"])
+    }
+
+    /// Closes the window by these keys.
+    fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
+        let mut asked: Option<Instant> = None;
+        let status = wait_for("the program to end", || {
+            // A key can be lost while another window gets the focus, so that it is pressed again.
+            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+                keys.iter().for_each(|key| _ = self.key(key));
+                asked = Some(Instant::now());
+            }
+            self.process.try_wait().unwrap()
+        });
+        (status.code(), self.said())
+    }
+
+    /// Closes the window, and checks that the program ends without an error.
+    fn close_well(self) {
+        Self::check_end(&self.close());
+    }
+
+    /// Closes the window, discards the edits, and checks that the program ends without an error.
+    fn discard_well(self) {
+        Self::check_end(&self.close_by(&["alt+F4", "d"]));
+    }
+
+    fn check_end((code, said): &(Option<i32>, String)) {
+        assert_eq!(*code, Some(0), "{said}");
+        assert!(!said.contains("panicked"), "{said}");
+    }
+}
+
+impl Drop for Window<'_> {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(value) = ready() {
+            return value;
+        }
+        assert!(start.elapsed() < PATIENCE, "waited in vain for {what}");
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+/// Returns the article's scene at rest, with the layout of the window but without a display.
+fn laid_out() -> Harness<'static, Lab> {
+    let scene = scene("article");
+    let simulation = Simulation::new(&scene).unwrap();
+    let mut lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+    lab.solve();
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.ui(ui);
+        },
+        lab,
+    );
+    harness.run_steps(3);
+    harness
+}
+
+/// Returns the rectangle of the panel's force slider.
+fn force_slider() -> egui::Rect {
+    laid_out().get_by_role_and_label(Role::Slider, "Force").rect()
+}
+
+/// Reads a PNG file in the order of X images, BGRx; returns `None` if the file is incomplete.
+fn read_bgrx(path: &std::path::Path) -> Option<Vec<u8>> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().ok()?;
+    let mut rgba = vec![0; reader.output_buffer_size()?];
+    reader.next_frame(&mut rgba).ok()?;
+    Some(rgba.chunks(4).flat_map(|p| [p[2], p[1], p[0], 0]).collect())
+}
+
+/// Returns the number of pixels that differ; the fourth byte of an X image is no colour.
+fn changed(a: &[u8], b: &[u8]) -> usize {
+    a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).take(3).any(|(a, b)| a.abs_diff(*b) > 24)).count()
+}
+
+#[test]
+fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "article"]);
+    let slider = force_slider();
+    let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
+    let before = window.settle();
+    // The slider's handle at 30 000 N; the beam springs back when it is dragged to a smaller force.
+    window.point(at(0.67).0, at(0.67).1);
+    desktop.xdotool(&["mousedown", "1"]);
+    for place in [0.6, 0.5, 0.4, 0.3] {
+        window.point(at(place).0, at(place).1);
+    }
+    // The picture changes before the button is released.
+    wait_for("the beam to spring back", || (changed(&before, &window.image()) > 20_000).then_some(()));
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(900.0, 700.0);
+    let after = window.settle();
+    // The beam and its ghost cover tens of thousands of 1 024 000 pixels.
+    let moved = changed(&before, &after);
+    assert!(moved > 20_000, "only {moved} pixels changed");
+    window.discard_well();
+}
+
+#[test]
+fn the_window_survives_being_minimized_and_resized() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "cantilever"]);
+    let before = window.settle();
+    desktop.xdotool(&["windowminimize", &window.id]);
+    wait_for("the window to go", || (!window.geometry().1).then_some(()));
+    desktop.xdotool(&["windowmap", &window.id]);
+    wait_for("the window to come back", || window.geometry().1.then_some(()));
+    window.wait_for_picture("the same picture after restoring", &before);
+    // No side can be smaller than the smallest usable size.
+    for (asked, size) in [
+        ([1, 1], [480, 360]),
+        ([500, 37], [500, 360]),
+        ([640, 480], [640, 480]),
+        ([1300, 850], [1300, 850]),
+        ([1280, 800], [1280, 800]),
+    ] {
+        let [width, height] = asked.map(|side: u16| side.to_string());
+        desktop.xdotool(&["windowsize", &window.id, &width, &height]);
+        wait_for("the window's new size", || (window.geometry().0 == size).then_some(()));
+    }
+    window.wait_for_picture("the same picture after resizing", &before);
+    for key in [
+        "F1", "Escape", "w", "o", "g", "x", "t", "2", "3", "4", "1", "p", "p", "b", "b", "space", "n", "r", "space",
+        "f", "c",
+    ] {
+        window.key(key);
+    }
+    window.settle();
+    window.close_well();
+}
+
+/// At rest nothing is redrawn: at least one of 15 intervals of two seconds uses almost no processor time.
+#[test]
+fn an_idle_window_uses_no_processor() {
+    let Some(desktop) = Desktop::start() else { return };
+    let window = Window::open(&desktop, &["run", "gravity"]);
+    window.point(1000.0, 850.0);
+    window.settle();
+    let least = (0..15).map(|_| {
+        let before = window.ticks();
+        std::thread::sleep(Duration::from_secs(2));
+        window.ticks() - before
+    });
+    // An interval has 200 ticks; a loop that polls or redraws uses most of them.
+    assert!(least.take_while(|&used| used > 4).count() < 15, "no two seconds in thirty were idle");
+    assert_eq!(window.close().0, Some(0));
+}
+
+/// A motion ends at rest, where nothing is redrawn. The body follows the pointer, comes to rest again after release,
+/// and a reset shows the same motion with the same end.
+#[test]
+fn a_body_in_motion_is_pulled_released_and_reset() {
+    let Some(desktop) = Desktop::start() else { return };
+    // The damping is strong enough that the body rests after some seconds.
+    let window = Window::open(&desktop, &["run", "jelly", "--set", "dynamics.damping.mass=15"]);
+    let before = window.settle();
+    // The body is in the middle of the view.
+    let (x, y) = (498.0, 330.0);
+    window.point(x, y);
+    desktop.xdotool(&["mousedown", "1"]);
+    wait_for("the pointer to hold the body and to pull it", || {
+        for reach in [40.0, 80.0, 120.0] {
+            window.point(x + reach, y - 0.5 * reach);
+        }
+        (changed(&before, &window.image()) > 20_000).then_some(())
+    });
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(1200.0, 735.0);
+    window.settle();
+    window.key("r");
+    // The range of colours grows with the displayed frames of the motion, so that the pictures differ slightly.
+    wait_for("the same end of the same motion", || {
+        let image = window.image();
+        (image.len() == before.len() && changed(&image, &before) < 100_000).then_some(())
+    });
+    window.close_well();
+}
+
+/// The key S saves the picture that the window shows.
+#[test]
+fn s_saves_a_screenshot() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &[]);
+    window.point(1000.0, 700.0);
+    let shown = window.settle();
+    let path = folder.path().join("warpbeam-001.png");
+    let mut asked: Option<Instant> = None;
+    let bgrx = wait_for("the whole screenshot", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("s");
+            asked = Some(Instant::now());
+        }
+        read_bgrx(&path)
+    });
+    assert_eq!(bgrx.len(), shown.len());
+    let different = changed(&bgrx, &shown);
+    assert!(different < 1_000, "{different} pixels differ from the window");
+    assert_eq!(window.close().0, Some(0));
+}
+
+/// A file dropped on the window is opened, and a click changes the language of the whole window. The picture is that of
+/// `shot`, and the language is kept for the next start.
+#[test]
+fn a_dropped_file_is_opened_and_shown_in_chinese() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dropped.toml");
+    std::fs::write(&path, scene("bracket").to_toml().unwrap()).unwrap();
+    let window = Window::open(&desktop, &["run", "article"]);
+    let switch = laid_out().get_by_label("Language").rect().center();
+    drop_file(&desktop.name, window.id.parse().unwrap(), &path, PATIENCE);
+    let title = || desktop.xdotool(&["getwindowname", &window.id]);
+    wait_for("the dropped scene", || title().starts_with("Bracket").then_some(()));
+    let english = window.settle();
+    window.point(switch.x, switch.y);
+    let settings = desktop.config.path().join("warpbeam").join("settings.toml");
+    desktop.xdotool(&["click", "1"]);
+    wait_for("another language", || (changed(&english, &window.image()) > 5_000).then_some(()));
+    // A position without a control that the pointer would highlight.
+    window.point(420.0, 735.0);
+    let chinese = window.settle();
+    let picture = folder.path().join("chinese.png");
+    let options = ["--size", "1280x800", "--language", "zh", "-o", picture.to_str().unwrap()];
+    let shot = warpbeam(&[&["shot", path.to_str().unwrap()][..], &options].concat());
+    assert_eq!(shot.status.code(), Some(0));
+    let different = changed(&read_bgrx(&picture).unwrap(), &chinese);
+    assert!(different < 5_000, "{different} pixels differ from what `shot` makes in Chinese");
+    window.close_well();
+    let kept = std::fs::read_to_string(&settings).unwrap();
+    assert!(kept.contains("language = \"zh\""), "{kept}");
+}
+
+/// When the tip of the arrow is dragged, the force follows the pointer. Ctrl+S saves it, `solve` converges to the
+/// displayed result, and Ctrl+Z restores the previous force.
+#[test]
+fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
+    let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
+    let harness = laid_out();
+    // A position without a control that the pointer would highlight.
+    let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
+    window.point(corner.0, corner.1);
+    let before = window.settle();
+    window.point(tip.x, tip.y);
+    desktop.xdotool(&["mousedown", "1"]);
+    // To the left and up: a smaller force in another direction.
+    let increment = egui::vec2(-60.0, -45.0);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        window.point(tip.x + part * increment.x, tip.y + part * increment.y);
+    }
+    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(corner.0, corner.1);
+    let after = window.settle();
+    let until = |what: &str, key: &str, done: &dyn Fn() -> bool| {
+        let mut asked: Option<Instant> = None;
+        wait_for(what, || {
+            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+                window.key(key);
+                asked = Some(Instant::now());
+            }
+            done().then_some(())
+        });
+    };
+    let force = || {
+        let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()
+    };
+    until("the saved scene", "ctrl+s", &|| force() != [0.0, -30_000.0]);
+    let [fx, fy] = force();
+    assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
+    let json = solve_json(&[path.to_str().unwrap()]);
+    assert_eq!(json["status"], "converged", "{json}");
+    // The saved scene gives the displayed picture; only times and numbers of iterations differ.
+    let picture = folder.path().join("saved.png");
+    let shot = warpbeam(&["shot", path.to_str().unwrap(), "-o", picture.to_str().unwrap(), "--size", "1280x800"]);
+    assert_eq!(shot.status.code(), Some(0));
+    let different = changed(&read_bgrx(&picture).unwrap(), &after);
+    assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
+    until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
+    window.discard_well();
+}
+
+/// Edits survive when the program is killed: the next window offers them, and Restore brings them back. An answered
+/// offer is not repeated.
+#[test]
+fn edits_survive_a_killed_window() {
+    let Some(desktop) = Desktop::start() else { return };
+    let mut window = Window::open(&desktop, &["run", "article"]);
+    let slider = force_slider();
+    let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
+    window.point(at(0.5).0, at(0.5).1);
+    desktop.xdotool(&["mousedown", "1"]);
+    window.point(at(0.3).0, at(0.3).1);
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(420.0, 735.0);
+    let copies = desktop.config.path().join("warpbeam").join("unsaved");
+    let edited = window.settle();
+    wait_for("a copy of the edits", || copies.join("0.toml").exists().then_some(()));
+    window.process.kill().unwrap();
+    window.process.wait().unwrap();
+    let restore = {
+        let (_place, left) = Recovery::open(&copies).unwrap();
+        let mut harness = laid_out();
+        harness.state_mut().offer(left.unwrap());
+        // Learn shows a scene of its own, to which the edits do not belong.
+        harness.state_mut().show_card(1);
+        harness.run_steps(3);
+        assert!(harness.query_by_role_and_label(Role::Button, "Restore").is_none());
+        harness.get_by_role_and_label(Role::Button, "Leave").click();
+        harness.run_steps(3);
+        harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
+    };
+    let next = Window::open(&desktop, &["run", "article"]);
+    assert!(changed(&next.settle(), &edited) > 10_000, "it starts with the scene as it was opened");
+    next.point(restore.x, restore.y);
+    desktop.xdotool(&["click", "1"]);
+    next.point(420.0, 735.0);
+    next.wait_for_picture("the restored edits", &edited);
+    wait_for("another copy", || copies.join("1.toml").exists().then_some(()));
+    assert!(!copies.join("0.toml").exists(), "it would be offered again");
+    next.discard_well();
+    assert!(!copies.join("1.toml").exists());
+}
+
+/// Returns the number of pictures of a GIF file and its duration, s; `None` while the file is incomplete.
+fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
+    let bytes = std::fs::read(path).ok().filter(|bytes| bytes.last() == Some(&0x3b))?;
+    let mut decoder = gif::Decoder::new(bytes.as_slice()).ok()?;
+    let (mut pictures, mut hundredths) = (0, 0.0);
+    while let Some(frame) = decoder.read_next_frame().ok()? {
+        pictures += 1;
+        hundredths += f64::from(frame.delay);
+    }
+    Some((pictures, hundredths / 100.0))
+}
+
+/// The key V records the window until it is pressed again or the window is closed.
+#[test]
+fn v_records_the_window_while_the_body_is_pulled() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &["run", "jelly"]);
+    let path = folder.path().join("warpbeam-001.gif");
+    let mut asked: Option<Instant> = None;
+    wait_for("the recording to begin", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        path.exists().then_some(())
+    });
+    for x in [500.0, 560.0, 620.0] {
+        window.point(x, 400.0);
+        std::thread::sleep(Duration::from_millis(400));
+    }
+    let mut asked: Option<Instant> = None;
+    let (pictures, seconds) = wait_for("the whole recording", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        movie(&path)
+    });
+    assert!(pictures >= 5 && seconds >= 1.0, "{pictures} pictures, {seconds} s");
+    let path = folder.path().join("warpbeam-002.gif");
+    let mut asked: Option<Instant> = None;
+    wait_for("another recording to begin", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key("v");
+            asked = Some(Instant::now());
+        }
+        path.exists().then_some(())
+    });
+    window.close_well();
+    let (pictures, _) = movie(&path).unwrap();
+    assert!(pictures >= 1);
+}

@@ -1,0 +1,294 @@
+//! Tests of load curves in the window: plotted quantities, their table, and exported files.
+
+use std::time::{Duration, Instant};
+
+use crate::common::alone::ran_alone;
+use crate::common::pictures::read_png;
+use crate::common::{scene, scene_with};
+use egui::accesskit::Role;
+use egui::{Key, Pos2, Rect};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use nalgebra::Vector2;
+use warpbeam::app::{Lab, parse_panes};
+use warpbeam::scene::{Load, MethodKind, Scene, Source};
+use warpbeam::simulation::Simulation;
+use warpbeam::study::figure::LoadAxis;
+use warpbeam::study::{LoadCurve, Reference};
+
+/// Force under which linear theory's tip moves as far as the exact one, but in another direction.
+const FORCE: &str = "load.0.force=[0,-553]";
+
+fn lab_of(scene: Scene) -> Lab {
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: "scene".into(), assignments: Vec::new() }, scene, simulation)
+}
+
+fn harness_of(lab: Lab) -> Harness<'static, Lab> {
+    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    )
+}
+
+/// Returns a solved scene with its load curve.
+fn with_curve(scene: Scene) -> Harness<'static, Lab> {
+    let mut lab = lab_of(scene);
+    lab.show_curve();
+    lab.solve();
+    harness_of(lab)
+}
+
+fn compared(scene: Scene, panes: &str) -> Harness<'static, Lab> {
+    let mut lab = lab_of(scene);
+    lab.show_comparison(&parse_panes(panes).unwrap());
+    lab.solve();
+    let mut harness = harness_of(lab);
+    harness.run();
+    harness
+}
+
+/// Returns the label with this beginning.
+fn label(harness: &Harness<'_, Lab>, begin: &str) -> String {
+    let labels = harness.get_all_by_role(Role::Label).filter_map(|node| {
+        let node = node.accesskit_node();
+        node.label().or_else(|| node.value())
+    });
+    let all: Vec<String> = labels.collect();
+    all.iter().find(|l| l.starts_with(begin)).unwrap_or_else(|| unreachable!("{begin}: {all:?}")).clone()
+}
+
+#[test]
+fn a_wrong_displacement_of_the_right_length_has_an_error() {
+    let cantilever = scene_with("cantilever", &[FORCE]);
+    let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
+    let harness = compared(cantilever.clone(), "linear,newton");
+    let traced = harness.state().traced();
+    let (setting, [_, x, y]) = traced.iter().find(|(s, _)| s.method == Some(MethodKind::Linear)).unwrap();
+    let linear = Vector2::new(*x, *y);
+    assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
+    assert!((linear - exact).norm() > 0.12 * exact.norm());
+    // The table has both displacements, and the measure of the error.
+    assert_eq!(label(&harness, "reference: "), "reference: (-0.274, -2.13) m");
+    assert_eq!(label(&harness, &format!("{setting}: ")), format!("{setting}: (0, -2.14) m, 13 %"));
+    assert!(label(&harness, "force 553 N").ends_with("(u_x, u_y) of tip |Δu|/|u|"));
+
+    let mut harness = with_curve(cantilever);
+    harness.run();
+    assert_eq!(label(&harness, "linear theory: "), "linear theory: (0, -2.23) m");
+    assert!(label(&harness, "exact beam: ").starts_with("exact beam: (-0.27"));
+}
+
+/// Returns the painted titles of the axes.
+fn axis_names(harness: &Harness<'_, Lab>) -> Vec<String> {
+    let names = ["force", "u_x of tip", "u_y of tip"];
+    let mut found: Vec<String> = texts(harness).into_iter().map(|(text, _, _)| text).collect();
+    found.retain(|text| names.contains(&text.as_str()));
+    found
+}
+
+#[test]
+fn the_path_and_both_components_can_be_chosen() {
+    let mut harness = with_curve(scene_with("cantilever", &[FORCE]));
+    harness.run();
+    assert_eq!(axis_names(&harness), ["u_x of tip", "u_y of tip"]);
+    for (button, expected) in [("u_x", "u_x of tip"), ("u_y", "u_y of tip")] {
+        harness.get_by_label(button).click();
+        harness.run();
+        assert_eq!(axis_names(&harness), ["force", expected]);
+    }
+    // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
+    let mut harness = with_curve(scene("stretch"));
+    harness.run();
+    assert!(texts(&harness).iter().any(|(text, _, _)| text == "force"));
+}
+
+#[test]
+fn loads_are_plotted_in_their_unit() {
+    let mut scene = scene_with("cantilever", &[FORCE]);
+    let words = |scene: &Scene| {
+        let axis = LoadAxis::of(scene);
+        (axis.name.to_string(), axis.unit, axis.full)
+    };
+    assert_eq!(words(&scene), ("force".to_owned(), "N", 553.0));
+    scene.loads.push(Load::force("top", [0.0, 0.0]));
+    assert_eq!(words(&scene), ("force".to_owned(), "N", 553.0));
+    scene.loads.push(Load::force("top", [3.0, 4.0]));
+    assert_eq!(words(&scene), ("first force, the others in proportion".to_owned(), "N", 553.0));
+    scene.loads.push(Load::moment("right", 7.0));
+    assert_eq!(words(&scene), ("load factor".to_owned(), "", 1.0));
+    scene.loads = vec![Load::moment("right", -7.0)];
+    assert_eq!(words(&scene), ("moment".to_owned(), "N m", 7.0));
+}
+
+/// Returns every painted text with its rectangle and its clip rectangle.
+fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
+    fn of(shape: &egui::Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
+        match shape {
+            egui::Shape::Text(text) => found.push((text.galley.text().to_owned(), text.visual_bounding_rect(), clip)),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| of(shape, clip, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| of(&clipped.shape, clipped.clip_rect, &mut found));
+    found
+}
+
+/// On the first frame, titles of axes are already next to their numbers, and no text is clipped.
+#[test]
+fn the_first_frame_is_as_the_others() {
+    for (id, sets) in [("cantilever", &[FORCE][..]), ("article", &[]), ("snap", &[]), ("stretch", &[])] {
+        let mut lab = lab_of(scene_with(id, sets));
+        lab.solve();
+        let mut harness = harness_of(lab);
+        harness.run();
+        harness.key_press(Key::L);
+        let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "reaction in this direction"];
+        let start = Instant::now();
+        let texts = loop {
+            harness.step();
+            let texts = texts(&harness);
+            if texts.iter().any(|(text, _, _)| names[1..].contains(&text.as_str())) {
+                break texts;
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "{id}: no curve");
+            std::thread::sleep(Duration::from_millis(5));
+        };
+        let is_title = |text: &str| names.contains(&text) || text.starts_with("displacement of");
+        let titles: Vec<_> = texts.iter().filter(|(text, _, _)| is_title(text)).collect();
+        assert_eq!(titles.len(), 2, "{id}: {titles:?}");
+        let unit = |text: &str| [" m", " mm", " N", " kN"].iter().any(|unit| text.ends_with(unit));
+        let numbers = texts.iter().filter(|(text, _, _)| unit(text) && text.len() < 9);
+        for (text, place, _) in numbers {
+            for (title, title_place, _) in &titles {
+                assert!(!place.shrink(1.0).intersects(*title_place), "{id}: {text} {place:?} {title} {title_place:?}");
+            }
+        }
+        for (text, place, clip) in texts.iter().filter(|(text, _, _)| text.starts_with("linear")) {
+            assert!(clip.expand(1.0).contains_rect(*place), "{id}: {text} is cut");
+        }
+    }
+}
+
+/// Returns the rows of a CSV file; the parser is independent of the writer.
+fn csv(text: &str) -> Vec<Vec<String>> {
+    let (mut rows, mut row, mut field, mut quoted) = (Vec::new(), Vec::new(), String::new(), false);
+    for c in text.chars() {
+        match c {
+            '"' => quoted ^= true,
+            ',' if !quoted => row.push(std::mem::take(&mut field)),
+            '\n' if !quoted => {
+                row.push(std::mem::take(&mut field));
+                rows.push(std::mem::take(&mut row));
+            }
+            c => field.push(c),
+        }
+    }
+    assert!(field.is_empty() && row.is_empty() && !quoted, "{text}");
+    rows
+}
+
+/// Selects a file format in the export menu.
+fn export(harness: &mut Harness<'_, Lab>, kind: &str) {
+    harness.get_by_label("Export").click();
+    harness.run();
+    harness.get_by_label(kind).click();
+    harness.run();
+}
+
+/// Returns the rows of a series as numbers: load, u_x, u_y.
+fn points(rows: &[Vec<String>], series: &str) -> Vec<[f64; 3]> {
+    let own = rows.iter().filter(|row| row[0] == series);
+    own.map(|row| [1, 2, 3].map(|i| row[i].parse().unwrap())).collect()
+}
+
+/// The test changes the current folder, in a process of its own.
+#[test]
+fn curves_are_saved_as_files() {
+    if ran_alone("figures::curves_are_saved_as_files") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let cantilever = scene_with("cantilever", &[FORCE]);
+    let mut harness = with_curve(cantilever.clone());
+    harness.run();
+    std::env::set_current_dir(folder.path()).unwrap();
+    export(&mut harness, "CSV");
+    assert_eq!(label(&harness, "Saved"), "Saved warpbeam-001.csv");
+    let rows = csv(&std::fs::read_to_string("warpbeam-001.csv").unwrap());
+    assert_eq!(rows[0][..4], ["series", "force (N)", "u_x of tip (m)", "u_y of tip (m)"]);
+    let curve = LoadCurve::new(&cantilever).unwrap();
+    let own: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.exact.x, s.exact.y]).collect();
+    assert_eq!(points(&rows, "exact beam"), own);
+    let linear: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.linear.x, s.linear.y]).collect();
+    assert_eq!(points(&rows, "linear theory"), linear);
+    assert_eq!(points(&rows, "linear error 3, 5, 10 %").len(), 3);
+
+    export(&mut harness, "SVG");
+    let svg = std::fs::read_to_string("warpbeam-001.svg").unwrap();
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
+    for text in ["Cantilever: Load curve", "u_x of tip, m", "u_y of tip, m", "exact beam", "(0, -2.14) m"] {
+        assert!(texts.contains(&text), "{text}: {texts:?}");
+    }
+    assert!(!svg.contains("NaN"));
+    export(&mut harness, "PNG");
+    let picture = read_png(std::path::Path::new("warpbeam-001.png"));
+    assert!(picture.size[0] > 800 && picture.rgba.chunks(4).any(|p| p[0] < 100));
+
+    // The file of Compare has the errors of its table.
+    let mut harness = compared(cantilever, "linear,newton");
+    export(&mut harness, "CSV");
+    let rows = csv(&std::fs::read_to_string("warpbeam-002.csv").unwrap());
+    assert_eq!(rows[0][4..], ["error |Δu|/|u| (%)", "state"]);
+    for (setting, point) in harness.state().traced() {
+        assert_eq!(points(&rows, &setting.to_string()), [point]);
+        let pane = harness.state().panes().iter().find(|p| p.setting().method == setting.method).unwrap();
+        let row = rows.iter().find(|row| row[0] == setting.to_string()).unwrap();
+        assert!((row[4].parse::<f64>().unwrap() - pane.error_percent().unwrap()).abs() < 1e-9);
+    }
+
+    // In a deleted folder no file can be saved, which is reported.
+    folder.close().unwrap();
+    for kind in ["CSV", "SVG", "PNG"] {
+        export(&mut harness, kind);
+        assert!(label(&harness, "Not saved: ").contains("warpbeam-001"), "{kind}");
+    }
+}
+
+/// A press on the exact path sets the load at that tip position, even if the path is short.
+#[test]
+fn a_press_on_the_path_sets_its_load() {
+    let mut harness = compared(scene("cantilever"), "linear,newton");
+    let area = harness.get_by_role_and_label(Role::Image, "Load curve").rect();
+    // The numbers on both axes give the position of a displacement.
+    let numbers = |harness: &Harness<'_, Lab>, upright: bool| -> Vec<(f64, f32)> {
+        let all = texts(harness).into_iter().filter(|(text, place, _)| {
+            let center = place.center();
+            let beside = if upright { center.x < area.left() } else { center.y > area.bottom() };
+            text.ends_with(" m") && beside && place.bottom() > area.top() - 12.0
+        });
+        let place = |place: Rect| if upright { place.center().y } else { place.center().x };
+        all.map(|(text, rect, _)| (text.trim_end_matches(" m").parse().unwrap(), place(rect))).collect()
+    };
+    let at = |numbers: &[(f64, f32)], value: f64| {
+        let (a, b) = (numbers.first().unwrap(), numbers.last().unwrap());
+        a.1 + (b.1 - a.1) * ((value - a.0) / (b.0 - a.0)) as f32
+    };
+    let curve = LoadCurve::new(harness.state().scene()).unwrap();
+    let sample = &curve.samples[20];
+    let place = Pos2::new(at(&numbers(&harness, false), sample.exact.x), at(&numbers(&harness, true), sample.exact.y));
+    assert!(area.contains(place), "{area:?} {place:?}");
+    harness.hover_at(place);
+    harness.run();
+    harness.drag_at(place);
+    harness.drop_at(place);
+    harness.run();
+    let Load::Force { force, .. } = harness.state().scene().loads[0] else { unreachable!() };
+    let expected = 1000.0 * sample.factor;
+    assert!((force[1] + expected).abs() < 0.06 * expected, "{force:?}, not {expected}");
+}

@@ -1,0 +1,20 @@
+//! Tests of the window: most run its interface without a display, `desktop` runs the program on a virtual one. `cargo
+//! test --test window TOPIC` runs one file.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod background_solve;
+mod compare;
+#[cfg(target_os = "linux")]
+mod desktop;
+mod figures;
+mod golden;
+mod language;
+mod learn;
+mod motions;
+mod panel;
+mod pictures;
+mod soak;
+mod ui_interaction;

@@ -1,0 +1,84 @@
+//! Tests of pictures without a window. The golden pictures of all scenes are tested in `tests/registry`.
+
+use crate::common::pictures::{difference, distance, lab, pixel, read_png};
+use crate::common::{program, scene, stderr, warpbeam};
+use warpbeam::app::picture;
+use warpbeam::image::Picture;
+use warpbeam::render::Gpu;
+
+/// The golden comparison detects a beam that bends a little more.
+#[test]
+fn the_golden_comparison_sees_a_changed_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bent.png");
+    let args = ["shot", "cantilever", "-o", path.to_str().unwrap(), "--size", "640x400", "--no-panel"];
+    assert_eq!(warpbeam(&[&args[..], &["--set", "load.0.force=[0,-1100]"]].concat()).status.code(), Some(0));
+    assert!(difference(&read_png(&path), &read_png("tests/golden/cantilever-dark.png".as_ref())) > 2e-3);
+}
+
+/// The body fills most of the picture to the left of the panel; without panel and bars it fills the whole picture.
+#[test]
+fn the_panel_can_be_left_out() {
+    let gpu = Gpu::headless().unwrap();
+    let mut lab = lab("article");
+    lab.solve();
+    let with = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    let view = lab.view_rect();
+    assert_eq!(view.left(), 0.0);
+    assert!((view.right() + warpbeam::app::PANEL_WIDTH - 1280.0).abs() < 2.0, "{view:?}");
+    let share = view.area() / (1280.0 * 800.0);
+    assert!((0.7..0.75).contains(&share), "the body has {share} of the window");
+    lab.set_panel(false);
+    let without = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    assert_eq!(lab.view_rect(), egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0)));
+    assert!(difference(&with, &without) > 0.1);
+}
+
+/// With two pixels per point, the picture is the same at twice the size.
+#[test]
+fn high_density_shows_the_same_picture_sharper() {
+    let gpu = Gpu::headless().unwrap();
+    let mut lab = lab("shear");
+    lab.set_panel(false);
+    lab.solve();
+    let one = picture(&gpu, &mut lab, [400, 300], 1.0, egui::Theme::Light).unwrap();
+    let two = picture(&gpu, &mut lab, [800, 600], 2.0, egui::Theme::Light).unwrap();
+    let mean = |picture: &Picture, x: u32, y: u32, side: u32| {
+        let sum = (0..side * side)
+            .map(|i| pixel(picture, x * side + i % side, y * side + i / side))
+            .fold([0; 3], |s, p| [0, 1, 2].map(|c| s[c] + u32::from(p[c])));
+        sum.map(|c| (c / (side * side)) as u8)
+    };
+    let different =
+        (0..400 * 300).filter(|i| distance(mean(&one, i % 400, i / 400, 1), mean(&two, i % 400, i / 400, 2)) > 60);
+    let share = different.count() as f64 / f64::from(400 * 300);
+    assert!(share < 0.02, "{share}");
+}
+
+/// Loads of any size give a picture, in views of any size.
+#[test]
+fn pictures_of_extremes_and_of_tiny_views() {
+    let gpu = Gpu::headless().unwrap();
+    let mut lab = lab("cantilever");
+    for force in [0.0, 1e-9, 9e3, 1e9, 1e15] {
+        let mut scene = scene("cantilever");
+        scene.loads = vec![warpbeam::Load::force("right", [0.0, -force])];
+        lab.set_scene(scene).unwrap();
+        lab.solve();
+        for size in [[1, 1], [40, 300], [400, 40], [500, 400]] {
+            let picture = picture(&gpu, &mut lab, size, 1.0, egui::Theme::Dark).unwrap();
+            assert_eq!(picture.rgba.len(), (4 * size[0] * size[1]) as usize);
+        }
+    }
+}
+
+/// Without a desktop session, the graphics libraries print no messages.
+#[test]
+fn a_picture_without_a_desktop_prints_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut shot = program(folder.path(), &["shot", "article", "-o", "x.png", "--size", "320x200"]);
+    let output = shot.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT").output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(stderr(&output), "");
+    assert!(folder.path().join("x.png").exists());
+}
