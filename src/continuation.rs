@@ -389,21 +389,41 @@ impl<S: Clone> Continuation<S> {
         goal: f64,
     ) -> Option<ContinuationPoint<S>> {
         /// Largest number of trial steps.
-        const MAX_TRIALS: u32 = 8;
+        const MAX_TRIALS: u32 = 30;
         let way = |p: &ContinuationPoint<S>| (goal - p.factor) / p.slope;
         if (goal - from.factor) * (goal - to.factor) > 0.0 {
             return None;
         }
+        let modes = [from.modes.min(to.modes), from.modes.max(to.modes)];
         // From the nearer end: where λ is nearly constant, a step at fixed λ is long.
-        let mut near = if way(from).abs() <= way(to).abs() { from.clone() } else { to.clone() };
+        let is_forward = way(from).abs() <= way(to).abs();
+        let mut near = if is_forward { from.clone() } else { to.clone() };
+        // The last point before the goal; short steps from it meet the goal where the path turns sharply.
+        let mut last = near.clone();
+        let mut length = (0.5 * way(&near)).clamp(-MAX_STEP, MAX_STEP);
         for _ in 0..MAX_TRIALS {
-            let modes = [from.modes.min(to.modes), from.modes.max(to.modes)];
             if let Some(found) = self.correct_at(equations, &near, goal, modes) {
                 return Some(found);
             }
-            let length = 0.5 * way(&near);
-            let Some((point, ..)) = self.correct(equations, &near, length.clamp(-MAX_STEP, MAX_STEP)) else { break };
-            near = point;
+            if self.linearizations >= self.max_linearizations {
+                break;
+            }
+            match self
+                .correct(equations, &last, length)
+                .filter(|(point, ..)| (modes[0]..=modes[1]).contains(&point.modes))
+            {
+                Some((point, ..)) => {
+                    let is_before = (goal - point.factor) * (goal - last.factor) > 0.0;
+                    if is_before {
+                        length = (0.5 * way(&point)).clamp(-length.abs(), length.abs());
+                        last = point.clone();
+                    } else {
+                        length *= 0.5;
+                    }
+                    near = point;
+                }
+                None => length *= 0.5,
+            }
         }
         // Next to a bifurcation the corrections are rounding errors, and the prediction is more accurate.
         let mut state = from.state.clone();

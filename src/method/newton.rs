@@ -73,6 +73,8 @@ struct LoadSteps {
     reached: f64,
     /// Length of the current load step.
     step: f64,
+    /// Last stable equilibrium of the path.
+    path_end: ContinuationPoint<State>,
     /// Limit point of the path, and the critical points on it, if the path was followed beyond it.
     limit: Option<(ContinuationPoint<State>, PathEvents)>,
     /// Critical points of the path once the result is known.
@@ -160,11 +162,16 @@ impl Newton {
     /// Ends full steps without success: follows the path, tries a shorter load step, or stops.
     fn fail(&mut self, state: &mut State) -> Verdict {
         match &mut self.phase {
-            NewtonPhase::Finish(_) => return Verdict::Stop(Reason::NoEquilibrium(1.0)),
+            NewtonPhase::Finish(_) => return Verdict::Stop(Reason::Stuck(self.steps)),
             NewtonPhase::LoadSteps(steps) => {
                 state.copy_from(&steps.base);
                 steps.step = SHRINK * (self.load_factor - steps.reached);
                 if steps.step < MIN_LOAD_STEP {
+                    // A load step may end a little above a limit point, at its tolerance.
+                    if steps.limit.is_some() || steps.path_end.factor > steps.reached {
+                        state.copy_from(&steps.path_end.state);
+                        steps.reached = steps.path_end.factor;
+                    }
                     self.load_factor = steps.reached;
                     return Verdict::Stop(Reason::NoEquilibrium(steps.reached));
                 }
@@ -176,9 +183,14 @@ impl Newton {
     }
 
     /// Begins to apply the load in steps from rest.
-    fn begin_load_steps(&mut self, state: &mut State, limit: Option<(ContinuationPoint<State>, PathEvents)>) {
+    fn begin_load_steps(
+        &mut self,
+        state: &mut State,
+        path_end: ContinuationPoint<State>,
+        limit: Option<(ContinuationPoint<State>, PathEvents)>,
+    ) {
         state.reset();
-        let steps = LoadSteps { base: state.clone(), reached: 0.0, step: SHRINK, limit, events: None };
+        let steps = LoadSteps { base: state.clone(), reached: 0.0, step: SHRINK, path_end, limit, events: None };
         self.phase = NewtonPhase::LoadSteps(Box::new(steps));
         self.begin_load_step();
     }
@@ -274,7 +286,8 @@ impl Newton {
             // The path is too long, rounding errors keep the follower from any step, or the descent is too slow.
             PathProgress::Continue | PathProgress::Ended(_) => {
                 let limit = follower.limit().cloned().map(|limit| (limit, follower.take_events()));
-                self.begin_load_steps(state, limit);
+                let path_end = follower.last().clone();
+                self.begin_load_steps(state, path_end, limit);
             }
         }
     }

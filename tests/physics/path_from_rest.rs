@@ -309,6 +309,11 @@ fn a_result_beside_the_path_is_told() {
     assert!((reference - tip(&solved(&lighter))).norm() < 0.02 * reference.norm(), "{reference}");
 }
 
+/// Returns the first seed of a sweep: `WARPBEAM_SEED`, or `usual`.
+fn first_seed(usual: u64) -> u64 {
+    std::env::var("WARPBEAM_SEED").map_or(usual, |seed| seed.parse().unwrap())
+}
+
 /// Number of scenes of a sweep: a tenth of them in the plain suite.
 fn share(all: u64) -> u64 {
     if std::env::var_os("WARPBEAM_ALL_SCENES").is_some() { all } else { all / 10 }
@@ -345,8 +350,8 @@ fn in_small_steps(scene: &Scene, steps: u32) -> Option<Simulation> {
 #[test]
 fn random_scenes_end_on_their_path() {
     let (mut judged, mut wrong) = (0, Vec::new());
-    for seed in 0..share(300) {
-        let mut scene = random::scene(7000 + seed);
+    for seed in (first_seed(7000)..).take(share(300) as usize) {
+        let mut scene = random::scene(seed);
         (scene.solver.method, scene.solver.accept_after) = (MethodKind::Newton, 0);
         let Ok(mut simulation) = Simulation::new(&scene) else { continue };
         if *simulation.solve() != Status::Converged {
@@ -361,7 +366,8 @@ fn random_scenes_end_on_their_path() {
         let (total, size) =
             external.iter().fold((solution.reaction.force, 0.0), |(sum, size), f| (sum + f, size + f.norm()));
         let reactions: f64 = solution.supports.iter().map(|support| support.force.norm()).sum();
-        if total.norm() > 1e-5 * (size + reactions) {
+        let tolerance = if solution.residual_floor.is_some() { 1e-3 } else { 1e-5 };
+        if total.norm() > tolerance * (size + reactions) {
             wrong.push(format!("seed {seed}: {} N are not balanced of {size} N", total.norm()));
         }
         let Some(truth) = in_small_steps(&scene, 60) else { continue };
@@ -383,7 +389,9 @@ fn random_scenes_end_on_their_path() {
 #[test]
 fn random_columns_arches_and_strips_end_on_their_path() {
     let (mut judged, mut wrong) = (0, Vec::new());
-    for seed in 0..share(200) {
+    // In the last three, the path turns sharply just below the full load.
+    let hard = [20_097, 20_111, 30_084];
+    for seed in (first_seed(0)..).take(share(200) as usize).chain(hard) {
         let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
         let slenderness = 10f64.powf(random.between(1.0, 2.3));
         let imperfection = 10f64.powf(random.between(-6.0, -2.0)) * random.one_of(&[-1.0, 1.0]);
@@ -433,9 +441,14 @@ fn random_columns_arches_and_strips_end_on_their_path() {
         if simulation.certify().stable != Some(true) {
             wrong.push(format!("{words}: unstable"));
         }
-        let events = simulation.equilibrium().unwrap().path_events().unwrap();
+        let Some(events) = simulation.equilibrium().unwrap().path_events() else {
+            wrong.push(format!("{words}: not followed"));
+            continue;
+        };
         let energy = simulation.solution().energy;
-        if energy.external < 0.0 || kind != 1 && events.jump.is_none() && energy.elastic > energy.external {
+        // Poisson's ratio moves the loaded side outward, by less than this.
+        let outward = if kind == 1 { 2.0 * near * euler / 1e6 * euler * imperfection.abs() } else { 0.0 };
+        if energy.external < -outward || kind != 1 && events.jump.is_none() && energy.elastic > energy.external {
             wrong.push(format!("{words}: {energy:?}"));
         }
         let Some(truth) = in_small_steps(&scene, 400) else {
