@@ -415,7 +415,8 @@ impl<S: Clone> Continuation<S> {
                 Some((point, ..)) => {
                     let is_before = (goal - point.factor) * (goal - last.factor) > 0.0;
                     if is_before {
-                        length = (0.5 * way(&point)).clamp(-length.abs(), length.abs());
+                        let longest = (2.0 * length.abs()).min(MAX_STEP);
+                        length = (0.5 * way(&point)).clamp(-longest, longest);
                         last = point.clone();
                     } else {
                         length *= 0.5;
