@@ -11,6 +11,7 @@ mod article;
 mod auto;
 mod beam_theory;
 mod calculix;
+mod claims;
 mod dynamics;
 mod edits;
 mod elements;

@@ -1,13 +1,10 @@
 //! Tests the claims of results over random scenes, each by other means than the one that made it: equilibria by those of
 //! other methods, stability by the eigenvalues of a stiffness of finite differences, and ρ by the iteration of
 //! `warped`. Errors are tested in `reference.rs`.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
-
-mod common;
 
 use std::collections::BTreeMap;
 
-use common::random;
+use crate::common::random;
 use warpbeam::assembly::{Forces, Kinematics};
 use warpbeam::nalgebra::{DMatrix, Vector2};
 use warpbeam::study::LoadPath;
