@@ -7,6 +7,7 @@ use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, two_digits};
 use crate::method::{floor_text, rho_text};
 use crate::scene::{ElementKind, MethodKind, limits};
+use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
 use crate::study::Reference;
 
@@ -294,7 +295,12 @@ pub(crate) fn rho_number(rho: f64) -> String {
     engineering(two_digits(rho), "")
 }
 
-/// Returns the name of the reference solution, or a text for the case that it is not known yet.
-pub(crate) fn reference_text(reference: Option<&Reference>) -> String {
-    reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said)
+/// Explains the error: that of the first probe's displacement, compared with the reference solution; or why there is
+/// none.
+pub(crate) fn error_tip(reference: Option<&Reference>, failure: Option<&Sentence>) -> String {
+    if let Some(failure) = failure {
+        return sentence(&said(failure));
+    }
+    let reference = reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said);
+    fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference)
 }

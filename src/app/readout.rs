@@ -4,6 +4,7 @@ use crate::app::language::Language;
 use crate::app::session::playback::Playback;
 use crate::app::task::quality::Quality;
 use crate::scene::Scene;
+use crate::sentence::Sentence;
 use crate::simulation::Simulation;
 use crate::study::{PathSummary, Reference};
 use crate::timings::Timings;
@@ -34,6 +35,8 @@ pub(crate) struct Readout<'a> {
     pub can_redo: bool,
     /// Reference solution that errors are measured against; `None` until it has been computed.
     pub reference: Option<&'a Reference>,
+    /// Reason why it could not be computed.
+    pub reference_failure: Option<&'a Sentence>,
     /// Load path from rest, compared with the state; `None` until it has been computed.
     pub path: Option<PathSummary>,
     /// Spectral radius ρ of the warped iteration at the equilibrium; `None` if it has not been computed. It does not

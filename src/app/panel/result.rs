@@ -2,7 +2,7 @@
 
 use egui::{Grid, RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, reference_text, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, error_tip, rho, stability};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -67,12 +67,7 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
             fill!("%{error} of %{whole}", error = percent(error), whole = whole)
         },
     );
-    let reference = reference_text(input.reference);
-    row(
-        "Error",
-        text,
-        &fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference),
-    );
+    row("Error", text, &error_tip(input.reference, input.reference_failure));
     quality_rows(row, input);
     let Some(search) = simulation.equilibrium() else { return };
     let (factor, steps) = (search.load_factor(), search.load_steps());

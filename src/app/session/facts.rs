@@ -1,10 +1,10 @@
-//! Expensive results of a scene: computed in the background, and invalidated by edits here only.
+//! Expensive results of a scene, computed in the background.
 
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::lazy::{Lazy, Watch, facts};
+use crate::app::task::keyed::{Computed, Keyed, Watch, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
@@ -23,13 +23,13 @@ pub(crate) enum Curve {
 
 facts! {
     /// Reference solution that errors are measured against.
-    ReferenceFact = "reference": Reference, find_reference;
+    ReferenceFact by without_settings = "reference": Reference, find_reference;
     /// Load–displacement curve.
-    CurveFact = "curve": Curve, |scene, _| curve(scene);
+    CurveFact = "curve": Curve, |scene, _| Ok(curve(scene));
     /// End of the load path from rest, and the jumps on it.
-    PathFact = "path": PathFromRest, |scene, _| LoadPath::end_of_scene(scene);
+    PathFact = "path": PathFromRest, |scene, _| Ok(LoadPath::end_of_scene(scene));
     /// Lowest natural frequency, Hz.
-    FrequencyFact = "frequency": f64, |scene, _| natural_frequency(scene);
+    FrequencyFact = "frequency": f64, |scene, _| Ok(natural_frequency(scene));
 }
 
 fn curve(scene: &Scene) -> Option<Curve> {
@@ -42,23 +42,21 @@ fn curve(scene: &Scene) -> Option<Curve> {
 #[derive(Debug, Default)]
 pub(crate) struct Facts {
     /// Reference solution that errors are measured against.
-    pub reference: Lazy<ReferenceFact>,
-    pub curve: Lazy<CurveFact>,
+    pub reference: Keyed<ReferenceFact>,
+    pub curve: Keyed<CurveFact>,
     /// End of the load path from rest, and the jumps on it.
-    pub path: Lazy<PathFact>,
+    pub path: Keyed<PathFact>,
     /// Lowest natural frequency, Hz.
-    pub frequency: Lazy<FrequencyFact>,
+    pub frequency: Keyed<FrequencyFact>,
 }
 
 impl Facts {
-    /// Invalidates everything that depends on the difference between two scenes.
-    pub(super) fn invalidate(&mut self, before: &Scene, scene: &Scene) {
-        self.frequency.invalidate();
-        if without_settings(before) != without_settings(scene) {
-            self.reference.invalidate();
-        }
-        self.curve.invalidate();
-        self.path.invalidate();
+    /// Cancels the computations for any other scene.
+    pub(super) fn turn_to(&mut self, scene: &Scene) {
+        self.frequency.turn_to(scene);
+        self.reference.turn_to(scene);
+        self.curve.turn_to(scene);
+        self.path.turn_to(scene);
     }
 
     /// Requests the results of a scene at rest; returns `true` while one of them is pending.
@@ -95,8 +93,9 @@ pub(crate) fn without_settings(scene: &Scene) -> Scene {
     scene
 }
 
-fn find_reference(scene: &Scene, watch: Watch<'_>) -> Option<Reference> {
-    Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction)).ok()
+fn find_reference(scene: &Scene, watch: Watch<'_>) -> Computed<Reference> {
+    let found = Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction));
+    found.map(Some).map_err(|error| (&error).into())
 }
 
 /// Returns the lowest natural frequency of a scene's body about rest, Hz.

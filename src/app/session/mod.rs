@@ -372,7 +372,7 @@ impl Session {
         self.changed.mesh |= is_another_mesh;
         self.changed.body |= is_another_body;
         self.playback.follow(scene, is_another_body);
-        self.facts.invalidate(before, scene);
+        self.facts.turn_to(scene);
     }
 
     /// Replaces the document.

@@ -193,15 +193,17 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     assert!(!session.request_facts(true, false), "the body is not at rest yet");
     session.solve(true);
     assert!(!session.request_facts(true, false));
-    let facts = session.facts();
-    assert!(facts.reference.get().is_some() && facts.curve.get().is_some());
+    let (facts, scene) = (session.facts(), session.scene());
+    assert!(facts.reference.get(scene).is_some() && facts.curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
     let mut scene = session.scene().clone();
     scene.solver.method = MethodKind::Warped;
     session.apply(Edit::Scene("Method", Box::new(scene))).unwrap();
-    assert!(!session.facts().reference.is_pending() && session.facts().curve.is_pending());
+    assert!(
+        !session.facts().reference.is_pending(session.scene()) && session.facts().curve.is_pending(session.scene())
+    );
     session.apply(with_force(&session, -150.0)).unwrap();
-    assert!(session.facts().reference.is_pending() && session.facts().reference.latest().is_some());
+    assert!(session.facts().reference.is_pending(session.scene()) && session.facts().reference.latest().is_some());
     session.solve(false);
-    assert!(session.facts().reference.get().is_some());
+    assert!(session.facts().reference.get(session.scene()).is_some());
 }

@@ -265,14 +265,14 @@ impl Lab {
     #[must_use]
     pub fn is_computing(&self) -> bool {
         let Desk { session, view, .. } = &self.desk;
-        let facts = session.facts();
+        let (facts, scene) = (session.facts(), session.scene());
         let plots = match view.drawer {
-            Some(Drawer::Curve) => facts.curve.is_pending(),
-            Some(Drawer::Motion) => facts.frequency.is_pending(),
+            Some(Drawer::Curve) => facts.curve.is_pending(scene),
+            Some(Drawer::Motion) => facts.frequency.is_pending(scene),
             _ => false,
         };
-        let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_looking());
-        let at_rest = !session.is_motion() && (facts.reference.is_pending() || facts.path.is_pending());
+        let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
+        let at_rest = !session.is_motion() && (facts.reference.is_pending(scene) || facts.path.is_pending(scene));
         session.is_working() || plots || learns || at_rest
     }
 

@@ -243,9 +243,10 @@ impl Lab {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
         let facts = session.facts();
         Readout {
-            reference: facts.reference.get(),
-            path: facts.path.get().map(|path| path.to(session.simulation().displacement())),
-            equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho()),
+            reference: facts.reference.get(session.scene()),
+            reference_failure: facts.reference.failure(session.scene()),
+            path: facts.path.get(session.scene()).map(|path| path.to(session.simulation().displacement())),
+            equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
             shows_converged: viewport.shows_converged(),

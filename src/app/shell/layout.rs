@@ -108,7 +108,7 @@ impl Lab {
             (i.time, i.events.iter().any(|event| !idle(event)))
         });
         // The camera is fitted to the end of the animation, so the equilibrium must be known first.
-        let waits = self.iterates() || self.desk.session.facts().reference.is_pending();
+        let waits = self.iterates() || self.desk.session.facts().reference.is_pending(self.desk.session.scene());
         let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
         if touched || !goes_on {
             self.intro = None;
@@ -178,10 +178,16 @@ impl Lab {
         let facts = session.facts();
         drawer_panel(ui).show(ui, |ui| match drawer {
             Drawer::Curve => {
-                load_curve::show(ui, facts.curve.latest(), !facts.curve.is_pending(), view.curve_plot, actions);
+                load_curve::show(
+                    ui,
+                    facts.curve.latest(),
+                    !facts.curve.is_pending(session.scene()),
+                    view.curve_plot,
+                    actions,
+                );
             }
             Drawer::Motion => {
-                let frequency = facts.frequency.get().copied();
+                let frequency = facts.frequency.get(session.scene()).copied();
                 let integrator = session.scene().dynamics.integrator;
                 motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator, frequency);
             }
@@ -227,7 +233,8 @@ impl Lab {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
             shown: session.simulation().scene(),
             system: session.simulation().system(),
-            reference: session.facts().reference.get(),
+            reference: session.facts().reference.get(session.scene()),
+            reference_failure: session.facts().reference.failure(session.scene()),
             running: session.is_running(),
             chosen: budget.chosen(),
         };
@@ -244,7 +251,7 @@ impl Lab {
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // The state of the cards is taken out of the lab, because the readout borrows the lab.
         let Some(mut lesson) = self.lesson.take() else { return };
-        let rho = lesson.learn.rho();
+        let rho = lesson.learn.rho(self.desk.session.scene());
         let budget = &self.desk.budget;
         let mut readout = self.readout();
         readout.equilibrium_rho = rho;

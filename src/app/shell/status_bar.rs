@@ -1,6 +1,6 @@
 //! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, reference_text, rho, rho_number};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, error_tip, rho, rho_number};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -68,7 +68,6 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
     let times = simulation.timings();
     let seconds = (times.total() - times.certify).as_secs_f64();
     let rho = rho(input);
-    let reference = reference_text(input.reference);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut entries = vec![
         Number {
@@ -76,14 +75,16 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match errors.source {
                 Some(source) => tr(source.word()).into(),
+                None if input.reference_failure.is_some() => tr("no reference").into(),
                 None => sought.map_or(Cow::default(), |done| {
                     let percent = format!("{:.0}", 100.0 * done);
                     fill!("computing the reference: %{percent} %", percent = percent).into()
                 }),
             },
-            tip: fill!(
-                "Relative error of the first probe's displacement, compared with %{reference}; and its main source",
-                reference = reference
+            tip: format!(
+                "{}\n{}",
+                error_tip(input.reference, input.reference_failure),
+                tr("The word beside it is the main source of the error")
             ),
             color: error_color(palette, errors.own),
             ratio: None,

@@ -4,9 +4,9 @@ use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::{ElementErrors, Rho};
 use crate::app::platform;
-use crate::app::session::facts::{CurveFact, FrequencyFact, JumpFact, ReferenceFact};
+use crate::app::session::facts::{CurveFact, FrequencyFact, PathFact, ReferenceFact};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
-use crate::app::task::lazy::FactWork;
+use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
 
@@ -20,7 +20,7 @@ const fn entry<W: Work>() -> Entry {
 const ENTRIES: [Entry; 10] = [
     entry::<FactWork<ReferenceFact>>(),
     entry::<FactWork<CurveFact>>(),
-    entry::<FactWork<JumpFact>>(),
+    entry::<FactWork<PathFact>>(),
     entry::<FactWork<FrequencyFact>>(),
     entry::<FactWork<ExactLine>>(),
     entry::<FactWork<Rho>>(),

@@ -11,7 +11,7 @@ use self::grid::{Preset, grow};
 use self::panes::{PaneChange, Panes};
 use self::trace::Trace;
 use crate::app::action::Action;
-use crate::app::diagnosis::{error_color, reference_text};
+use crate::app::diagnosis::{error_color, error_tip};
 use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
@@ -29,6 +29,7 @@ use crate::format::{engineering, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::sentence::Sentence;
 use crate::study::{Reference, Setting};
 
 mod grid;
@@ -61,6 +62,8 @@ pub(crate) struct CompareInput<'a> {
     pub shown: &'a Scene,
     pub system: &'a Arc<System>,
     pub reference: Option<&'a Reference>,
+    /// Reason why it could not be computed.
+    pub reference_failure: Option<&'a Sentence>,
     pub running: bool,
     /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
@@ -164,7 +167,7 @@ impl Compare {
             pane.judge(input.reference);
         }
         if !holds || !moves {
-            self.trace.ask(input.common.scene, ctx);
+            self.trace.request_exact(input.common.scene, ctx);
         }
         self.trace.record_reference(input.reference);
         let mut solves = self.panes.list.iter().map(|pane| &pane.solve);
@@ -412,12 +415,8 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
     let spoken = format!("{name}: {}: {error}{text}", setting.text());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let tip = fill!(
-        "Error: relative error of the first probe's displacement vector, compared with %{reference}. Time and \
-         iterations: of a solve from rest.",
-        reference = reference_text(input.reference)
-    );
-    response.on_hover_text(format!("{text}\n{tip}"));
+    let error_tip = error_tip(input.reference, input.reference_failure);
+    response.on_hover_text(format!("{text}\n{error_tip}\n{}", tr("Time and iterations: of a solve from rest")));
 }
 
 /// Paints the key of lines and colours for all panes.

@@ -12,7 +12,7 @@ use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
 use crate::app::session::compared_solve::Activity;
 use crate::app::session::facts::without_settings;
-use crate::app::task::lazy::{Lazy, facts};
+use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
 use crate::exact_beam::error_percent;
@@ -99,9 +99,7 @@ pub(super) struct Trace {
     family: Option<Scene>,
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
-    exact: Lazy<ExactLine>,
-    /// Last exact curve.
-    line: Vec<Exact>,
+    exact: Keyed<ExactLine>,
     /// Reference solutions for the loads so far; they may differ from the exact beam, because they solve plane
     /// elasticity.
     references: Vec<Exact>,
@@ -121,8 +119,7 @@ impl Default for Trace {
             family: None,
             direction: None,
             series: Vec::new(),
-            exact: Lazy::default(),
-            line: Vec::new(),
+            exact: Keyed::default(),
             references: Vec::new(),
             reach: 0.0,
             usual: None,
@@ -132,7 +129,20 @@ impl Default for Trace {
 
 facts! {
     /// Curve of the exact beam.
-    ExactLine = "exact-line": Vec<Exact>, |scene, _| exact_line(scene);
+    ExactLine by with_round_load = "exact-line": Vec<Exact>, |scene, _| Ok(exact_line(&with_round_load(scene)));
+}
+
+/// Returns the scene without the panes' settings, and with its load raised to the next power of four: the exact curve up
+/// to there is fine enough for all loads from a quarter of it.
+fn with_round_load(scene: &Scene) -> Scene {
+    let mut round = without_settings(scene);
+    if let Some(axis) = Axis::of(scene)
+        && let Some(direction) = axis.direction
+    {
+        let load = 4f64.powf(axis.magnitude.log(4.0).ceil()).min(axis.limit.max);
+        axis.set(&mut round, direction, load);
+    }
+    round
 }
 
 /// Returns the displacement of the first probe of the exact beam over the traced load.
@@ -172,38 +182,21 @@ impl Trace {
         self.direction = direction.or(self.direction);
     }
 
-    /// Requests the exact curve, unless it is known up to the current load.
-    pub(super) fn ask(&mut self, scene: &Scene, ctx: &egui::Context) {
-        if self.needs_exact() {
-            self.exact.invalidate();
-        }
+    /// Requests the exact curve up to the current load.
+    pub(super) fn request_exact(&mut self, scene: &Scene, ctx: &egui::Context) {
         if self.axis.is_some_and(|axis| axis.magnitude > 0.0) && self.exact.request(scene) {
             ctx.request_repaint_after(POLL);
         }
-        self.take_exact();
     }
 
     /// Computes the exact curve, and waits for it.
     pub(super) fn settle(&mut self, scene: &Scene) {
-        if self.needs_exact() {
-            self.exact.invalidate();
-        }
         self.exact.wait(scene);
-        self.take_exact();
     }
 
-    fn take_exact(&mut self) {
-        if let Some(line) = self.exact.get()
-            && self.line != *line
-        {
-            self.line.clone_from(line);
-        }
-    }
-
-    /// Returns `true` if the known exact curve ends before the current load, or is too coarse for it.
-    fn needs_exact(&self) -> bool {
-        let (Some(end), Some(axis)) = (self.exact.get().and_then(|line| line.last()), self.axis) else { return false };
-        axis.magnitude > end.0 || axis.magnitude > 0.0 && TINY * axis.magnitude < end.0
+    /// Returns the exact curve; until that of the current load is known, the last one.
+    fn line(&self) -> &[Exact] {
+        self.exact.latest().map_or(&[], Vec::as_slice)
     }
 
     /// Records the reference solution for the current load.
@@ -220,7 +213,7 @@ impl Trace {
     /// Returns the displacement of the reference solution under a load if it is known, else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
         let reference = self.references.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
-        let piece = || self.line.windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
+        let piece = || self.line().windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
         let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
         reference.or_else(|| piece().map(between))
     }
@@ -318,7 +311,7 @@ impl Trace {
             points,
         };
         let exact_series = [
-            series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(&self.line)),
+            series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(self.line())),
             series(tr("reference"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
         ];
         let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
@@ -445,3 +438,27 @@ impl Trace {
 
 /// Symbol of the relative error of the displacement.
 const ERROR: &str = "|Δu|/|u|";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Source, open};
+
+    /// The exact curve of a beam that is pushed along its axis ends where the beam buckles, below the load.
+    #[test]
+    fn an_exact_curve_that_ends_below_the_load_is_not_computed_again() {
+        let pushed = |force: f64| {
+            let assignments = vec![format!("load.0.force=[{force},0]")];
+            open(&Source { name: "article".into(), assignments }).unwrap()
+        };
+        let scene = pushed(-30_000.0);
+        let mut trace = Trace::default();
+        trace.follow(&scene);
+        trace.settle(&scene);
+        let end = trace.line().last().map(|point| point.0);
+        assert!(end.is_some_and(|end| end < 30_000.0), "{end:?}");
+        assert!(!trace.exact.request(&scene));
+        // Loads up to the next power of four share the curve.
+        assert!(!trace.exact.request(&pushed(-20_000.0)) && trace.exact.request(&pushed(-100_000.0)));
+    }
+}

@@ -41,7 +41,7 @@ pub(super) fn errors(scene: &Scene) -> Option<Vec<ElementError>> {
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let scene = shown.input.scene;
-    let known = learn.errors().map(<[ElementError]>::to_vec);
+    let known = learn.errors(scene).map(<[ElementError]>::to_vec);
     for element in scene.elements() {
         let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
         let text = match error {
@@ -64,8 +64,11 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         ui.add_space(2.0);
     }
     if known.is_none() {
-        let text =
-            if learn.is_looking() { "Computing the errors." } else { "No reference solution of this scene is known." };
+        let text = if learn.is_computing(scene) {
+            "Computing the errors."
+        } else {
+            "No reference solution of this scene is known."
+        };
         ui.label(RichText::new(tr(text)).size(SMALL).color(palette.secondary));
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::task::lazy::{Fact, Lazy, facts};
+use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
@@ -63,34 +63,22 @@ pub(crate) enum Needs {
     Errors,
 }
 
-/// Result of a scene, computed in the background.
-#[derive(Debug)]
-struct Known<F: Fact> {
-    lazy: Lazy<F>,
-    /// Returns the part of the scene that the result depends on.
-    key: fn(&Scene) -> Scene,
-    of: Option<Scene>,
-}
-
-impl<F: Fact> Known<F> {
-    fn new(key: fn(&Scene) -> Scene) -> Self {
-        Self { lazy: Lazy::default(), key, of: None }
-    }
-
-    fn follow(&mut self, scene: &Scene) {
-        let key = (self.key)(scene);
-        if self.of.as_ref() != Some(&key) {
-            self.lazy.invalidate();
-            self.of = Some(key);
-        }
-    }
-}
-
 facts! {
     /// Spectral radius ρ of the warped iteration at the equilibrium.
-    Rho = "rho": f64, |scene, _| fixed_point_rho(scene);
+    Rho by without_solver = "rho": f64, |scene, _| Ok(fixed_point_rho(scene));
     /// Errors of all elements.
-    ElementErrors = "element-errors": Vec<ElementError>, |scene, _| locking::errors(scene);
+    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, _| Ok(locking::errors(scene));
+}
+
+fn without_solver(scene: &Scene) -> Scene {
+    Scene { solver: SolverSettings::default(), ..scene.clone() }
+}
+
+fn without_element(scene: &Scene) -> Scene {
+    let mut scene = without_solver(scene);
+    let first = scene.elements().next().unwrap_or_default();
+    scene.set_element(first);
+    scene
 }
 
 /// State of the mode.
@@ -103,8 +91,8 @@ pub(crate) struct Learn {
     rotation_part: f64,
     /// Largest error in the table of the trade-off, percent.
     asked: f64,
-    rho: Known<Rho>,
-    errors: Known<ElementErrors>,
+    rho: Keyed<Rho>,
+    errors: Keyed<ElementErrors>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
     pub line: usize,
@@ -176,13 +164,8 @@ impl Learn {
             picked: 6,
             rotation_part: 1.0,
             asked: 1.0,
-            rho: Known::new(|scene| Scene { solver: SolverSettings::default(), ..scene.clone() }),
-            errors: Known::new(|scene| {
-                let mut scene = Scene { solver: SolverSettings::default(), ..scene.clone() };
-                let first = scene.elements().next().unwrap_or_default();
-                scene.set_element(first);
-                scene
-            }),
+            rho: Keyed::default(),
+            errors: Keyed::default(),
             messages: Messages::new(),
             line: 0,
             shown_line: 0,
@@ -210,49 +193,42 @@ impl Learn {
         (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
-    /// Returns ρ at the equilibrium; `None` until it has been computed.
-    pub(crate) fn rho(&self) -> Option<f64> {
-        self.rho.lazy.get().copied()
+    /// Returns ρ at the equilibrium of a scene; `None` until it has been computed.
+    pub(crate) fn rho(&self, scene: &Scene) -> Option<f64> {
+        self.rho.get(scene).copied()
     }
 
-    fn errors(&self) -> Option<&[ElementError]> {
-        self.errors.lazy.get().map(Vec::as_slice)
+    fn errors(&self, scene: &Scene) -> Option<&[ElementError]> {
+        self.errors.get(scene).map(Vec::as_slice)
     }
 
-    /// Returns `true` while a result that the card shows is being computed.
-    pub(crate) fn is_looking(&self) -> bool {
+    /// Returns `true` while a result of a scene that the card shows is being computed.
+    pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
         match self.card().needs {
             Needs::Nothing => false,
-            Needs::Rho => self.rho.lazy.is_pending(),
-            Needs::Errors => self.errors.lazy.is_pending(),
+            Needs::Rho => self.rho.is_pending(scene),
+            Needs::Errors => self.errors.is_pending(scene),
         }
     }
 
     /// Requests the results that the card shows.
-    fn find_out(&mut self, scene: &Scene, ctx: &Context) {
-        self.follow(scene);
+    fn request(&mut self, scene: &Scene, ctx: &Context) {
         let is_pending = match self.card().needs {
             Needs::Nothing => false,
-            Needs::Rho => self.rho.lazy.request(scene),
-            Needs::Errors => self.errors.lazy.request(scene),
+            Needs::Rho => self.rho.request(scene),
+            Needs::Errors => self.errors.request(scene),
         };
         if is_pending {
             ctx.request_repaint_after(POLL);
         }
     }
 
-    fn follow(&mut self, scene: &Scene) {
-        self.rho.follow(scene);
-        self.errors.follow(scene);
-    }
-
     /// Computes the results that the card shows, and waits for them.
     pub(crate) fn settle(&mut self, scene: &Scene) {
-        self.follow(scene);
         match self.card().needs {
             Needs::Nothing => {}
-            Needs::Rho => self.rho.lazy.wait(scene),
-            Needs::Errors => self.errors.lazy.wait(scene),
+            Needs::Rho => self.rho.wait(scene),
+            Needs::Errors => self.errors.wait(scene),
         }
     }
 
@@ -286,7 +262,7 @@ impl Learn {
 
     /// Shows the card.
     pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, keys: bool, actions: &mut Vec<Action>) {
-        self.find_out(shown.input.scene, ui.ctx());
+        self.request(shown.input.scene, ui.ctx());
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }

@@ -72,7 +72,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     const LEFT: f32 = 40.0;
     const BELOW: f32 = 20.0;
     let palette = Palette::new(ui.visuals());
-    let rho = learn.rho();
+    let rho = learn.rho(shown.input.scene);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
@@ -122,7 +122,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if rho.is_none() && learn.is_looking() {
+    if rho.is_none() && learn.is_computing(shown.input.scene) {
         ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }

@@ -1,0 +1,272 @@
+//! Value of a scene that is computed in the background, and belongs to the scene that it was computed from.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::task::sent_scene::SentScene;
+use crate::app::task::thread::{Data, Reporter, Task, Update, Work};
+use crate::scene::Scene;
+use crate::sentence::{Sentence, sentence};
+
+/// Callback that receives the fraction done; it breaks to cancel.
+pub(crate) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
+/// Result of a computation: a value, or `None` if the scene has none, or the reason why the computation failed.
+pub(crate) type Computed<V> = Result<Option<V>, Sentence>;
+
+/// Kind of value of a scene that is computed in the background.
+pub(crate) trait Fact: Debug + 'static {
+    /// Name of the computation.
+    const NAME: &'static str;
+    type Value: Data + Debug;
+
+    /// Returns the part of a scene that the value depends on: scenes with the same key have the same value.
+    fn key(scene: &Scene) -> Scene {
+        scene.clone()
+    }
+
+    /// Computes the value of a scene.
+    fn compute(scene: &Scene, watch: Watch<'_>) -> Computed<Self::Value>;
+}
+
+/// Defines kinds of values, each by its name, its type, the function that computes it, and `by` its key where that is
+/// not the whole scene.
+macro_rules! facts {
+    ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr;)*) => {$(
+        $(#[$about])*
+        #[derive(Debug)]
+        pub(crate) struct $kind;
+
+        impl $crate::app::task::keyed::Fact for $kind {
+            const NAME: &'static str = $name;
+            type Value = $value;
+
+            $(fn key(scene: &$crate::scene::Scene) -> $crate::scene::Scene {
+                $key(scene)
+            })?
+
+            fn compute(
+                scene: &$crate::scene::Scene,
+                watch: $crate::app::task::keyed::Watch<'_>,
+            ) -> $crate::app::task::keyed::Computed<$value> {
+                let compute: fn(
+                    &$crate::scene::Scene,
+                    $crate::app::task::keyed::Watch<'_>,
+                ) -> $crate::app::task::keyed::Computed<$value> = $compute;
+                compute(scene, watch)
+            }
+        }
+    )*};
+}
+pub(crate) use facts;
+
+/// Request for a value.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct FactWork<F>(SentScene, PhantomData<fn() -> F>);
+
+impl<F: Fact> Work for FactWork<F> {
+    const NAME: &'static str = F::NAME;
+    type Progress = f64;
+    type Output = Computed<F::Value>;
+
+    fn run(self, reporter: &Reporter<f64, Self::Output>) -> Self::Output {
+        F::compute(&self.0.0, &mut |done| reporter.report(done))
+    }
+}
+
+/// Running computation of a value.
+type FactTask<F> = Task<f64, Computed<<F as Fact>::Value>>;
+
+/// Scene that a value is asked for.
+#[derive(Debug)]
+struct Asked {
+    scene: Scene,
+    key: Scene,
+}
+
+/// Value of the scene that was last asked for, computed in the background.
+#[derive(Debug)]
+pub(crate) struct Keyed<F: Fact> {
+    asked: Option<Asked>,
+    /// Value of the scene that was asked for; `None` until it has been computed.
+    computed: Option<Computed<F::Value>>,
+    /// Value of the scene before.
+    previous: Option<F::Value>,
+    /// Running computation, and `true` if it is for the scene that was asked for. Only one runs at a time, so that edits
+    /// do not pile up.
+    running: Option<(FactTask<F>, bool)>,
+    /// Fraction of the running computation that is done.
+    done: f64,
+}
+
+impl<F: Fact> Default for Keyed<F> {
+    fn default() -> Self {
+        Self { asked: None, computed: None, previous: None, running: None, done: 0.0 }
+    }
+}
+
+impl<F: Fact> Keyed<F> {
+    /// Turns to a scene: if its key is another one, the computation for the scene before is cancelled.
+    pub(crate) fn turn_to(&mut self, scene: &Scene) {
+        if self.is_of(scene) {
+            return;
+        }
+        let computed = self.computed.take().map(|computed| computed.ok().flatten());
+        self.previous = computed.unwrap_or_else(|| self.previous.take());
+        if let Some((task, is_current)) = &mut self.running {
+            (*is_current, self.done) = (false, 0.0);
+            task.cancel();
+        }
+        self.asked = Some(Asked { scene: scene.clone(), key: F::key(scene) });
+    }
+
+    /// Returns `true` if the scene has the key of the one that was last asked for.
+    fn is_of(&self, scene: &Scene) -> bool {
+        self.asked.as_ref().is_some_and(|asked| asked.scene == *scene || asked.key == F::key(scene))
+    }
+
+    /// Removes all values.
+    pub(crate) fn clear(&mut self) {
+        (self.asked, self.computed, self.previous) = (None, None, None);
+        if let Some((task, is_current)) = &mut self.running {
+            (*is_current, self.done) = (false, 0.0);
+            task.cancel();
+        }
+    }
+
+    /// Turns to a scene, polls the computation, and starts it if the value is unknown. Returns `true` while it is pending.
+    pub(crate) fn request(&mut self, scene: &Scene) -> bool {
+        self.turn_to(scene);
+        if self.computed.is_some() {
+            return false;
+        }
+        if let Some((task, is_current)) = &self.running {
+            let computed = loop {
+                match task.poll() {
+                    Update::Progress(done) => self.done = if *is_current { done } else { 0.0 },
+                    Update::None => return true,
+                    Update::Done(computed) => break computed,
+                    Update::Died => break Err(sentence!("the computation ended unexpectedly")),
+                }
+            };
+            if *is_current {
+                self.computed = Some(computed);
+            }
+            self.running = None;
+        }
+        if self.computed.is_none() {
+            self.done = 0.0;
+            match Task::run(FactWork::<F>(SentScene(scene.clone()), PhantomData)) {
+                Ok(task) => self.running = Some((task, true)),
+                Err(error) => self.computed = Some(Err(error.to_string().into())),
+            }
+        }
+        true
+    }
+
+    /// Returns the fraction done while the value is being computed.
+    pub(crate) fn progress(&self) -> Option<f64> {
+        self.running.as_ref().map(|_| self.done)
+    }
+
+    /// Computes the value of a scene, and waits for it.
+    pub(crate) fn wait(&mut self, scene: &Scene) {
+        self.turn_to(scene);
+        if self.computed.is_none() {
+            self.computed = Some(F::compute(scene, &mut |_| ControlFlow::Continue(())));
+            self.running = None;
+        }
+    }
+
+    fn computed(&self, scene: &Scene) -> Option<&Computed<F::Value>> {
+        self.computed.as_ref().filter(|_| self.is_of(scene))
+    }
+
+    /// Returns the value of a scene, if it has been computed and the scene has one.
+    pub(crate) fn get(&self, scene: &Scene) -> Option<&F::Value> {
+        self.computed(scene)?.as_ref().ok()?.as_ref()
+    }
+
+    /// Returns the reason why the value of a scene could not be computed.
+    pub(crate) fn failure(&self, scene: &Scene) -> Option<&Sentence> {
+        self.computed(scene)?.as_ref().err()
+    }
+
+    /// Returns the value, or that of the scene before until it has been computed.
+    pub(crate) fn latest(&self) -> Option<&F::Value> {
+        match &self.computed {
+            Some(computed) => computed.as_ref().ok()?.as_ref(),
+            None => self.previous.as_ref(),
+        }
+    }
+
+    /// Returns `true` until the value of a scene has been computed.
+    pub(crate) fn is_pending(&self, scene: &Scene) -> bool {
+        self.computed(scene).is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread;
+
+    use super::*;
+    use crate::model::SolverSettings;
+
+    fn without_solver(scene: &Scene) -> Scene {
+        Scene { solver: SolverSettings::default(), ..scene.clone() }
+    }
+
+    facts! {
+        Length by without_solver = "length": f64, |scene, _| match &scene.beam {
+            Some(beam) if beam.length > 100.0 => Err("too long".into()),
+            Some(beam) if beam.length > 50.0 => std::panic::panic_any("meant"),
+            beam => Ok(beam.as_ref().map(|beam| beam.length)),
+        };
+    }
+
+    #[test]
+    fn the_previous_value_stays_until_the_next_is_known() {
+        let [short, long] = [2.0, 3.0].map(|length| Scene::beam(length, 1.0));
+        let mut length = Keyed::<Length>::default();
+        length.wait(&short);
+        assert_eq!((length.get(&short), length.latest()), (Some(&2.0), Some(&2.0)));
+        assert_eq!(length.get(&long), None, "a value belongs to its scene");
+        length.turn_to(&long);
+        assert_eq!((length.get(&long), length.latest(), length.is_pending(&long)), (None, Some(&2.0), true));
+        length.wait(&long);
+        assert_eq!(length.latest(), Some(&3.0));
+        // For a scene that has no value, the previous value is not returned either.
+        let other = Scene { beam: None, ..short };
+        length.wait(&other);
+        assert_eq!((length.latest(), length.is_pending(&other)), (None, false));
+    }
+
+    #[test]
+    fn scenes_with_the_same_key_share_a_value() {
+        let scene = Scene::beam(2.0, 1.0);
+        let mut length = Keyed::<Length>::default();
+        length.wait(&scene);
+        let mut other = scene.clone();
+        other.solver.max_iterations += 1;
+        assert_eq!(length.get(&other), Some(&2.0));
+        assert!(!length.request(&other));
+    }
+
+    #[test]
+    fn a_failure_is_a_value_with_its_reason() {
+        for (size, reason) in [(200.0, "too long"), (60.0, "the computation ended unexpectedly")] {
+            let scene = Scene::beam(size, 1.0);
+            let mut length = Keyed::<Length>::default();
+            while length.request(&scene) {
+                thread::yield_now();
+            }
+            assert_eq!(length.failure(&scene).map(ToString::to_string).as_deref(), Some(reason));
+            assert_eq!((length.get(&scene), length.is_pending(&scene)), (None, false));
+        }
+    }
+}
