@@ -1,5 +1,5 @@
 //! Computes the reference solution of every built-in scene and prints its source, its own error, and its time relative
-//! to one solve of the scene. This is the table of `docs/accuracy.md`: `cargo bench --bench reference`.
+//! to one solve of the scene. This is the table of `docs/measurements/accuracy.md`: `cargo bench --bench reference`.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 
 use std::ops::ControlFlow;

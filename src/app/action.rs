@@ -91,11 +91,17 @@ pub(crate) enum Action {
 }
 
 impl Action {
-    /// Returns `true` if the action exists here: a web page has links but no recordings, a desktop the reverse.
+    /// Returns `true` if the action exists here.
     pub(crate) fn is_available(&self) -> bool {
+        self.exists_on(IS_PAGE)
+    }
+
+    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): a page has links but no
+    /// recordings, a desktop the reverse.
+    pub(crate) fn exists_on(&self, page: bool) -> bool {
         match self {
-            Self::Record | Self::RecordScene => !IS_PAGE,
-            Self::CopyLink => IS_PAGE,
+            Self::Record | Self::RecordScene => !page,
+            Self::CopyLink => page,
             _ => true,
         }
     }

@@ -34,15 +34,19 @@ pub use panel::PANEL_WIDTH;
 #[doc(hidden)]
 pub use session::compared_solve::PaneEnd;
 pub use session::recovery::{Recovery, Unsaved};
+#[doc(hidden)]
+pub use shell::help::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
+#[doc(hidden)]
+pub use shell::shortcuts::every_shortcut;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;
 pub use window::{Display, NoDisplay, opens_in_background, run};
 
 /// Error if all numbered file names are taken.
 #[derive(Debug, Error)]
-#[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist")]
+#[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist: delete or move some of them")]
 pub(crate) struct NoName {
     extension: &'static str,
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 mod build;
 mod dynamics;
 mod error;
+pub mod keys;
 pub mod limits;
 mod place;
 pub mod units;

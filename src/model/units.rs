@@ -1,5 +1,5 @@
 //! Parser of numbers with units, such as `210 GPa`, `-12 kN` and `7.8 g/cm³`, for scene files, `--set` and the window.
-//! Results are in the unit of the value's [`limits`].
+//! Results are in the unit of the value's [`limits`](super::limits).
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::Invalid;
-use super::limits::{self, Limit};
+use super::keys::KEYS;
 use crate::sentence::{Sentence, sentence};
 
 /// Exponents of metre, kilogram, second and radian. The radian is included so that `1/s` is not an angular velocity.
@@ -86,36 +86,6 @@ const PREFIXES: &[(&str, i32)] = &[
     ("u", -6),
     ("n", -9),
     ("p", -12),
-];
-
-/// Keys of a scene that hold a number with a unit, without list indices.
-const KEYS: &[(&str, Limit)] = &[
-    ("beam.length", limits::LENGTH),
-    ("beam.height", limits::HEIGHT),
-    ("beam.rise", limits::RISE),
-    ("mesh.scale", limits::MESH_SCALE),
-    ("material.young", limits::YOUNG),
-    ("material.poisson", limits::POISSON_STRESS),
-    ("material.density", limits::DENSITY),
-    ("material.thickness", limits::THICKNESS),
-    ("support.at", limits::COORDINATE),
-    ("support.displacement", limits::COORDINATE),
-    ("support.turn", limits::ROTATION),
-    ("load.at", limits::COORDINATE),
-    ("load.force", limits::FORCE),
-    ("load.acceleration", limits::ACCELERATION),
-    ("load.moment", limits::MOMENT),
-    ("load.pulse.start", limits::PULSE_START),
-    ("load.pulse.duration", limits::PULSE_DURATION),
-    ("probe.at", limits::COORDINATE),
-    ("solver.tolerance", limits::TOLERANCE),
-    ("solver.max_error_percent", limits::MAX_ERROR_PERCENT),
-    ("dynamics.time_step", limits::TIME_STEP),
-    ("dynamics.duration", limits::DURATION),
-    ("dynamics.damping.mass", limits::MASS_DAMPING),
-    ("dynamics.damping.stiffness", limits::STIFFNESS_DAMPING),
-    ("start.velocity", limits::SPEED),
-    ("start.spin", limits::SPIN),
 ];
 
 /// Reason why a text is not a number in the expected unit.
@@ -367,7 +337,7 @@ fn unit_of(key: &str) -> Option<&'static str> {
     let is_name = |part: &&str| part.parse::<usize>().is_err();
     let key: Vec<&str> = key.split('.').filter(is_name).collect();
     let key = key.join(".");
-    KEYS.iter().find(|(known, _)| *known == key).map(|(_, limit)| limit.unit)
+    KEYS.iter().find(|known| known.path == key)?.kind.quantity().map(|limit| limit.unit)
 }
 
 /// Returns the quantity that `key` holds; `None` if `key` holds no number with a unit.

@@ -14,5 +14,5 @@ pub use open::{STANDARD_INPUT, Source, locate, open};
 pub use crate::model::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, LoadId,
     Material, MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError,
-    SolverSettings, Start, Support, SupportId, TableError, limits, units,
+    SolverSettings, Start, Support, SupportId, TableError, keys, limits, units,
 };

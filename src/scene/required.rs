@@ -5,26 +5,9 @@ use serde::de::{Deserialize, Deserializer, IntoDeserializer, Visitor};
 use thiserror::Error;
 use toml::{Table, Value};
 
+use super::keys::{KEYS, Key, Need};
 use super::{Invalid, Scene, units};
 use crate::sentence::{Sentence, sentence};
-
-/// Keys without default, without list indices, and the expected value for keys that hold no number with a unit. The
-/// parser checks the keys of the scene itself last.
-const KEYS: &[(&str, &str)] = &[
-    ("beam.length", ""),
-    ("beam.height", ""),
-    ("beam.cells", "the cells along and across, as in [20, 2]"),
-    ("mesh.file", "the name of a mesh file"),
-    ("material.young", ""),
-    ("material.poisson", ""),
-    ("support.fix", "the directions it fixes, as in [\"x\", \"y\"]"),
-    ("load.kind", "one of \"force\", \"gravity\", \"moment\""),
-    ("load.pulse.start", ""),
-    ("load.pulse.duration", ""),
-    ("probe.name", "what it is called in results"),
-    ("name", "a title"),
-    ("material", "the table [material]"),
-];
 
 /// Deserialisation error that distinguishes missing keys from all other errors.
 #[derive(Debug, Error)]
@@ -99,11 +82,14 @@ impl<'de> Deserializer<'de> for Node {
 pub(super) fn missing(table: Table) -> Option<Invalid> {
     let scene = Value::Table(table);
     let Err(Refusal::Missing(field)) = Scene::deserialize(Node(scene.clone())) else { return None };
-    KEYS.iter().filter(|(key, _)| key.rsplit('.').next() == Some(field)).find_map(|(key, description)| {
-        let parts: Vec<&str> = key.split('.').collect();
+    // The parser checks the keys of the scene itself last.
+    let (outer, inner): (Vec<&Key>, Vec<&Key>) = KEYS.iter().partition(|key| !key.path.contains('.'));
+    inner.into_iter().chain(outer).filter(|key| key.path.rsplit('.').next() == Some(field)).find_map(|key| {
+        let Need::Required(description) = key.need else { return None };
+        let parts: Vec<&str> = key.path.split('.').collect();
         let place = place_without(&scene, &parts)?;
         let expected =
-            units::quantity_of(key).map_or_else(|| (*description).into(), |quantity| Sentence::from(&quantity));
+            units::quantity_of(key.path).map_or_else(|| description.into(), |quantity| Sentence::from(&quantity));
         Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
     })
 }

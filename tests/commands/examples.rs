@@ -1,6 +1,8 @@
 //! Tests of the example programs.
 #![allow(dead_code, reason = "the examples' own `main` is not called here")]
 
+#[path = "../../examples/figures.rs"]
+mod figures;
 #[path = "../../examples/game_loop.rs"]
 mod game_loop;
 #[path = "../../examples/grab.rs"]
@@ -68,4 +70,17 @@ fn the_integrators_lose_different_energies() {
     let [euler, tr_bdf2, conserving] =
         [IntegratorKind::ImplicitEuler, IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum].map(lost);
     assert!(euler > 10.0 * tr_bdf2.abs() && conserving.abs() < 1e-6, "{euler} {tr_bdf2} {conserving}");
+}
+
+/// The figures that take no solve are those of the documents; a changed table changes its figure.
+#[test]
+fn the_figures_of_the_documents_are_current() {
+    let table = std::fs::read_to_string("docs/measurements/performance.md").unwrap();
+    for (name, figure) in [("theory-rotation", figures::rotation()), ("front", figures::front(&table))] {
+        for (theme, colors) in [("light", &figures::LIGHT), ("dark", &figures::DARK)] {
+            let file = format!("assets/{name}-{theme}.svg");
+            let kept = std::fs::read_to_string(&file).unwrap();
+            assert!(kept == figure.svg(colors), "{file}: `cargo run --example figures --no-default-features` draws it");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Tests of the command line, of the Rust programs that it prints, and of the examples. `cargo test --test commands
+//! Tests of the command line, of the Rust programs that it prints, of the examples and of the documents. `cargo test --test commands
 //! TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -6,6 +6,8 @@
 mod common;
 
 mod cli;
+#[cfg(feature = "app")]
+mod docs;
 mod examples;
 mod programs;
 #[cfg(feature = "app")]

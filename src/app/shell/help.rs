@@ -5,13 +5,14 @@ use egui::{Align2, Context};
 use crate::app::language::tr;
 use crate::app::shell::shortcuts::shortcuts;
 
-/// Keys that belong to a mode or to the control with the focus.
-const HERE: &[(&str, &str)] = &[
+/// Keys that belong to a mode or to the control with the focus, and their descriptions.
+pub const FOCUS_KEYS: &[(&str, &str)] = &[
     ("Left, Right", "On a slider: decrease or increase; in Learn: the previous or next card"),
     ("Delete", "On a slider: reset to the scene's value"),
 ];
 
-const MOUSE: &[(&str, &str)] = &[
+/// Actions of the pointer, and their descriptions.
+pub const MOUSE: &[(&str, &str)] = &[
     ("Drag an arrow's tip", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
     ("Drag the body", "Pull it with a mouse spring; release it and it springs back"),
     ("Drag the background, two fingers", "Move the view"),
@@ -42,7 +43,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
                     ui.label(tr(shortcut.does));
                     ui.end_row();
                 }
-                for (gesture, does) in HERE.iter().chain(MOUSE) {
+                for (gesture, does) in FOCUS_KEYS.iter().chain(MOUSE) {
                     ui.strong(tr(gesture));
                     ui.label(tr(does));
                     ui.end_row();

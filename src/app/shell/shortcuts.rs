@@ -33,6 +33,13 @@ impl Shortcut {
     }
 }
 
+/// Returns every shortcut: its keys, its description, and `true` if it exists on a desktop and on a web page.
+#[must_use]
+pub fn every_shortcut() -> Vec<(String, &'static str, [bool; 2])> {
+    let places = |shortcut: &Shortcut| [false, true].map(|page| (shortcut.act)().exists_on(page));
+    SHORTCUTS.iter().map(|shortcut| (shortcut.text(), shortcut.does, places(shortcut))).collect()
+}
+
 /// Returns the shortcuts that exist here, in the order of the help.
 pub(crate) fn shortcuts() -> impl Iterator<Item = &'static Shortcut> {
     SHORTCUTS.iter().filter(|shortcut| (shortcut.act)().is_available())

@@ -1,0 +1,207 @@
+//! Keys of a scene file: the kind, range, default and meaning of each.
+//!
+//! The parser of units, the messages about missing keys, the reference in `docs/reference/scene-file.md` and the JSON
+//! Schema in `assets/scene.schema.json` are all made from this list. `tests/commands/docs.rs` compares it with the keys that the
+//! reader accepts.
+
+use super::limits::{self, Limit};
+
+/// Key of a scene file.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Path without list indices: `load.pulse.start`.
+    pub path: &'static str,
+    /// Kind and range of the value.
+    pub kind: KeyKind,
+    /// Condition under which the key must be given.
+    pub need: Need,
+    /// Accepted value, as written in the file.
+    pub example: &'static str,
+    /// Meaning, in one or two sentences.
+    pub about: &'static str,
+}
+
+/// Kind and range of a key's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KeyKind {
+    /// Table with keys of its own.
+    Table,
+    /// List of tables, written `[[…]]`.
+    Tables,
+    /// Text.
+    Text,
+    /// One of these texts.
+    Choice(&'static [&'static str]),
+    /// List of these texts.
+    Choices(&'static [&'static str]),
+    /// Number, or text of a number with a unit.
+    Number(Limit),
+    /// List of two numbers, each in this range.
+    Pair(Limit),
+    /// List of two numbers, the components of a vector whose length is in this range.
+    Vector(Limit),
+    /// Integer.
+    Integer(Limit),
+    /// List of two integers.
+    IntegerPair(Limit),
+}
+
+/// Condition under which a key must be given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Always, inside its table. The text is the expected value of a key that holds no number.
+    Required(&'static str),
+    /// Never: this is the value if it is not given, as written in the file.
+    Default(&'static str),
+    /// Sometimes: the condition, or the effect of leaving the key out.
+    Optional(&'static str),
+}
+
+impl KeyKind {
+    /// Returns the range of the numbers of the value; `None` if it holds no number that can have a unit.
+    #[must_use]
+    pub fn quantity(self) -> Option<Limit> {
+        match self {
+            Self::Number(limit) | Self::Pair(limit) | Self::Vector(limit) => Some(limit),
+            _ => None,
+        }
+    }
+}
+
+macro_rules! keys {
+    ($($path:literal: $kind:expr, $need:expr, $example:literal, $about:literal;)*) => {
+        &[$(Key { path: $path, kind: $kind, need: $need, example: $example, about: $about }),*]
+    };
+}
+
+use KeyKind::{Choice, Choices, Integer, IntegerPair, Number, Pair, Table, Tables, Text, Vector};
+use Need::{Default, Optional, Required};
+
+const ELEMENTS: &[&str] = &["t3", "t6", "q4"];
+
+/// Every key of a scene file, in the order of the reference. A table comes before its keys.
+pub const KEYS: &[Key] = keys! {
+    "name": Text, Required("a title"), r#""Cantilever""#,
+        "Title, shown in the window and in results.";
+    "about": Text, Default(r#""""#), r#""A beam under a force at its end.""#,
+        "One sentence about the scene.";
+    "analysis": Choice(&["static", "dynamic"]), Default(r#""static""#), r#""static""#,
+        "Equilibrium, or motion in time.";
+
+    "beam": Table, Optional("Either [beam] or [mesh] is required"), "",
+        "Meshed rectangle [0, length] × [−height/2, height/2], with the edges left, right, bottom and top.";
+    "beam.length": Number(limits::LENGTH), Required(""), "10.0",
+        "Length.";
+    "beam.height": Number(limits::HEIGHT), Required(""), r#""50 cm""#,
+        "Height.";
+    "beam.cells": IntegerPair(limits::CELLS), Required("the cells along and across, as in [20, 2]"), "[20, 2]",
+        "Cells along and across: at most 250,000 in all, and at most 100,000 times as long as high or as high as long.";
+    "beam.element": Choice(ELEMENTS), Default(r#""t3""#), r#""q4""#,
+        "Element of every cell. A cell is one quadrilateral (q4), or is cut into two triangles (t3, t6).";
+    "beam.rise": Number(limits::RISE), Default("0.0"), "0.2",
+        "Rise of the axis in the middle of the span, along a parabola from end to end: a shallow arch, free of stress.";
+    "beam.diagonals": Choice(&["alternating", "same"]), Default(r#""alternating""#), r#""same""#,
+        "Cut of the cells into triangles: cell (i, j) from lower left to upper right where i + j is even, else from upper left to lower right; or every cell from lower left to upper right.";
+
+    "mesh": Table, Optional("Either [beam] or [mesh] is required"), "",
+        "Mesh from a Gmsh file.";
+    "mesh.file": Text, Required("the name of a mesh file"), r#""bracket.msh""#,
+        "Path of a file in the format MSH 4.1, ASCII, relative to the scene file. Its physical curves name the edges.";
+    "mesh.element": Choice(ELEMENTS), Optional("the element of the file"), r#""t6""#,
+        "Element type. Nodes in the middle of sides are added or left out; triangles and quadrilaterals are not exchanged.";
+    "mesh.scale": Number(limits::MESH_SCALE), Optional("1: the file is in metres"), "0.001",
+        "Metres per unit of the file: 0.001 reads a file in millimetres.";
+
+    "material": Table, Required("the table [material]"), "",
+        "Linear elastic, isotropic material.";
+    "material.young": Number(limits::YOUNG), Required(""), r#""210 GPa""#,
+        "Young's modulus E.";
+    "material.poisson": Number(limits::POISSON_STRESS), Required(""), "0.3",
+        "Poisson's ratio ν. In plane strain at most 0.4999.";
+    "material.density": Number(limits::DENSITY), Default("1000.0"), r#""7.8 g/cm³""#,
+        "Density ρ, for gravity and motion. A dynamic scene needs more than 0.";
+    "material.thickness": Number(limits::THICKNESS), Default("1.0"), r#""3 mm""#,
+        "Thickness t out of the plane. Forces and masses are those of the whole thickness.";
+    "material.plane": Choice(&["stress", "strain"]), Default(r#""stress""#), r#""strain""#,
+        "Plane stress, as in a thin plate, or plane strain, as in a slice of a long body.";
+
+    "support": Tables, Optional("A static scene needs at least one"), "",
+        "Held nodes. A pin holds a point in x and y, a roller in one direction, a clamp an edge in x and y. A dynamic scene without supports is a free body.";
+    "support.edge": Text, Optional("edge or at is required"), r#""left""#,
+        "Edge all of whose nodes are held.";
+    "support.at": Pair(limits::COORDINATE), Optional("edge or at is required"), "[10.0, 0.0]",
+        "Point, at rest; the nearest node is held.";
+    "support.fix": Choices(&["x", "y"]), Required(r#"the directions it fixes, as in ["x", "y"]"#), r#"["x", "y"]"#,
+        "Directions that are held; at least one.";
+    "support.displacement": Pair(limits::COORDINATE), Default("[0.0, 0.0]"), r#"[0.0, "-3 mm"]"#,
+        "Prescribed displacement, in the directions of fix. Static scenes only.";
+    "support.turn": Number(limits::ROTATION), Default("0.0"), r#""30°""#,
+        "Prescribed rotation of an edge about its middle, counter-clockwise; needs edge, and fix = [\"x\", \"y\"]. Static scenes only.";
+
+    "load": Tables, Default("[]"), "",
+        "Forces, moments and gravity.";
+    "load.kind": Choice(&["force", "gravity", "moment"]), Required(r#"one of "force", "gravity", "moment""#), r#""force""#,
+        "Force and gravity keep their direction as the body rotates; a moment rotates with its edge.";
+    "load.edge": Text, Optional("required for a moment; edge or at for a force"), r#""right""#,
+        "Edge over which the force or moment is spread. The edge of a moment is straight.";
+    "load.at": Pair(limits::COORDINATE), Optional("edge or at is required for a force"), "[5.0, 0.25]",
+        "Point, at rest, for a force; it acts on the nearest node.";
+    "load.force": Vector(limits::FORCE), Optional("required for a force"), r#"[0.0, "-12 kN"]"#,
+        "Total force; on an edge a uniform traction.";
+    "load.acceleration": Vector(limits::ACCELERATION), Optional("required for gravity"), "[0.0, -9.81]",
+        "Acceleration of gravity.";
+    "load.moment": Number(limits::MOMENT), Optional("required for a moment"), r#""2 kN m""#,
+        "Moment, counter-clockwise.";
+    "load.pulse": Table, Optional("a constant load"), "{ start = 0.2, duration = 0.1 }",
+        "Makes the load act for a time: times sin²(π (t − start)/duration) during the pulse, and 0 otherwise. Dynamic scenes only.";
+    "load.pulse.start": Number(limits::PULSE_START), Required(""), "0.2",
+        "Start of the pulse.";
+    "load.pulse.duration": Number(limits::PULSE_DURATION), Required(""), r#""100 ms""#,
+        "Duration of the pulse.";
+
+    "probe": Tables, Default("[]"), "",
+        "Places whose displacements are printed, plotted and compared with the reference solution.";
+    "probe.name": Text, Required("what it is called in results"), r#""tip""#,
+        "Name in results; each probe has its own.";
+    "probe.edge": Text, Optional("edge or at is required"), r#""right""#,
+        "Edge over which the displacement is averaged.";
+    "probe.at": Pair(limits::COORDINATE), Optional("edge or at is required"), "[10.0, 0.0]",
+        "Material point, at rest; the displacement is interpolated.";
+
+    "solver": Table, Optional("Optional"), "",
+        "Settings of the solver.";
+    "solver.method": Choice(&["linear", "warped", "newton", "auto"]), Default(r#""newton""#), r#""warped""#,
+        "linear: linear theory. warped: the article's iteration. newton: Newton's method with the exact tangent. auto: the cheapest of these that meets max_error_percent.";
+    "solver.tolerance": Number(limits::TOLERANCE), Default("1e-8"), "1e-10",
+        "Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which a solve has converged.";
+    "solver.max_iterations": Integer(limits::MAX_ITERATIONS), Default("1000"), "50",
+        "Linear solves after which a solve has failed.";
+    "solver.accept_after": Integer(limits::ACCEPT_AFTER), Default("0"), "3",
+        "Iterations after which the result is accepted without convergence (status accepted, exit code 0); 0: never. Static scenes only.";
+    "solver.max_error_percent": Number(limits::MAX_ERROR_PERCENT), Default("1.0"), "0.5",
+        "Largest error that method auto allows itself, percent of the displacement that the scene's mesh has at equilibrium.";
+
+    "dynamics": Table, Optional("Optional"), "",
+        "Settings of a motion. Dynamic scenes only.";
+    "dynamics.integrator": Choice(&["implicit-euler", "tr-bdf2", "energy-momentum", "symplectic-euler"]), Default(r#""tr-bdf2""#), r#""energy-momentum""#,
+        "Time integration method.";
+    "dynamics.time_step": Number(limits::TIME_STEP), Default("0.016666666666666666"), r#""5 ms""#,
+        "Time step h.";
+    "dynamics.duration": Number(limits::DURATION), Default("10.0"), "2.0",
+        "Time after which a run without a window ends.";
+    "dynamics.iterations": Integer(limits::STEP_ITERATIONS), Default("1"), "0",
+        "Solves per stage of a time step; 0: until solver.tolerance is met.";
+    "dynamics.damping": Table, Optional("no damping"), "{ mass = 0.1, stiffness = 0.001 }",
+        "Rayleigh damping. Rigid rotation is not damped by stiffness.";
+    "dynamics.damping.mass": Number(limits::MASS_DAMPING), Default("0.0"), "0.1",
+        "Mass-proportional factor α: a mode of angular frequency ω decays at the rate α/2.";
+    "dynamics.damping.stiffness": Number(limits::STIFFNESS_DAMPING), Default("0.0"), "0.001",
+        "Stiffness-proportional factor β: a mode decays at the rate β ω²/2.";
+
+    "start": Table, Optional("Optional"), "",
+        "Initial velocities. Dynamic scenes only.";
+    "start.velocity": Vector(limits::SPEED), Default("[0.0, 0.0]"), "[1.0, 0.0]",
+        "Velocity of the body.";
+    "start.spin": Number(limits::SPIN), Default("0.0"), r#""90 °/s""#,
+        "Angular velocity about the centre of mass, counter-clockwise.";
+};
