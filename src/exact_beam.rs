@@ -347,7 +347,7 @@ pub enum ExactBeam {
 impl ExactBeam {
     /// Returns the reference solution of a scene, `None` if it has none.
     ///
-    /// It exists for a rectangle clamped on its left edge whose loads are gravity and forces and moments on the right
+    /// The exact beam exists for a rectangle clamped on its left edge whose loads are gravity and forces and moments on the right
     /// edge; and for a rectangle fixed there in x only (and in one point in y) that is pulled along its axis.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {

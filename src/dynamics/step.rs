@@ -57,7 +57,7 @@ impl From<&StepError> for Sentence {
     fn from(error: &StepError) -> Self {
         match error {
             StepError::Solver(error) => error.into(),
-            StepError::NotFinite => sentence!("a result is not a finite number"),
+            StepError::NotFinite => sentence!("a result is not a finite number: shorten the time step"),
             StepError::AddedEnergy => sentence!("the time step has added energy to the motion"),
             StepError::NotConverged(n) => {
                 sentence!("the iteration did not reach its tolerance within %{n} solves", n)

@@ -31,7 +31,7 @@ impl Mesh {
     /// Returns the material point at a position, m, with the nodes at `positions`; `None` outside the body, and if the
     /// number of positions differs from the number of nodes.
     ///
-    /// It tests the bounding boxes of all elements. For a moving body a search index would have to be rebuilt in every
+    /// Tests the bounding boxes of all elements. For a moving body a search index would have to be rebuilt in every
     /// state, which costs more.
     #[must_use]
     pub fn locate_in(&self, positions: &[Vector2<f64>], at: Vector2<f64>) -> Option<MaterialPoint> {

@@ -37,7 +37,7 @@ pub fn is_stable(
 /// generalised force g = Σ r · ∂u/∂λ with respect to the fraction λ of the motion. `None` if the body is unstable even
 /// with the supports held.
 ///
-/// It is the Schur complement of the exact tangent when everything but λ is eliminated: if the supports are released
+/// The value is the Schur complement of the exact tangent when everything but λ is eliminated: if the supports are released
 /// and driven by g instead, the body is stable if the tangent is positive definite on the free unknowns and this value
 /// is positive.
 pub fn support_stiffness(

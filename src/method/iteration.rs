@@ -25,7 +25,7 @@ impl From<&IterationError> for Sentence {
     fn from(error: &IterationError) -> Self {
         match error {
             IterationError::Solver(error) => error.into(),
-            IterationError::NotFinite => sentence!("the solution is not a finite number"),
+            IterationError::NotFinite => sentence!("the solution is not a finite number: reduce the load"),
         }
     }
 }

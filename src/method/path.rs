@@ -285,7 +285,7 @@ pub struct PathEvents {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum PathEndReason {
-    /// There is no equilibrium nearby, stable or not.
+    /// No equilibrium was found near the last one, stable or not.
     NoEquilibrium,
     /// The limit of the number of solves was reached.
     Solves(u32),

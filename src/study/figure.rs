@@ -9,20 +9,20 @@ use crate::sentence::{Sentence, sentence};
 /// A quantity that every point of a figure has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit; empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: &'static str,
 }
 
 impl Quantity {
-    /// A quantity with its unit.
+    /// Returns a quantity with its unit.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
         Self { name: name.into(), unit }
     }
 
-    /// The name with the unit in brackets: the head of a column.
+    /// Returns the name with the unit in brackets, the head of a column.
     fn heading(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, self.unit) }
     }
@@ -37,7 +37,7 @@ pub enum Ink {
     Method(MethodKind),
     /// Unstable equilibria.
     Unstable,
-    /// The scene as it stands.
+    /// Present state of the scene.
     Scene,
 }
 
@@ -73,36 +73,36 @@ impl Mark {
 /// A point of a series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigurePoint {
-    /// The value of each quantity of the figure; `None` where it has none.
+    /// Value of each quantity of the figure; `None` where the point has none.
     pub values: Vec<Option<f64>>,
     /// Error of the displacement, percent of the exact one, where that is known.
     pub error_percent: Option<f64>,
-    /// Status in a word, such as `stable`; empty where there is nothing to say.
+    /// Status in a word, such as `stable`; may be empty.
     pub state: String,
     /// `true` if it belongs to the present load.
     pub is_present: bool,
 }
 
 impl FigurePoint {
-    /// A point that has all values.
+    /// Returns a point that has all values.
     #[must_use]
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
         Self { values: values.into_iter().map(Some).collect(), ..Self::default() }
     }
 }
 
-/// Points that share a name and a look.
+/// Points with one name, colour and mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureSeries {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its colour.
+    /// Colour.
     pub ink: Ink,
-    /// Its look.
+    /// Line or mark.
     pub mark: Mark,
     /// `true` if the series may leave the picture instead of stretching it.
     pub may_leave: bool,
-    /// Its points.
+    /// Points, in the order in which a line joins them.
     pub points: Vec<FigurePoint>,
 }
 
@@ -111,15 +111,15 @@ pub struct FigureSeries {
 pub struct FigureRow {
     /// Name of the series.
     pub name: String,
-    /// Its colour.
+    /// Colour.
     pub ink: Ink,
-    /// Its look.
+    /// Line or mark.
     pub mark: Mark,
-    /// Present value in words; empty where there is none.
+    /// Present value with its unit; may be empty.
     pub value: String,
-    /// Error in words; empty where it is not known.
+    /// Error with its unit; empty if it is not known.
     pub error: String,
-    /// `true` if the value says that there is no result.
+    /// `true` if the value is a status without result, such as `diverged`.
     pub is_bad: bool,
 }
 
@@ -128,30 +128,30 @@ pub struct FigureRow {
 pub struct Figure {
     /// The scene's title.
     pub title: String,
-    /// Quantities of every point.
+    /// Quantities that each point has.
     pub quantities: Vec<Quantity>,
-    /// The quantities along the horizontal and the vertical axis.
+    /// Indices of the quantities along the horizontal and the vertical axis.
     pub axes: [usize; 2],
     /// Lower left and upper right corner of the picture; `None` shows all points.
     pub bounds: Option<[[f64; 2]; 2]>,
     /// The series.
     pub series: Vec<FigureSeries>,
-    /// Head of the table: name, value and error.
+    /// Headings of the table: name, value and error.
     pub head: [String; 3],
-    /// Head of the column of errors in CSV.
+    /// Heading of the column of errors in CSV.
     pub error_name: String,
     /// Rows of the table.
     pub rows: Vec<FigureRow>,
 }
 
 impl Figure {
-    /// The quantity along an axis: 0 is the horizontal one.
+    /// Returns the quantity along an axis: 0 is horizontal, 1 vertical.
     #[must_use]
     pub fn quantity(&self, axis: usize) -> Option<&Quantity> {
         self.quantities.get(*self.axes.get(axis)?)
     }
 
-    /// The place of a point in the picture; `None` where it has none.
+    /// Returns the values of a point along both axes; `None` if one is missing.
     #[must_use]
     pub fn place(&self, point: &FigurePoint) -> Option<[f64; 2]> {
         let value = |axis: usize| point.values.get(axis).copied().flatten().filter(|v| v.is_finite());
@@ -207,7 +207,7 @@ impl Figure {
         [low, high]
     }
 
-    /// The series as a table (CSV), a row a point, in the units of the head.
+    /// Formats the series as CSV, a row per point, in the units of the headings.
     #[must_use]
     pub fn csv(&self) -> String {
         let points = || self.series.iter().flat_map(|series| &series.points);
@@ -238,19 +238,19 @@ fn csv_row(fields: &[String]) -> String {
     fields.join(",") + "\n"
 }
 
-/// The axis of a scene's loads.
+/// Axis of a scene's loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadAxis {
     /// Name of the quantity.
     pub name: Sentence,
-    /// Its unit; empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: &'static str,
     /// Value under the scene's own loads.
     pub full: f64,
 }
 
 impl LoadAxis {
-    /// The one load, or the first of several that have one unit; the load factor where their units differ.
+    /// Returns the axis of the only load, or of the first of several with the same unit; otherwise that of the load factor.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let pulling: Vec<(&'static str, &'static str, f64)> =

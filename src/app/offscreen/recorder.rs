@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [640, 400];
 pub(crate) enum RecorderError {
     #[error(transparent)]
     NoName(#[from] NoName),
-    #[error("no thread for it: {0}")]
+    #[error("the recording cannot start: {0}")]
     NoThread(#[from] std::io::Error),
 }
 

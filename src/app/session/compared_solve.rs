@@ -262,7 +262,9 @@ impl ComparedSolve {
                     self.given = None;
                     break Body::None;
                 }
-                SolveUpdate::Died => break Body::Refused(sentence!("the solve ended unexpectedly")),
+                SolveUpdate::Died => {
+                    break Body::Refused(sentence!("the solve ended unexpectedly: change a value to solve again"));
+                }
             }
         };
         if self.given == self.wanted {

@@ -26,7 +26,7 @@ pub(crate) enum CameraMove {
 /// Target of the current press.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Held {
-    /// There is no press, or it is outside the view.
+    /// No press, or one outside the view.
     #[default]
     Nothing,
     /// The tip of an arrow.
@@ -72,10 +72,11 @@ const NEAR: f64 = 8.0;
 /// Interaction that the body allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// None.
+    /// No interaction.
     None,
-    /// Its values can be shown, but it cannot be grabbed.
+    /// The values of a point can be shown; the body cannot be grabbed.
     Visible,
+    /// The body can also be grabbed.
     Grabbable,
 }
 

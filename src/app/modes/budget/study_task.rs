@@ -86,7 +86,9 @@ impl Background {
                 Update::Done(Err(Some(error))) => return StudyState::Ended(Err(error)),
                 Update::None => return StudyState::Running,
                 Update::Died if self.task.is_cancelled() => return StudyState::Ended(Ok(())),
-                Update::Died => return StudyState::Ended(Err(sentence!("the study ended unexpectedly"))),
+                Update::Died => {
+                    return StudyState::Ended(Err(sentence!("the study ended unexpectedly: measure again")));
+                }
             }
         }
     }

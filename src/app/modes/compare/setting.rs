@@ -48,7 +48,7 @@ pub enum PaneSettingError {
         /// Text of the part.
         part: String,
     },
-    /// There are too few or too many panes.
+    /// Too few or too many panes.
     #[error("expected {} to {} panes, as in linear,warped,newton, got {got}", PANES.start(), PANES.end())]
     Count {
         /// Number of panes.

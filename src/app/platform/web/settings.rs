@@ -15,7 +15,7 @@ pub(crate) fn file() -> Option<PathBuf> {
 /// Reads the settings.
 ///
 /// # Errors
-/// There are none.
+/// [`io::ErrorKind::NotFound`] if the browser has no settings of this name.
 pub(crate) fn read(file: &Path) -> io::Result<String> {
     let text = storage().zip(file.to_str()).and_then(|(storage, name)| storage.get_item(name).ok().flatten());
     text.ok_or_else(|| io::ErrorKind::NotFound.into())
