@@ -1,8 +1,6 @@
 //! The application: window, screenshots and recordings. [`Lab`] is the content of a window: a scene, its simulation and
 //! the display options. The window, the offscreen shot and the tests of the panel all show it through [`Lab::ui`].
 
-use std::path::PathBuf;
-
 use thiserror::Error;
 
 use crate::render::RenderError;
@@ -43,19 +41,6 @@ pub use shell::shortcuts::every_shortcut;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;
 pub use window::{Display, NoDisplay, opens_in_background, run};
-
-/// Error if all numbered file names are taken.
-#[derive(Debug, Error)]
-#[error("warpbeam-001.{extension} to warpbeam-999.{extension} all exist: delete or move some of them")]
-pub(crate) struct NoName {
-    extension: &'static str,
-}
-
-/// Returns the first of the names `warpbeam-001.png`, … for which no file exists.
-fn free_name(extension: &'static str) -> Result<PathBuf, NoName> {
-    let mut names = (1..1000).map(|i| PathBuf::from(format!("warpbeam-{i:03}.{extension}")));
-    names.find(|path| !path.exists()).ok_or(NoName { extension })
-}
 
 /// Error of the window, of a screenshot or of a recording.
 #[derive(Debug, Error)]

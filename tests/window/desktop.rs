@@ -602,9 +602,38 @@ fn v_records_the_window_while_the_body_is_pulled() {
             window.key("v");
             asked = Some(Instant::now());
         }
-        path.exists().then_some(())
+        std::fs::metadata(&path).is_ok_and(|file| file.len() > 0).then_some(())
     });
     window.close_well();
     let (pictures, _) = movie(&path).unwrap();
     assert!(pictures >= 1);
+}
+
+/// A recording of the window and one of the scene that run at the same time have a file each.
+#[test]
+fn two_recordings_at_a_time_have_a_file_each() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &["run", "jelly"]);
+    let [first, second] = ["warpbeam-001.gif", "warpbeam-002.gif"].map(|name| folder.path().join(name));
+    press_until(&window, "shift+v", "the recording of the scene", || first.exists());
+    press_until(&window, "v", "the recording of the window", || second.exists());
+    press_until(&window, "v", "the whole recording of the window", || movie(&second).is_some());
+    wait_for("the whole recording of the scene", || movie(&first));
+    window.close_well();
+}
+
+/// Presses a key, again if it has had no effect for a while, until a condition holds.
+fn press_until(window: &Window<'_>, key: &str, what: &str, mut done: impl FnMut() -> bool) {
+    let mut asked: Option<Instant> = None;
+    wait_for(what, || {
+        if done() {
+            return Some(());
+        }
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            window.key(key);
+            asked = Some(Instant::now());
+        }
+        None
+    });
 }

@@ -1,26 +1,14 @@
 //! Recording of the scene from its start into a GIF in the current folder, made in the background.
 
-use std::path::Path;
-
-use thiserror::Error;
-
+use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, count, fill, said, tr};
 use crate::app::offscreen::record::{Phase, RecordOptions, RecordProgress, record};
+use crate::app::platform::new_file::NewFile;
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::app::{NoName, ThemeChoice, free_name};
 use crate::scene::{Scene, Source};
 
 /// Size of the recording, pixels.
 const SIZE: [u32; 2] = [640, 400];
-
-/// Reason for which there is no recording.
-#[derive(Debug, Error)]
-pub(crate) enum RecorderError {
-    #[error(transparent)]
-    NoName(#[from] NoName),
-    #[error("the recording cannot start: {0}")]
-    NoThread(#[from] std::io::Error),
-}
 
 /// Progress report: the fraction done, and the current phase.
 type Progress = (f32, String);
@@ -36,18 +24,18 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// Starts recording a scene.
+    /// Starts recording a scene into a file.
     ///
     /// # Errors
-    /// [`RecorderError`].
+    /// The system cannot start another thread.
     pub(crate) fn start(
         source: Source,
         scene: Scene,
         theme: ThemeChoice,
         language: Language,
-    ) -> Result<Self, RecorderError> {
-        let path = free_name("gif")?;
-        let task = Task::start("record", move |reporter| work(&source, scene, (theme, language), &path, reporter))?;
+        file: NewFile,
+    ) -> std::io::Result<Self> {
+        let task = Task::start("record", move |reporter| work(&source, scene, (theme, language), &file, reporter))?;
         Ok(Self { task, fraction: 0.0, text: String::new() })
     }
 
@@ -79,10 +67,11 @@ fn work(
     source: &Source,
     scene: Scene,
     (theme, language): (ThemeChoice, Language),
-    path: &Path,
+    file: &NewFile,
     reporter: &Reporter<Progress, String>,
 ) -> String {
     language::speak(language);
+    let path = file.path();
     let mut observe = |progress: RecordProgress| {
         let text = match progress.phase {
             Phase::Looking => tr("Preparing the recording").to_owned(),

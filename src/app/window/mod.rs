@@ -24,16 +24,17 @@ use winit::window::{Window, WindowId};
 use crate::app::language::fill;
 use crate::app::offscreen::painter::Stage;
 use crate::app::offscreen::record::{LiveRecording, pointer};
-use crate::app::offscreen::recorder::{Recorder, RecorderError};
+use crate::app::offscreen::recorder::Recorder;
 use crate::app::offscreen::shot::picture;
 use crate::app::platform::clipboard::Clipboard;
+use crate::app::platform::new_file::NewFile;
 use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MOST_UNKNOWNS;
 use crate::app::task::thread::POLL;
-use crate::app::{AppError, NoName, ThemeChoice, free_name};
+use crate::app::{AppError, ThemeChoice};
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
@@ -419,9 +420,8 @@ impl App {
         }
         let size = [open.configuration.width, open.configuration.height];
         let format = open.configuration.format;
-        let started = free_name("gif")
-            .map_err(RecorderError::from)
-            .and_then(|path| Ok(LiveRecording::start(&open.gpu, format, size, &path, self.lab.language())?));
+        let started =
+            new_file("gif").and_then(|file| LiveRecording::start(&open.gpu, format, size, file, self.lab.language()));
         match started {
             Ok(recording) => {
                 self.recording = Some(recording);
@@ -438,7 +438,8 @@ impl App {
         }
         let theme = if self.ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
         let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
-        match Recorder::start(source, scene, theme, self.lab.language()) {
+        let language = self.lab.language();
+        match new_file("gif").and_then(|file| Recorder::start(source, scene, theme, language, file)) {
             Ok(recorder) => self.scene_recording = Some(recorder),
             Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
         }
@@ -484,10 +485,10 @@ impl App {
             return self.lab.say(&self.ctx, fill!("Saved %{file}", file = NAME));
         }
         let size = [open.configuration.width, open.configuration.height];
-        let saved = free_name("png").map_err(ScreenshotError::from).and_then(|path| {
+        let saved = new_file("png").map_err(ScreenshotError::from).and_then(|file| {
             let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
-            picture.write_png(&path).map_err(RenderError::from)?;
-            Ok(path)
+            picture.write_png(file.path()).map_err(RenderError::from)?;
+            Ok(file.path().to_owned())
         });
         let message = match saved {
             Ok(path) => fill!("Saved %{file}", file = path.display()),
@@ -522,11 +523,16 @@ impl App {
     }
 }
 
+/// Creates a file with a new name in the current folder.
+fn new_file(extension: &str) -> std::io::Result<NewFile> {
+    NewFile::create(Path::new(""), extension)
+}
+
 /// Reason for which there is no screenshot.
 #[derive(Debug, Error)]
 enum ScreenshotError {
     #[error(transparent)]
-    NoName(#[from] NoName),
+    NoFile(#[from] std::io::Error),
     #[error(transparent)]
     Render(#[from] RenderError),
 }

@@ -2,7 +2,7 @@
 
 use crate::app::action::{Action, FigureFile};
 use crate::app::view_options::CurvePlot;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, PlotResponse, Points, VLine};
@@ -10,10 +10,10 @@ use thiserror::Error;
 
 use crate::app::language::{fill, tr};
 use crate::app::platform::files;
+use crate::app::platform::new_file::NewFile;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
-use crate::app::{NoName, free_name};
 use crate::image::PictureError;
 use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
@@ -22,7 +22,7 @@ use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 #[derive(Debug, Error)]
 #[error("{}", Sentence::from(self))]
 pub(crate) enum SaveError {
-    NoName(#[from] NoName),
+    NoFile(#[from] std::io::Error),
     File { path: PathBuf, reason: std::io::Error },
     Picture(#[from] PictureError),
 }
@@ -30,7 +30,7 @@ pub(crate) enum SaveError {
 impl From<&SaveError> for Sentence {
     fn from(error: &SaveError) -> Self {
         match error {
-            SaveError::NoName(error) => error.to_string().into(),
+            SaveError::NoFile(error) => error.to_string().into(),
             SaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
             SaveError::Picture(error) => error.to_string().into(),
         }
@@ -39,12 +39,13 @@ impl From<&SaveError> for Sentence {
 
 /// Saves a figure in the current folder under the first free name, and returns its path.
 pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveError> {
-    let path = free_name(file.extension())?;
+    let new = NewFile::create(Path::new(""), file.extension())?;
     let bytes = match file {
         FigureFile::Csv => figure.csv().into_bytes(),
         FigureFile::Svg => crate::plot::figure(figure).svg().into_bytes(),
         FigureFile::Png => crate::plot::figure(figure).picture()?.png()?,
     };
+    let path = new.path().to_owned();
     match files::save(&path, &bytes) {
         Ok(()) => Ok(path),
         Err(reason) => Err(SaveError::File { path, reason }),

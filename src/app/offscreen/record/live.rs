@@ -12,6 +12,7 @@ use super::RecordError;
 use super::film::{Film, MovieFormat};
 use crate::app::language::{self, Language, count, fill, said, tr};
 use crate::app::offscreen::painter::Stage;
+use crate::app::platform::new_file::NewFile;
 use crate::app::task::thread::{Task, Update};
 use crate::image::Picture;
 use crate::render::{Gpu, RenderError, View};
@@ -52,7 +53,7 @@ struct Reading {
 }
 
 impl LiveRecording {
-    /// Starts recording a window of this size, pixels, drawn in this format.
+    /// Starts recording a window of this size, pixels, drawn in this format, into a file.
     ///
     /// # Errors
     /// The system cannot start another thread.
@@ -60,7 +61,7 @@ impl LiveRecording {
         gpu: &Gpu,
         format: wgpu::TextureFormat,
         window: [u32; 2],
-        path: &Path,
+        file: NewFile,
         language: Language,
     ) -> std::io::Result<Self> {
         let scale = (MAX_SIDE / window[0].max(window[1]).max(1) as f32).min(1.0);
@@ -68,13 +69,13 @@ impl LiveRecording {
         let target = gpu.target("recording", format, size, 1, wgpu::TextureUsages::COPY_SRC);
         let (sender, receiver) = sync_channel(MOST_WAITING);
         let end = Arc::new(AtomicU64::new(0));
-        let (own_path, own_end) = (path.to_owned(), end.clone());
+        let (path, own_end) = (file.path().to_owned(), end.clone());
         let task = Task::start("recording", move |_| {
             language::speak(language);
-            encode(&own_path, &receiver, &own_end)
+            encode(file.path(), &receiver, &own_end)
         })?;
         Ok(Self {
-            path: path.to_owned(),
+            path,
             task,
             sender: Some(sender),
             end,
@@ -355,13 +356,14 @@ mod tests {
     fn a_window_is_recorded_as_it_is_drawn_and_no_memory_grows() {
         let gpu = Gpu::headless().unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("window.gif");
+        let file = NewFile::create(folder.path(), "gif").unwrap();
+        let path = file.path().to_owned();
         let source = Source { name: "swing".into(), assignments: Vec::new() };
         let scene = open(&source).unwrap();
         let mut lab = Lab::new(source, scene.clone(), Simulation::new(&scene).unwrap());
         let (ctx, mut stage) = (egui::Context::default(), Stage::new(&gpu, FORMAT));
         let screen = ScreenDescriptor { size_in_pixels: [640, 400], pixels_per_point: 1.0 };
-        let mut recording = LiveRecording::start(&gpu, FORMAT, [640, 400], &path, Language::English).unwrap();
+        let mut recording = LiveRecording::start(&gpu, FORMAT, [640, 400], file, Language::English).unwrap();
         let (frames, between) = (60, 0.03);
         for k in 0..frames {
             let now = f64::from(k) * between;

@@ -4,6 +4,7 @@ mod atomic_write;
 pub(crate) mod clipboard;
 pub(crate) mod files;
 pub(crate) mod graphics;
+pub(crate) mod new_file;
 pub(crate) mod page;
 pub(crate) mod settings;
 pub(crate) mod start;
