@@ -637,3 +637,19 @@ fn press_until(window: &Window<'_>, key: &str, what: &str, mut done: impl FnMut(
         None
     });
 }
+
+/// The window asks before it closes during a recording of the scene. The file then has the pictures so far.
+#[test]
+fn a_recording_of_the_scene_is_complete_when_the_window_closes() {
+    let Some(desktop) = Desktop::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let window = Window::open_in(&desktop, folder.path(), &["run", "jelly", "--set", "dynamics.duration=10"]);
+    let path = folder.path().join("warpbeam-001.gif");
+    press_until(&window, "shift+v", "the recording", || path.exists());
+    wait_for("some pictures", || std::fs::metadata(&path).is_ok_and(|file| file.len() > 0).then_some(()));
+    let (code, said) = window.close_by(&["alt+F4", "Return"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("Saved warpbeam-001.gif"), "{said}");
+    let (pictures, _) = movie(&path).unwrap();
+    assert!((1..251).contains(&pictures), "{pictures}");
+}

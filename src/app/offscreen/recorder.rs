@@ -50,10 +50,10 @@ impl Recorder {
         self.task.cancel();
     }
 
-    /// Polls the thread; returns the final message once it has ended.
-    pub(crate) fn poll(&mut self) -> Option<String> {
+    /// Returns the final message once the recording has ended; waits for it if `waits` is `true`.
+    pub(crate) fn ended(&mut self, waits: bool) -> Option<String> {
         loop {
-            match self.task.poll() {
+            match self.task.next(waits) {
                 Update::Progress(said) => (self.fraction, self.text) = said,
                 Update::Done(text) => return Some(text),
                 Update::None => return None,

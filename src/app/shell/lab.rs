@@ -91,13 +91,15 @@ pub(super) enum Departure {
     AskForFile,
 }
 
-/// State of the question about unsaved edits.
+/// Question that the user is asked.
 #[derive(Debug, Default)]
 pub(super) enum Question {
     #[default]
     None,
-    /// The question is shown.
-    Asked(Departure),
+    /// Unsaved edits would be lost.
+    Unsaved(Departure),
+    /// The window is to close while the scene is recorded.
+    Recording,
     /// "Save" was answered, and the dialog asks for a file.
     Saving(Departure),
 }
@@ -111,7 +113,6 @@ pub struct Lab {
     pub(super) card: usize,
     pub(super) intro: Option<Intro>,
     pub(super) dialog: Option<FileDialog>,
-    /// State of the dialog that asks about unsaved edits.
     pub(super) question: Question,
     /// Edits left by a crashed window, while they are offered.
     pub(super) left: Option<Unsaved>,

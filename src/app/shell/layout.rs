@@ -76,7 +76,7 @@ impl Lab {
         }
         help::show(ui.ctx(), &mut self.desk.view.help);
         self.offer_unsaved(ui.ctx(), &mut requests);
-        self.ask_to_save(ui.ctx());
+        self.show_question(ui.ctx());
         self.ask_for_file(ui.ctx());
         requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         if self.desk.session.is_working() {

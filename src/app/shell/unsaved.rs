@@ -1,4 +1,5 @@
-//! Unsaved edits: the question before they are lost, and the offer to restore those left by a crashed window.
+//! Questions before something is lost: unsaved edits, or the rest of a recording. The offer to restore the edits left by a
+//! crashed window.
 
 use egui::{Context, Event, Id, Key, Modal, RichText};
 
@@ -25,8 +26,8 @@ impl Lab {
         self.left = Some(left);
     }
 
-    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits, and
-    /// [`Request::Close`] follows unless the answer is "Cancel".
+    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits or
+    /// a recording, and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
         if self.unsaved().is_some() && self.lesson.is_some() {
             self.desk.view.mode = Mode::Explore;
@@ -38,28 +39,30 @@ impl Lab {
 
     /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
-        self.dialog.is_some() || matches!(self.question, Question::Asked(_))
+        self.dialog.is_some() || matches!(self.question, Question::Unsaved(_) | Question::Recording)
     }
 
     /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
     /// the user's scene is kept.
     pub(super) fn depart(&mut self, ctx: &Context, departure: Departure) {
         let loses = self.lesson.is_none() && self.unsaved().is_some();
-        if !loses {
-            return self.go(ctx, departure);
-        }
+        if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
+    }
+
+    fn ask(&mut self, ctx: &Context, question: Question) {
         // The question gets the keys.
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
         }
         // The key that opened the question must not answer it.
-        ctx.input_mut(|i| i.events.retain(|event| !pressed(event, Key::Enter) && !pressed(event, Key::D)));
-        self.question = Question::Asked(departure);
+        ctx.input_mut(|i| i.events.retain(|event| !matches!(event, Event::Key { pressed: true, .. })));
+        self.question = question;
         ctx.request_repaint();
     }
 
     fn go(&mut self, ctx: &Context, departure: Departure) {
         match departure {
+            Departure::Close if self.recording.is_some() => self.ask(ctx, Question::Recording),
             Departure::Close => self.closes = true,
             Departure::Open(source) => self.open(ctx, source),
             Departure::AskForFile if IS_PAGE => files::choose(),
@@ -77,37 +80,35 @@ impl Lab {
         }
     }
 
-    /// Shows the question about unsaved edits, if it is due.
-    pub(crate) fn ask_to_save(&mut self, ctx: &Context) {
-        let Question::Asked(departure) = &self.question else { return };
-        let departure = departure.clone();
-        let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
-        let (mut save, mut discard, mut cancel) = (false, false, false);
-        let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
-            ui.set_width(ui.available_width().min(360.0));
-            ui.heading(title);
-            ui.add_space(6.0);
-            ui.label(tr("Discarded changes are lost."));
-            ui.add_space(10.0);
-            ui.horizontal(|ui| {
-                save = ui.button(RichText::new(tr("Save")).strong()).on_hover_text("Enter").clicked();
-                discard = ui.button(tr("Discard")).on_hover_text("D").clicked();
-                cancel = ui.button(tr("Cancel")).on_hover_text("Esc").clicked();
-            });
-        });
-        ctx.input(|i| {
-            save |= i.events.iter().any(|event| pressed(event, Key::Enter));
-            discard |= i.events.iter().any(|event| pressed(event, Key::D));
-        });
-        if cancel || modal.should_close() {
-            self.question = Question::None;
-        } else if discard {
-            self.question = Question::None;
-            // After another scene has been opened, undo restores the discarded edits.
-            self.go(ctx, departure);
-        } else if save {
-            self.question = Question::Saving(departure);
-            self.save_here(ctx);
+    /// Shows the question, if there is one, and processes its answer.
+    pub(crate) fn show_question(&mut self, ctx: &Context) {
+        match std::mem::take(&mut self.question) {
+            Question::Unsaved(departure) => {
+                let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
+                let answers = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
+                match dialog(ctx, &title, tr("Discarded changes are lost."), &answers) {
+                    None => self.question = Question::Unsaved(departure),
+                    Some("Save") => {
+                        self.question = Question::Saving(departure);
+                        self.save_here(ctx);
+                    }
+                    // After another scene has been opened, undo restores the discarded edits.
+                    Some("Discard") => self.go(ctx, departure),
+                    Some(_) => {}
+                }
+            }
+            // Once the recording is complete, there is nothing to ask.
+            Question::Recording if self.recording.is_some() => {
+                let text = tr("If the window closes now, the file has only the pictures recorded so far.");
+                let answers = [("Close", Key::Enter), ("Cancel", Key::Escape)];
+                match dialog(ctx, tr("The scene is being recorded."), text, &answers) {
+                    None => self.question = Question::Recording,
+                    Some("Close") => self.closes = true,
+                    Some(_) => {}
+                }
+            }
+            Question::Recording => {}
+            other => self.question = other,
         }
     }
 
@@ -136,6 +137,28 @@ impl Lab {
         requests.push(Request::DiscardCopy);
         ctx.request_repaint();
     }
+}
+
+/// Shows a question with these answers and their keys; returns the answer. The last one cancels.
+fn dialog(ctx: &Context, title: &str, text: &str, answers: &[(&'static str, Key)]) -> Option<&'static str> {
+    let mut answer = None;
+    let modal = Modal::new(Id::unique("question")).show(ctx, |ui| {
+        ui.set_width(ui.available_width().min(360.0));
+        ui.heading(title);
+        ui.add_space(6.0);
+        ui.label(text);
+        ui.add_space(10.0);
+        ui.horizontal(|ui| {
+            for (i, (label, key)) in answers.iter().enumerate() {
+                let text = RichText::new(tr(label));
+                let button = ui.button(if i == 0 { text.strong() } else { text }).on_hover_text(key.name());
+                if button.clicked() || ui.input(|i| i.events.iter().any(|event| pressed(event, *key))) {
+                    answer = Some(*label);
+                }
+            }
+        });
+    });
+    answer.or_else(|| answers.last().filter(|_| modal.should_close()).map(|(label, _)| *label))
 }
 
 /// Returns `true` if an event is the first press of a key.

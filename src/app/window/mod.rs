@@ -147,10 +147,10 @@ fn run_with(
     };
     let ended = platform::start::run(display.0, app).map_err(|e| AppError::Window(e.to_string()))?;
     let Some(mut app) = ended else { return Ok(()) };
-    if let Some(text) = app.recording.as_ref().and_then(LiveRecording::wait) {
-        // The window that would show the message is closed.
-        eprintln!("warpbeam: {text}");
-    }
+    let ended = app.recording.as_ref().and_then(|recording| recording.ended(true));
+    let scene_ended = app.scene_recording.as_mut().and_then(|recorder| recorder.ended(true));
+    // The window that would show the messages is closed.
+    ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
     app.keep_settings();
     app.error.map_or(Ok(()), Err)
 }
@@ -368,7 +368,7 @@ impl App {
                 Request::Close => self.close(event_loop),
             }
         }
-        if let Some(text) = self.recording.as_ref().and_then(LiveRecording::poll) {
+        if let Some(text) = self.recording.as_ref().and_then(|recording| recording.ended(false)) {
             self.recording = None;
             self.say(text);
         }
@@ -449,7 +449,7 @@ impl App {
     /// Shows the progress of the scene's recording, or its end.
     fn follow_scene_recording(&mut self) {
         let Some(recorder) = &mut self.scene_recording else { return };
-        let ended = recorder.poll();
+        let ended = recorder.ended(false);
         let progress = ended.is_none().then(|| recorder.progress());
         self.lab.show_recording(progress);
         if let Some(text) = ended {
@@ -517,6 +517,7 @@ impl App {
         if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
             recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
         }
+        self.scene_recording.iter().for_each(Recorder::stop);
         // The surface must be dropped before the display connection closes.
         self.open = None;
         event_loop.exit();

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufWriter, Seek as _, Write as _};
+use std::io::{BufWriter, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::RecordError;
@@ -77,17 +77,17 @@ impl MovieFormat {
     }
 }
 
-/// Recording that is being written to its file or folder.
+/// Recording that is being written to its file or folder. A GIF that is dropped unfinished ends after its last whole
+/// frame; without one its file is removed.
 pub(super) struct Film {
     path: PathBuf,
     delay: Delay,
+    /// Number of frames.
     pictures: u64,
-    reel: Reel,
-}
-
-enum Reel {
-    Gif(Box<Gif>),
-    Folder,
+    /// Length of the GIF with these frames, bytes.
+    length: u64,
+    /// `None` for a folder, and once the GIF is finished.
+    gif: Option<Box<Gif>>,
 }
 
 struct Gif {
@@ -133,52 +133,48 @@ impl Film {
     ) -> Result<Self, RecordError> {
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
         let file = || Ok(BufWriter::new(File::create(path).map_err(|e| failed(&e))?));
-        let reel = match format {
+        let gif = match format {
             MovieFormat::Gif => {
                 let palette = Palette::of(samples);
                 // A side of a frame has at most 8192 pixels.
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
-                Reel::Gif(Box::new(Gif {
-                    encoder,
-                    palette,
-                    adapts: false,
-                    is_local: false,
-                    before: Vec::new(),
-                    now: Vec::new(),
-                }))
+                let (before, now) = (Vec::new(), Vec::new());
+                Some(Box::new(Gif { encoder, palette, adapts: false, is_local: false, before, now }))
             }
             MovieFormat::Folder => {
                 std::fs::create_dir_all(path).map_err(|e| failed(&e))?;
-                Reel::Folder
+                None
             }
         };
-        Ok(Self { path: path.to_owned(), delay, pictures: 0, reel })
+        Ok(Self { path: path.to_owned(), delay, pictures: 0, length: 0, gif })
     }
 
     /// Lets a GIF use new palettes for frames that differ from the samples.
     pub(super) fn adapt(&mut self) {
-        if let Reel::Gif(gif) = &mut self.reel {
+        if let Some(gif) = &mut self.gif {
             gif.adapts = true;
         }
     }
 
-    /// Writes buffered data to the file; returns the length of the file.
-    pub(super) fn flush(&mut self) -> Result<u64, RecordError> {
-        let Reel::Gif(gif) = &mut self.reel else { return Ok(0) };
-        let file = gif.encoder.get_mut();
-        file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&self.path, &e))
+    /// Returns the number of frames.
+    pub(super) fn pictures(&self) -> u64 {
+        self.pictures
     }
 
     /// Adds a frame whose duration is `hold` s longer than that of others.
     pub(super) fn add(&mut self, picture: &Picture, hold: f64) -> Result<(), RecordError> {
-        let Self { path, delay, pictures, reel } = self;
+        let Self { path, delay, pictures, length, gif } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
         let shown = delay.longer(hold);
-        match reel {
-            Reel::Gif(gif) => gif.add(picture, shown).map_err(|e| failed(&e))?,
-            Reel::Folder => {
+        match gif {
+            Some(gif) => {
+                gif.add(picture, shown).map_err(|e| failed(&e))?;
+                let file = gif.encoder.get_mut();
+                *length = file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&e))?;
+            }
+            None => {
                 let copies = 1 + (hold / delay.seconds()).round() as u64;
                 for copy in 1..=copies {
                     let path = path.join(format!("frame-{:04}.png", *pictures + copy));
@@ -191,17 +187,31 @@ impl Film {
     }
 
     /// Ends the file.
-    pub(super) fn finish(self) -> Result<(), RecordError> {
-        let Self { path, reel, .. } = self;
-        let failed = |reason: &dyn std::fmt::Display| failed(&path, reason);
-        match reel {
-            Reel::Gif(gif) => {
-                let mut file = gif.encoder.into_inner().map_err(|e| failed(&e))?;
-                file.flush().map_err(|e| failed(&e))
-            }
-            Reel::Folder => Ok(()),
-        }
+    pub(super) fn finish(mut self) -> Result<(), RecordError> {
+        let Some(gif) = self.gif.take() else { return Ok(()) };
+        let failed = |reason: &dyn std::fmt::Display| failed(&self.path, reason);
+        let mut file = gif.encoder.into_inner().map_err(|e| failed(&e))?;
+        file.flush().map_err(|e| failed(&e))
     }
+}
+
+impl Drop for Film {
+    fn drop(&mut self) {
+        let Some(gif) = self.gif.take() else { return };
+        // The encoder writes the rest of its buffer.
+        drop(gif);
+        // The recording has failed, and its error is reported; a second error would add nothing.
+        let _ = if self.pictures == 0 { std::fs::remove_file(&self.path) } else { end_early(&self.path, self.length) };
+    }
+}
+
+/// Completes a GIF that has frames up to this length.
+fn end_early(path: &Path, length: u64) -> std::io::Result<()> {
+    const TRAILER: u8 = 0x3b;
+    let mut file = File::options().write(true).open(path)?;
+    file.set_len(length)?;
+    file.seek(SeekFrom::Start(length))?;
+    file.write_all(&[TRAILER])
 }
 
 fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
@@ -301,5 +311,26 @@ mod tests {
         assert!(matches!(of("frames"), Ok(MovieFormat::Folder)) && matches!(of("."), Ok(MovieFormat::Folder)));
         assert!(["a.mp4", "a.png"].map(of).iter().all(|of| matches!(of, Err(RecordError::UnknownFormat(_)))));
         assert!(matches!(of("no/such/folder/a.gif"), Err(RecordError::NoFolder(_))));
+    }
+
+    /// Whatever interrupts a recording, no broken file is left.
+    #[test]
+    fn a_recording_that_is_not_finished_ends_after_its_last_frame() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cut.gif");
+        let picture = |red| Picture { size: [4, 4], rgba: [red, 0, 0, 255].repeat(16) };
+        let film = || Film::create(&path, MovieFormat::Gif, MovieFormat::Gif.delay(25), &[picture(9)], [4, 4]).unwrap();
+        let mut whole = film();
+        (0..2).for_each(|red| whole.add(&picture(red), 0.0).unwrap());
+        whole.finish().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let mut cut = film();
+        (0..2).for_each(|red| cut.add(&picture(red), 0.0).unwrap());
+        // A part of a third frame.
+        cut.gif.as_mut().unwrap().encoder.get_mut().write_all(&[0x2c, 0, 0, 0]).unwrap();
+        drop(cut);
+        assert_eq!(std::fs::read(&path).unwrap(), bytes);
+        drop(film());
+        assert!(!path.exists());
     }
 }

@@ -183,8 +183,7 @@ impl LiveRecording {
         Ok(Picture { size: self.size, rgba })
     }
 
-    /// Ends the recording with the frames taken so far; the file is complete once [`Self::poll`] or [`Self::wait`]
-    /// returns a message.
+    /// Ends the recording with the frames taken so far; the file is complete once [`Self::ended`] returns a message.
     pub(crate) fn stop(&mut self, gpu: &Gpu, now: f64) {
         if !self.is_running() {
             return;
@@ -201,18 +200,13 @@ impl LiveRecording {
         self.sender.is_some()
     }
 
-    /// Returns a message once the recording has ended or failed.
-    pub(crate) fn poll(&self) -> Option<String> {
-        match self.task.poll() {
+    /// Returns a message once the recording has ended or failed; waits for it if `waits` is `true`.
+    pub(crate) fn ended(&self, waits: bool) -> Option<String> {
+        match self.task.next(waits) {
             Update::Done(text) => Some(text),
             Update::Died => Some(tr("The recording ended unexpectedly").to_owned()),
             Update::Progress(()) | Update::None => None,
         }
-    }
-
-    /// Waits until the file is complete; returns the message.
-    pub(crate) fn wait(&self) -> Option<String> {
-        if let Update::Done(text) = self.task.wait() { Some(text) } else { None }
     }
 
     /// Returns the recording indicator in the window, which is not recorded.
@@ -278,37 +272,19 @@ fn write(path: &Path, pictures: &Receiver<(u64, Picture)>, end: &AtomicU64) -> R
     let samples = std::slice::from_ref(&picture);
     let mut film = Film::create(path, MovieFormat::Gif, delay, samples, picture.size).map_err(|error| (0, error))?;
     film.adapt();
-    let (mut written, mut length) = (0, 0);
     loop {
         let next = pictures.recv();
         let until = next.as_ref().map_or_else(|_| end.load(Ordering::Relaxed), |(number, _)| *number);
         // A frame is also shown during the following frames that were skipped or equal.
         let hold = until.saturating_sub(number).saturating_sub(1) as f64 * delay.seconds();
-        let added = film.add(&picture, hold).and_then(|()| film.flush());
-        match added {
-            Ok(whole) => (written, length) = (written + 1, whole),
-            Err(error) => {
-                drop(film);
-                let kept = if end_early(path, length).is_ok() { written } else { 0 };
-                return Err((kept, error));
-            }
-        }
+        film.add(&picture, hold).map_err(|error| (film.pictures(), error))?;
         match next {
             Ok(next) => (number, picture) = next,
             Err(_) => break,
         }
     }
+    let written = film.pictures();
     film.finish().map(|()| written).map_err(|error| (written, error))
-}
-
-/// Completes a GIF that could not be written beyond this length.
-fn end_early(path: &Path, length: u64) -> std::io::Result<()> {
-    use std::io::{Seek as _, SeekFrom, Write as _};
-    const TRAILER: u8 = 0x3b;
-    let mut file = std::fs::OpenOptions::new().write(true).open(path)?;
-    file.set_len(length)?;
-    file.seek(SeekFrom::Start(length))?;
-    file.write_all(&[TRAILER])
 }
 
 #[cfg(test)]
@@ -397,7 +373,7 @@ mod tests {
         let last = read_texture(&gpu, &recording.target).unwrap();
         recording.stop(&gpu, f64::from(frames) * between);
         assert!(!recording.is_running() && recording.due(9.0).is_none());
-        let text = recording.wait().unwrap();
+        let text = recording.ended(true).unwrap();
         assert!(text.starts_with("Saved"), "{text}");
         let movie = decode(&path);
         assert!(movie.len() >= 3, "{}", movie.len());
@@ -425,22 +401,12 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_that_cannot_be_written_on_keeps_what_it_has() {
+    fn a_recording_that_cannot_be_written_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("cut.gif");
-        encoded(&path, vec![(0, plain([1, 2, 3], [4, 5, 6])), (1, plain([4, 5, 6], [1, 2, 3]))], 2);
-        let (whole, length) = (decode(&path), std::fs::metadata(&path).unwrap().len());
-        // A frame of which only a part could be written.
-        let mut bytes = std::fs::read(&path).unwrap();
-        bytes.truncate(length as usize - 1);
-        bytes.extend([0x2c, 0, 0, 0, 0, 20, 0]);
-        std::fs::write(&path, bytes).unwrap();
-        end_early(&path, length - 1).unwrap();
-        assert_eq!(decode(&path), whole);
         // The folder does not exist.
         let text = encoded(&folder.path().join("none/a.gif"), vec![(0, plain([1; 3], [2; 3]))], 1);
         assert!(text.starts_with("No recording") && text.contains("a.gif"), "{text}");
-        assert_eq!(encoded(&path, Vec::new(), 0), "Nothing was recorded");
+        assert_eq!(encoded(&folder.path().join("empty.gif"), Vec::new(), 0), "Nothing was recorded");
         #[cfg(target_os = "linux")]
         {
             let full = folder.path().join("full.gif");
@@ -448,5 +414,16 @@ mod tests {
             let text = encoded(&full, vec![(0, plain([1; 3], [2; 3]))], 1);
             assert!(text.starts_with("No recording") && text.contains("space"), "{text}");
         }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn an_encoder_that_panics_is_reported_when_the_window_has_closed_too() {
+        let gpu = Gpu::headless().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let file = NewFile::create(folder.path(), "gif").unwrap();
+        let mut recording = LiveRecording::start(&gpu, FORMAT, [64, 64], file, Language::English).unwrap();
+        recording.task = Task::start("panics", |_| std::panic::panic_any("meant")).unwrap();
+        assert_eq!(recording.ended(true).unwrap(), "The recording ended unexpectedly");
     }
 }
