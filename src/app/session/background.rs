@@ -117,6 +117,13 @@ impl Work {
     }
 }
 
+impl Background {
+    /// Returns the version that is restored if the edit in progress is cancelled.
+    pub(super) fn earlier_version(&mut self) -> Option<&mut Version> {
+        self.work.rollback().map(|rollback| &mut rollback.version)
+    }
+}
+
 impl Session {
     /// Sets the number of unknowns above which a model is meshed and solved in the background.
     pub(crate) fn set_most_unknowns(&mut self, most: u64) {

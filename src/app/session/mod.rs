@@ -407,12 +407,17 @@ impl Session {
         self.iterations = 1;
     }
 
-    /// Saves the scene to a file.
+    /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
     ///
     /// # Errors
     /// [`SaveError`]; the file is unchanged.
     pub(crate) fn save(&mut self, path: &Path) -> Result<(), SaveError> {
-        self.document = self.document.save(&self.scene, path)?;
+        let saved = self.document.save(&self.scene, path)?;
+        let before = std::mem::replace(&mut self.document, saved);
+        let earlier = self.background.earlier_version().into_iter().chain(self.undo.adjacent_versions(&before.source));
+        for version in earlier.filter(|version| version.document.source == before.source) {
+            version.document.clone_from(&self.document);
+        }
         self.is_outdated = false;
         Ok(())
     }

@@ -207,3 +207,53 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     session.solve(false);
     assert!(session.facts().reference.get(session.scene()).is_some());
 }
+
+/// Where a scene is saved is no edit: undo after "Save as" keeps the new file and everything that belongs to it.
+#[test]
+fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("first.toml"), cantilever(-100.0).to_toml().unwrap()).unwrap();
+    let source = Source { name: path("first.toml"), assignments: vec!["load.0.force=[0,-150]".into()] };
+    let scene = crate::scene::open(&source).unwrap();
+    let simulation = Simulation::new(&scene).unwrap();
+    let mut session = Session::new(source, scene.clone(), simulation);
+    for (label, force) in [("Force", -200.0), ("Direction", -300.0), ("Force", -400.0)] {
+        let Edit::Scene(_, edited) = with_force(&session, force) else { unreachable!() };
+        session.apply(Edit::Scene(label, edited)).unwrap();
+    }
+    session.apply(Edit::Undo).unwrap();
+    session.take_changed();
+    let saved = session.scene().clone();
+    for name in ["first.toml", "second.toml"] {
+        session.save(&path(name)).unwrap();
+        let check = |session: &mut Session| {
+            assert_eq!(session.document().path(), Some(path(name).as_path()));
+            assert!(!session.take_changed().document);
+        };
+        for _ in 0..2 {
+            session.apply(Edit::Undo).unwrap();
+            check(&mut session);
+        }
+        assert!(*session.scene() == scene && session.is_edited() && !session.can_undo());
+        for force in [-200.0, -300.0] {
+            session.apply(Edit::Redo).unwrap();
+            check(&mut session);
+            assert_eq!(session.is_edited(), force > -300.0);
+        }
+        assert_eq!(*session.scene(), saved);
+    }
+    // A cancelled solve does not return to the previous file either.
+    session.set_most_unknowns(0);
+    session.apply(with_force(&session, -500.0)).unwrap();
+    session.save(&path("third.toml")).unwrap();
+    session.cancel();
+    assert_eq!(session.document().path(), Some(path("third.toml").as_path()));
+    wait(&mut session);
+    // An earlier document keeps its own file.
+    session.apply(Edit::Open(Source { name: path("first.toml"), assignments: Vec::new() })).unwrap();
+    wait(&mut session);
+    session.save(&path("fourth.toml")).unwrap();
+    session.apply(Edit::Undo).unwrap();
+    assert_eq!(session.document().path(), Some(path("third.toml").as_path()));
+}

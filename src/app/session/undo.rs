@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::app::session::document::Document;
-use crate::scene::Scene;
+use crate::scene::{Scene, Source};
 
 /// Largest number of undo steps.
 const MOST: usize = 200;
@@ -92,6 +92,13 @@ impl UndoHistory {
         Some(after)
     }
 
+    /// Returns the versions before and after the present one up to the next document.
+    pub(crate) fn adjacent_versions(&mut self, source: &Source) -> impl Iterator<Item = &mut Version> {
+        let is_same = |version: &&mut Version| version.document.source == *source;
+        let past = self.past.iter_mut().rev().take_while(is_same);
+        past.chain(self.future.iter_mut().rev().take_while(is_same))
+    }
+
     /// Returns the number of steps that can be undone.
     pub(crate) fn depth(&self) -> usize {
         self.past.len()
@@ -115,7 +122,6 @@ impl UndoHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Source;
 
     fn snapshot(force: f64) -> Version {
         let scene = Scene::beam(3.0, 1.0).clamp("left").force("right", [force, 0.0]);
