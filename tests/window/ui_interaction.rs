@@ -762,8 +762,6 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     assert!(harness.query_by_label("Reload").is_none());
     own.name = "Theirs".to_owned();
     std::fs::write(&other, own.to_toml().unwrap()).unwrap();
-    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(5);
-    std::fs::File::options().write(true).open(&other).unwrap().set_modified(later).unwrap();
     harness.event(Event::WindowFocused(true));
     harness.run();
     assert_eq!(harness.state().scene().name, "Mine");
@@ -1190,4 +1188,60 @@ fn enter_in_the_gallery_answers_no_question() {
     harness.key_press(Key::Enter);
     harness.run();
     assert!(harness.query_by_label("Save the scene").is_some());
+}
+
+/// Ctrl+S asks before it replaces a file that another program has changed.
+#[test]
+fn a_file_changed_by_another_program_is_not_overwritten_without_a_question() {
+    const OVERWRITE: &str = "Overwrite";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let own = scene("cantilever").to_toml().unwrap();
+    let theirs = scene("shear").to_toml().unwrap();
+    std::fs::write(&path, &own).unwrap();
+    let mut harness = harness("article");
+    let read = |path: &std::path::Path| std::fs::read_to_string(path).unwrap();
+    let reload = |harness: &mut Harness<'_, Lab>| {
+        harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.clone())));
+        harness.run();
+        harness.input_mut().dropped_files.clear();
+        harness.run();
+    };
+    reload(&mut harness);
+    type_into(&mut harness, "Force", "700");
+    let edited = harness.state().scene().clone();
+    std::fs::write(&path, &theirs).unwrap();
+    let ask = |harness: &mut Harness<'_, Lab>| {
+        key(harness, Modifiers::COMMAND, Key::S);
+        assert!(harness.query_by_role_and_label(Role::Button, OVERWRITE).is_some());
+        assert_eq!(read(&path), theirs);
+    };
+    // Cancelled, nothing is written.
+    ask(&mut harness);
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_role_and_label(Role::Button, OVERWRITE).is_none());
+    assert_eq!(read(&path), theirs);
+    // Another file.
+    ask(&mut harness);
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    harness.get_by_label("Save the scene");
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    // Reloaded; undo restores the edits, which are then saved without a question.
+    ask(&mut harness);
+    harness.get_by_role_and_label(Role::Button, "Reload").click();
+    harness.run();
+    assert_eq!(*harness.state().scene(), scene("shear"));
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), edited);
+    // The user may close the window at the same time.
+    std::fs::write(&path, &own).unwrap();
+    let ctx = harness.ctx.clone();
+    assert!(!harness.state_mut().request_close(&ctx), "it asks first");
+    harness.run();
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(read(&path), own);
+    harness.get_by_role_and_label(Role::Button, OVERWRITE).click();
+    harness.run();
+    assert_eq!(warpbeam::Scene::from_toml(&read(&path)).unwrap(), edited);
+    assert!(harness.state_mut().request_close(&ctx), "all is saved");
 }

@@ -188,7 +188,7 @@ impl Session {
     /// Records that the requested scene belongs to another document.
     pub(super) fn request_document(&mut self, document: Document) {
         self.document = document;
-        self.is_outdated = false;
+        self.check_file();
         self.background.start = Start::Rest;
         if let Some(rollback) = self.background.work.rollback() {
             rollback.is_another_document = true;

@@ -1,7 +1,7 @@
 //! Origin of the scene: a built-in scene, or a file that can be read, written, and changed by other programs.
 
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -17,8 +17,8 @@ pub(crate) struct Document {
     pub original: Scene,
     /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
     has_file: bool,
-    /// Time of the last known change of the file.
-    stamp: Option<SystemTime>,
+    /// Content of the file when it was last read or written; `None` if there was none.
+    text: Option<Arc<str>>,
 }
 
 /// Reason for which a scene was not saved.
@@ -42,10 +42,26 @@ impl From<&SaveError> for Sentence {
 
 impl Document {
     pub(crate) fn new(source: Source, original: Scene) -> Self {
-        let has_file = source.built_in().is_none() && !source.is_stream();
-        let mut document = Self { source, original, has_file, stamp: None };
-        document.stamp = document.path().and_then(written);
+        let mut document = Self::with_text(source, original, None);
+        document.text = document.read();
         document
+    }
+
+    /// Creates the document of a file that had this content when it was last read or written.
+    pub(crate) fn with_text(source: Source, original: Scene, text: Option<Arc<str>>) -> Self {
+        let has_file = source.built_in().is_none() && !source.is_stream();
+        Self { source, original, has_file, text }
+    }
+
+    /// Returns the current content of the file; `None` if it cannot be read.
+    fn read(&self) -> Option<Arc<str>> {
+        let bytes = std::fs::read(self.path()?).ok()?;
+        Some(String::from_utf8_lossy(&bytes).into())
+    }
+
+    /// Returns the content of the file when it was last read or written.
+    pub(crate) fn text(&self) -> Option<&str> {
+        self.text.as_deref()
     }
 
     /// Opens a scene.
@@ -64,12 +80,12 @@ impl Document {
 
     /// Returns `true` if the file has been changed on disk since it was read or saved here.
     pub(crate) fn has_changed(&self) -> bool {
-        self.path().and_then(written).is_some_and(|now| Some(now) != self.stamp)
+        self.read().is_some_and(|now| Some(now) != self.text)
     }
 
     /// Records the current change of the file as known, so that it is not reported again.
     pub(crate) fn ignore_change(&mut self) {
-        self.stamp = self.path().and_then(written);
+        self.text = self.read();
     }
 
     /// Writes a scene to a file, and returns the document of that file. The relative path of a mesh file becomes
@@ -91,11 +107,6 @@ impl Document {
         }
         let toml = scene.to_toml()?;
         files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
-        Ok(Self::new(Source { name: path.to_owned(), assignments: Vec::new() }, scene))
+        Ok(Self::with_text(Source { name: path.to_owned(), assignments: Vec::new() }, scene, Some(toml.into())))
     }
-}
-
-/// Returns the time of the last change of a file.
-fn written(path: &Path) -> Option<SystemTime> {
-    std::fs::metadata(path).and_then(|m| m.modified()).ok()
 }

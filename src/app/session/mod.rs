@@ -385,7 +385,7 @@ impl Session {
         }
         self.set_scene(scene)?;
         self.document = document;
-        self.is_outdated = false;
+        self.check_file();
         self.start_document();
         self.reset();
         Ok(())
@@ -424,7 +424,7 @@ impl Session {
 
     /// Checks whether the scene's file has changed on disk.
     pub(crate) fn check_file(&mut self) {
-        self.is_outdated |= self.document.has_changed();
+        self.is_outdated = self.document.has_changed();
     }
 
     /// Returns `true` if the scene's file has changed on disk since it was read or saved.

@@ -50,6 +50,8 @@ struct Copy {
     original: String,
     /// Scene with its edits, TOML.
     scene: String,
+    /// Content of the scene's file when it was last read or written.
+    file: Option<String>,
 }
 
 /// Writes an edited scene and its document to a file.
@@ -64,6 +66,7 @@ fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
         assignments: assignments.clone(),
         original: document.original.to_toml().map_err(io::Error::other)?,
         scene: scene.to_toml().map_err(io::Error::other)?,
+        file: document.text().map(str::to_owned),
     };
     files::save_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
 }
@@ -76,7 +79,8 @@ impl Unsaved {
         let folder = name.parent().unwrap_or(Path::new("")).to_owned();
         let original = Scene::from_toml_in(&copy.original, &folder)?;
         let scene = Scene::from_toml_in(&copy.scene, &folder)?;
-        let document = Document::new(Source { name, assignments: copy.assignments }, original);
+        let source = Source { name, assignments: copy.assignments };
+        let document = Document::with_text(source, original, copy.file.map(Into::into));
         Ok(Self { document, scene })
     }
 }

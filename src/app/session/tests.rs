@@ -149,12 +149,11 @@ fn a_scene_is_saved_and_read_again_when_its_file_has_changed() {
     session.apply(with_force(&session, -200.0)).unwrap();
     session.save(&path).unwrap();
     assert!(!session.is_edited() && session.document().path() == Some(path.as_path()));
-    session.check_file();
-    assert!(!session.is_outdated());
-    let other = cantilever(-50.0).to_toml().unwrap();
-    fs::write(&path, other).unwrap();
     let later = fs::metadata(&path).unwrap().modified().unwrap() + std::time::Duration::from_secs(2);
     fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
+    session.check_file();
+    assert!(!session.is_outdated(), "the content is the same");
+    fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
     session.check_file();
     assert!(session.is_outdated());
     let changed = session.apply(Edit::Open(Source { name: path, assignments: Vec::new() })).unwrap();
@@ -256,4 +255,31 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     session.save(&path("fourth.toml")).unwrap();
     session.apply(Edit::Undo).unwrap();
     assert_eq!(session.document().path(), Some(path("third.toml").as_path()));
+}
+
+/// A change of the scene's file between the crash and the restoration is noticed.
+#[test]
+fn restored_edits_know_what_their_file_contained() {
+    let folder = tempfile::tempdir().unwrap();
+    let copies = folder.path().join("unsaved");
+    let path = folder.path().join("scene.toml");
+    let mut crashed = session(cantilever(-100.0));
+    crashed.save(&path).unwrap();
+    crashed.apply(with_force(&crashed, -200.0)).unwrap();
+    for is_changed in [false, true] {
+        let (mut recovery, _) = recovery::Recovery::open(&copies).unwrap();
+        recovery.keep(Some((crashed.document(), crashed.scene()))).unwrap();
+        drop(recovery);
+        if is_changed {
+            fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
+        }
+        let (mut recovery, left) = recovery::Recovery::open(&copies).unwrap();
+        let recovery::Unsaved { document, scene } = left.unwrap();
+        let mut next = session(cantilever(-1.0));
+        next.apply(Edit::Restore(Box::new((document, scene)))).unwrap();
+        assert!(next.scene() == crashed.scene() && next.is_edited());
+        assert_eq!((next.is_outdated(), next.document().has_changed()), (is_changed, is_changed));
+        recovery.discard_left();
+        recovery.keep(None).unwrap();
+    }
 }

@@ -41,12 +41,25 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to its file; if it has none, shows the file dialog.
+    /// Saves the scene to its file, after a question if another program has changed it. If the scene has no file, shows
+    /// the file dialog.
     pub(super) fn save_here(&mut self, ctx: &egui::Context) {
-        let Some(path) = self.desk.session.document().path().map(Path::to_owned) else {
-            return self.ask_where_to_save(ctx);
-        };
-        self.save_there(ctx, &path);
+        if self.desk.session.document().has_changed() {
+            let departure = match std::mem::take(&mut self.question) {
+                Question::Saving(departure) => Some(departure),
+                _ => None,
+            };
+            return self.ask(ctx, Question::Changed(departure));
+        }
+        self.overwrite(ctx);
+    }
+
+    /// Saves the scene to its file; if it has none, shows the file dialog.
+    pub(super) fn overwrite(&mut self, ctx: &egui::Context) {
+        match self.desk.session.document().path().map(Path::to_owned) {
+            Some(path) => self.save_there(ctx, &path),
+            None => self.ask_where_to_save(ctx),
+        }
     }
 
     /// Saves the scene to a file, and shows a message.

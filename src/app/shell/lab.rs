@@ -100,6 +100,8 @@ pub(super) enum Question {
     Unsaved(Departure),
     /// The window is to close while the scene is recorded.
     Recording,
+    /// The scene is to be saved to its file, which another program has changed. A departure may follow.
+    Changed(Option<Departure>),
     /// "Save" was answered, and the dialog asks for a file.
     Saving(Departure),
 }

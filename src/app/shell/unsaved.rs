@@ -1,4 +1,4 @@
-//! Questions before something is lost: unsaved edits, or the rest of a recording. The offer to restore the edits left by a
+//! Questions before something is lost: unsaved edits, the rest of a recording, or the changes of another program. The offer to restore the edits left by a
 //! crashed window.
 
 use egui::{Context, Event, Id, Key, Modal, RichText};
@@ -39,7 +39,8 @@ impl Lab {
 
     /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
-        self.dialog.is_some() || matches!(self.question, Question::Unsaved(_) | Question::Recording)
+        self.dialog.is_some()
+            || matches!(self.question, Question::Unsaved(_) | Question::Recording | Question::Changed(_))
     }
 
     /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
@@ -49,7 +50,7 @@ impl Lab {
         if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
     }
 
-    fn ask(&mut self, ctx: &Context, question: Question) {
+    pub(super) fn ask(&mut self, ctx: &Context, question: Question) {
         // The question gets the keys.
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
@@ -108,6 +109,26 @@ impl Lab {
                 }
             }
             Question::Recording => {}
+            Question::Changed(departure) => {
+                let title = fill!("%{file} has changed on disk.", file = self.source().name.display());
+                let text = tr("Overwrite discards those changes. Reload discards your own; undo restores them.");
+                let answers =
+                    [("Save as…", Key::Enter), ("Overwrite", Key::O), ("Reload", Key::R), ("Cancel", Key::Escape)];
+                let answer = dialog(ctx, &title, text, &answers);
+                self.question = match departure {
+                    departure if answer.is_none() => Question::Changed(departure),
+                    Some(departure) if matches!(answer, Some("Save as…" | "Overwrite")) => {
+                        Question::Saving(departure)
+                    }
+                    _ => Question::None,
+                };
+                match answer {
+                    Some("Save as…") => self.ask_where_to_save(ctx),
+                    Some("Overwrite") => self.overwrite(ctx),
+                    Some("Reload") => self.open(ctx, self.source().clone()),
+                    _ => {}
+                }
+            }
             other => self.question = other,
         }
     }
