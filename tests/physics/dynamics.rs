@@ -556,6 +556,22 @@ fn auto_is_finite_everywhere() {
     is_finite_everywhere(MethodKind::Auto);
 }
 
+/// The stresses of a stiff body change much in a long step: the factor of an earlier matrix does not serve then.
+#[test]
+fn auto_adds_no_energy_to_a_stiff_body_in_long_steps() {
+    for young in [5e11, 1.1e12, 1.3e12, 2e12] {
+        let mut scene = with("spin", TR_BDF2, 0.1, 1, 1e4).with_method(MethodKind::Auto);
+        scene.material.young = young;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        for _ in 0..20 {
+            simulation.step();
+        }
+        assert_eq!(*simulation.status(), Status::Running, "E = {young}");
+        let drift = simulation.motion().unwrap().ledger().drift_of_input();
+        assert!(drift < 1e-3, "E = {young}: drift {drift}");
+    }
+}
+
 /// A body is at rest if nothing has moved for half a second and ten steps, and no pulse will follow.
 #[test]
 fn a_body_at_rest_is_reported_as_at_rest() {
