@@ -396,8 +396,8 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     harness.run();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("settings.toml");
-    harness.state().settings(&harness.ctx).save(&file).unwrap();
-    let settings = Settings::load(&file);
+    harness.state().settings(&harness.ctx).save(&Settings::default(), &file).unwrap();
+    let (settings, _) = Settings::load(&file);
     assert_eq!(settings.language, Language::Chinese);
     let mut again = settled("article", [1280.0, 800.0]);
     again.state_mut().set_language(Language::English);

@@ -119,21 +119,25 @@ impl Lab {
     }
 
     /// Opens a file that is dropped on the window. When the window gets the focus, checks whether the scene's file has
-    /// changed on disk, and offers to read it again.
+    /// changed on disk.
     pub(super) fn check_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let (dropped, is_back) = ctx.input(|i| {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
             (dropped.or_else(files::arrived), i.events.contains(&egui::Event::WindowFocused(true)))
         });
         actions.extend(dropped.map(Action::Drop));
-        let session = &mut self.desk.session;
         if is_back {
-            session.check_file();
+            self.desk.session.check_file();
         }
+    }
+
+    /// Offers to read the scene's file again if it has changed on disk.
+    pub(super) fn offer_changed_file(&mut self, ui: &mut egui::Ui, actions: &mut Vec<Action>) {
+        let session = &mut self.desk.session;
         if !session.is_outdated() {
             return;
         }
-        banner(ctx, "outdated", |ui| {
+        banner(ui, |ui| {
             let file = session.document().source.name.display();
             ui.label(fill!("%{file} has changed on disk.", file = file));
             if ui.button(tr("Reload")).clicked() {

@@ -125,6 +125,9 @@ pub struct Lab {
     pub(super) adapter: String,
     /// Message, and the time until which it is shown, s.
     pub(super) toast: Option<(String, f64)>,
+    /// Warnings, and the number of them that the user has closed.
+    pub(super) warnings: Vec<String>,
+    pub(super) closed_warnings: usize,
     /// Progress of the scene's recording; `None` if there is none.
     pub(super) recording: Option<String>,
     pub(super) gallery: Gallery,
@@ -146,6 +149,8 @@ impl Lab {
             settings: Settings::default(),
             adapter: String::new(),
             toast: None,
+            warnings: Vec::new(),
+            closed_warnings: 0,
             recording: None,
             gallery: Gallery::default(),
         }

@@ -71,11 +71,11 @@ impl Lab {
         if view.bars && view.narrow && view.sheet && self.view_rect().width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
+        self.show_banners(ui.ctx(), &mut actions, &mut requests);
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
         help::show(ui.ctx(), &mut self.desk.view.help);
-        self.offer_unsaved(ui.ctx(), &mut requests);
         self.show_question(ui.ctx());
         self.ask_for_file(ui.ctx());
         requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));

@@ -4,9 +4,10 @@ use std::time::Duration;
 
 use egui::{Align2, Painter, Rect, Sense, Ui};
 
+use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::session::Notice;
-use crate::app::shell::lab::Lab;
+use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::toolbar;
 use crate::app::task::thread::POLL;
 use crate::app::widgets::text::boxed_text;
@@ -19,6 +20,34 @@ impl Lab {
     /// Shows a message for a while.
     pub fn say(&mut self, ctx: &egui::Context, message: String) {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
+    }
+
+    /// Prints a message, and shows it until the user closes it. A message is given once.
+    pub fn warn(&mut self, message: String) {
+        if !self.warnings.contains(&message) {
+            eprintln!("warpbeam: {message}");
+            self.warnings.push(message);
+        }
+    }
+
+    /// Shows warnings and offers under the toolbar.
+    pub(super) fn show_banners(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+        let width = ctx.content_rect().width();
+        let area = egui::Area::new(egui::Id::unique("banners"))
+            .default_width(width - 24.0)
+            .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
+        area.show(ctx, |ui| {
+            if let Some(message) = self.warnings.get(self.closed_warnings) {
+                let color = ui.visuals().warn_fg_color;
+                let is_closed = banner(ui, |ui| {
+                    ui.colored_label(color, message);
+                    ui.button(tr("Close")).clicked()
+                });
+                self.closed_warnings += usize::from(is_closed);
+            }
+            self.offer_changed_file(ui, actions);
+            self.offer_unsaved(ui, requests);
+        });
     }
 
     /// Shows the notices of the session.
@@ -97,11 +126,7 @@ impl Lab {
     }
 }
 
-/// Shows a message with its answers in a row under the toolbar.
-pub(super) fn banner(ctx: &egui::Context, id: &str, contents: impl FnOnce(&mut Ui)) {
-    let width = ctx.content_rect().width();
-    let area = egui::Area::new(egui::Id::unique(id))
-        .default_width(width - 24.0)
-        .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
-    area.show(ctx, |ui| egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_wrapped(contents)));
+/// Shows a message with its answers in a row.
+pub(super) fn banner<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_wrapped(contents).inner).inner
 }

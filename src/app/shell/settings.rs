@@ -1,11 +1,13 @@
 //! Settings of the window, saved between runs.
 
+use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use toml::Table;
 
 use crate::app::ThemeChoice;
-use crate::app::language::Language;
+use crate::app::language::{Language, fill};
 use crate::app::platform;
 use crate::app::view_options::Drawer;
 use crate::simulation::Field;
@@ -58,31 +60,57 @@ impl Settings {
         platform::settings::file()
     }
 
-    /// Reads the settings from a file; returns the defaults if there is none, or if it cannot be read.
+    /// Reads the settings from a file; returns the defaults if there is none. If the file cannot be read, it is renamed
+    /// and the message of the second value says so.
     #[must_use]
-    pub fn load(file: &Path) -> Self {
-        let text = match platform::settings::read(file) {
-            Ok(text) => text,
-            Err(error) => {
-                if error.kind() != std::io::ErrorKind::NotFound {
-                    log::warn!("{}: {error}", file.display());
-                }
-                return Self::default();
-            }
+    pub fn load(file: &Path) -> (Self, Option<String>) {
+        let read = match platform::settings::read(file) {
+            Ok(text) => toml::from_str(&text).map_err(|error| error.message().to_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
+            Err(error) => Err(error.to_string()),
         };
-        toml::from_str(&text).unwrap_or_else(|error| {
-            log::warn!("{}: {}", file.display(), error.message());
-            Self::default()
-        })
+        match read {
+            Ok(settings) => (settings, None),
+            Err(reason) => {
+                let name = file.display();
+                let message = match platform::settings::set_aside(file) {
+                    Ok(kept) => fill!(
+                        "The settings could not be read and are now in %{kept}: %{reason}",
+                        kept = kept.display(),
+                        reason = reason
+                    ),
+                    Err(_) => fill!("%{file} could not be read: %{reason}", file = name, reason = reason),
+                };
+                (Self::default(), Some(message))
+            }
+        }
     }
 
-    /// Writes the settings to a file, and creates its folder if necessary.
+    /// Writes the settings that differ from `before` to a file, whose other settings stay: another window may have
+    /// changed them in the meantime. Creates the folder of the file if necessary.
     ///
     /// # Errors
-    /// Error of the operating system.
-    pub fn save(&self, file: &Path) -> std::io::Result<()> {
-        let toml = toml::to_string(self).map_err(std::io::Error::other)?;
-        platform::settings::write(file, &toml)
+    /// Error of the operating system, or the file cannot be read any more. The file is unchanged.
+    pub fn save(&self, before: &Self, file: &Path) -> std::io::Result<()> {
+        let table = |settings: &Self| Table::try_from(settings).map_err(Error::other);
+        let _lock = platform::settings::lock(file)?;
+        let mut stored: Table = match platform::settings::read(file) {
+            Ok(text) => toml::from_str(&text).map_err(Error::other)?,
+            Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
+            Err(error) => return Err(error),
+        };
+        let mut own = self.clone();
+        let theirs = stored.clone().try_into().map(|theirs: Self| theirs.recent).unwrap_or_default();
+        own.recent.extend(theirs.into_iter().filter(|path| !self.recent.contains(path)));
+        own.recent.truncate(MOST_RECENT);
+        let (own, before) = (table(&own)?, table(before)?);
+        for key in own.keys().chain(before.keys()).filter(|key| own.get(*key) != before.get(*key)) {
+            match own.get(key) {
+                Some(value) => stored.insert(key.clone(), value.clone()),
+                None => stored.remove(key),
+            };
+        }
+        platform::settings::write(file, &toml::to_string(&stored).map_err(Error::other)?)
     }
 
     /// Returns the size of the window, points.
@@ -135,7 +163,7 @@ mod tests {
     fn settings_survive() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("new/settings.toml");
-        assert_eq!(Settings::load(&file), Settings::default());
+        assert_eq!(Settings::load(&file), (Settings::default(), None));
         let mut settings = Settings { theme: Some(ThemeChoice::Light), panel: false, ..Settings::default() };
         settings.drawer = Some(Drawer::Motion);
         settings.language = Language::Chinese;
@@ -145,20 +173,48 @@ mod tests {
         settings.add_recent(Path::new("scene-25.toml"));
         assert_eq!(settings.recent().len(), MOST_RECENT);
         assert!(settings.recent()[0].ends_with("scene-25.toml") && settings.recent()[1].ends_with("scene-29.toml"));
-        settings.save(&file).unwrap();
-        assert_eq!(Settings::load(&file), settings);
+        settings.save(&Settings::default(), &file).unwrap();
+        assert_eq!(Settings::load(&file), (settings, None));
     }
 
     #[test]
-    fn invalid_settings_are_replaced_by_defaults() {
+    fn invalid_settings_are_replaced_by_defaults_and_kept_under_another_name() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
         for text in ["theme = 3", "not toml at all [", "size = [0.0, nan]", "color = \"smell\"\nsize = [1e9, 2.0]"] {
             std::fs::write(&file, text).unwrap();
-            let settings = Settings::load(&file);
+            let (settings, message) = Settings::load(&file);
             assert_eq!((settings.size(), settings.color()), ([1280.0, 800.0], Field::VonMises), "{text}");
+            assert_eq!(message.is_none(), file.exists(), "{message:?}");
+            if let Some(message) = message {
+                let kept = folder.path().join("settings.unreadable.toml");
+                assert!(message.contains(kept.to_str().unwrap()), "{message}");
+                assert_eq!(std::fs::read_to_string(kept).unwrap(), text);
+            }
         }
+    }
+
+    /// Two windows change different settings. Settings of another version of the program stay.
+    #[test]
+    fn settings_of_two_windows_are_merged() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings.toml");
         std::fs::write(&file, "theme = \"light\"\nfrom_another_version = 1").unwrap();
-        assert_eq!(Settings::load(&file).theme, Some(ThemeChoice::Light));
+        let (before, _) = Settings::load(&file);
+        let [mut first, mut second] = [before.clone(), before.clone()];
+        (first.theme, first.language) = (None, Language::Chinese);
+        first.add_recent(Path::new("/first.toml"));
+        second.panel = false;
+        second.add_recent(Path::new("/second.toml"));
+        first.save(&before, &file).unwrap();
+        second.save(&before, &file).unwrap();
+        let (merged, _) = Settings::load(&file);
+        assert_eq!((merged.theme, merged.language, merged.panel), (None, Language::Chinese, false));
+        assert_eq!(merged.recent(), [Path::new("/second.toml"), Path::new("/first.toml")]);
+        assert!(std::fs::read_to_string(&file).unwrap().contains("from_another_version = 1"));
+        // A file that a user has broken in the meantime is not overwritten.
+        std::fs::write(&file, "panel = ").unwrap();
+        assert!(first.save(&before, &file).is_err());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "panel = ");
     }
 }

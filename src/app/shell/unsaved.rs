@@ -1,7 +1,7 @@
 //! Questions before something is lost: unsaved edits, the rest of a recording, or the changes of another program. The offer to restore the edits left by a
 //! crashed window.
 
-use egui::{Context, Event, Id, Key, Modal, RichText};
+use egui::{Context, Event, Id, Key, Modal, RichText, Ui};
 
 use crate::app::language::{fill, tr};
 use crate::app::platform::{IS_PAGE, files};
@@ -134,7 +134,7 @@ impl Lab {
     }
 
     /// Offers the edits left by a crashed window, until the user answers.
-    pub(crate) fn offer_unsaved(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
+    pub(super) fn offer_unsaved(&mut self, ui: &mut Ui, requests: &mut Vec<Request>) {
         // The edits are restored to the user's own scene, which Learn puts aside.
         let Some(left) = self.left.as_ref().filter(|_| self.lesson.is_none()) else { return };
         let text = fill!(
@@ -142,7 +142,7 @@ impl Lab {
             scene = tr(&left.scene.name)
         );
         let (mut restore, mut discard) = (false, false);
-        banner(ctx, "unsaved-changes", |ui| {
+        banner(ui, |ui| {
             ui.label(text);
             restore = ui.button(tr("Restore")).clicked();
             discard = ui.button(tr("Discard")).clicked();
@@ -151,12 +151,12 @@ impl Lab {
             return;
         }
         let Some(Unsaved { document, scene }) = self.left.clone() else { return };
-        if restore && !self.apply(ctx, Edit::Restore(Box::new((document, scene)))) {
+        if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new((document, scene)))) {
             return;
         }
         self.left = None;
         requests.push(Request::DiscardCopy);
-        ctx.request_repaint();
+        ui.ctx().request_repaint();
     }
 }
 

@@ -95,11 +95,11 @@ pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Si
     run_with(display, (source, scene, simulation), settings, None)
 }
 
-/// Opens the window with these settings, and with this card of Learn, from 1.
+/// Opens the window with these settings, or a message that they could not be read, and with this card of Learn, from 1.
 fn run_with(
     display: Display,
     (source, scene, simulation): (Source, Scene, Option<Simulation>),
-    settings: Settings,
+    (settings, unreadable): (Settings, Option<String>),
     card: Option<usize>,
 ) -> Result<(), AppError> {
     let first_picture = source.name.to_str() == Some(registry::DEFAULT);
@@ -114,6 +114,7 @@ fn run_with(
     };
     lab.set_settings(&ctx, settings.clone());
     lab.set_easing(true);
+    unreadable.into_iter().for_each(|message| lab.warn(message));
     let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
     let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
         Ok((recovery, left)) => {
@@ -502,7 +503,7 @@ impl App {
     fn keep_settings(&mut self) {
         let settings = self.lab.settings(&self.ctx);
         if let (Some(file), true) = (&self.settings_file, settings != self.settings) {
-            match settings.save(file) {
+            match settings.save(&self.settings, file) {
                 Ok(()) => self.settings = settings,
                 Err(error) => log::warn!("{}: {error}", file.display()),
             }

@@ -28,7 +28,7 @@ pub fn open_page() {
 
 fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let stored = Settings::file().filter(|file| platform::settings::read(file).is_ok());
-    let mut settings = stored.as_deref().map(Settings::load).unwrap_or_default();
+    let (mut settings, unreadable) = stored.as_deref().map(Settings::load).unwrap_or_default();
     if let Some(language) = address.language.or_else(|| page::language().filter(|_| stored.is_none())) {
         settings.language = if language.starts_with("zh") { Language::Chinese } else { Language::English };
     }
@@ -45,5 +45,5 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let scene = files::open(&source)?;
     // A large model is meshed in the background.
     let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    Ok(run_with(Display::open()?, (source, scene, simulation), settings, address.card)?)
+    Ok(run_with(Display::open()?, (source, scene, simulation), (settings, unreadable), address.card)?)
 }

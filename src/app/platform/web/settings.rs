@@ -21,6 +21,14 @@ pub(crate) fn read(file: &Path) -> io::Result<String> {
     text.ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
+/// Does nothing: a page has one window.
+///
+/// # Errors
+/// None.
+pub(crate) fn lock(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
 /// Writes the settings.
 ///
 /// # Errors
@@ -28,6 +36,19 @@ pub(crate) fn read(file: &Path) -> io::Result<String> {
 pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
     let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
     storage.set_item(name, text).map_err(|error| io::Error::other(browser::message(&error)))
+}
+
+/// Keeps settings that cannot be read under another name, and returns it.
+///
+/// # Errors
+/// The browser refuses them.
+pub(crate) fn set_aside(file: &Path) -> io::Result<PathBuf> {
+    let kept = file.with_extension("unreadable");
+    write(&kept, &read(file)?)?;
+    if let Some((storage, name)) = storage().zip(file.to_str()) {
+        storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))?;
+    }
+    Ok(kept)
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.
