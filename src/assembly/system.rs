@@ -239,7 +239,7 @@ impl System {
         self.slots.get_or_init(|| self.mesh().elements().flat_map(|nodes| self.pattern.block_slots(nodes)).collect())
     }
 
-    /// Returns the sparsity of the factors.
+    /// Returns the symbolic factorization, with the elimination order.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
