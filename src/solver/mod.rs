@@ -6,11 +6,11 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
@@ -47,29 +47,7 @@ enum Kind {
     Indefinite,
 }
 
-/// Returns an order of elimination with few entries in the factor (AMD: Amestoy, Davis and Duff 1996) for a graph, given
-/// by the sorted neighbours of every node.
-pub(crate) fn elimination_order(neighbours: &[Vec<u32>]) -> Vec<u32> {
-    let n = neighbours.len();
-    let mut column_starts = vec![0];
-    let mut row_indices = Vec::new();
-    for list in neighbours {
-        row_indices.extend_from_slice(list);
-        column_starts.push(row_indices.len() as u32);
-    }
-    let entries = row_indices.len();
-    let graph = SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices);
-    let (mut order, mut places) = (vec![0; n], vec![0; n]);
-    let memory = MemBuffer::try_new(amd::order_scratch::<u32>(n, entries));
-    let ordered = memory.is_ok_and(|mut memory| {
-        let memory = MemStack::new(&mut memory);
-        amd::order(&mut order, &mut places, graph.as_ref(), amd::Control::default(), memory).is_ok()
-    });
-    // Any order is valid.
-    if ordered { order } else { (0..n as u32).collect() }
-}
-
-/// Sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
+/// Elimination order and sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
 #[derive(Clone)]
 pub struct Symbolic(Arc<Analysis>);
 
@@ -98,7 +76,7 @@ impl std::fmt::Debug for Symbolic {
 }
 
 impl Symbolic {
-    /// Analyses the lower triangle of a symmetric matrix, whose unknowns are eliminated in their order, in compressed
+    /// Orders (AMD: Amestoy, Davis and Duff 1996) and analyses the lower triangle of a symmetric matrix, in compressed
     /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices` the
     /// row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own
     /// choice is up to 2.6 times slower on these meshes.
@@ -108,8 +86,7 @@ impl Symbolic {
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let upper = transposed(&structure);
-        let cholesky = |threshold| symbolic_cholesky(&upper, threshold);
+        let cholesky = |threshold| symbolic_cholesky(&structure, threshold);
         let supernodal = cholesky(SupernodalThreshold::FORCE_SUPERNODAL)?;
         let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
             let simplicial = cholesky(SupernodalThreshold::FORCE_SIMPLICIAL)?;
@@ -135,34 +112,14 @@ const SPARSE: usize = 14;
 /// Number of unknowns above which a simplicial factor is not tried, because it has more entries.
 const MOST_SIMPLICIAL: usize = 2500;
 
-/// Returns the upper triangle of a symmetric matrix, given its lower one.
-fn transposed(lower: &SymbolicSparseColMat<usize>) -> SymbolicSparseColMat<usize> {
-    let n = lower.ncols();
-    let mut column_starts = vec![0; n + 1];
-    lower.row_idx().iter().for_each(|&row| column_starts[row + 1] += 1);
-    for column in 0..n {
-        column_starts[column + 1] += column_starts[column];
-    }
-    let mut row_indices = vec![0; lower.row_idx().len()];
-    let mut next = column_starts.clone();
-    for (column, bounds) in lower.col_ptr().windows(2).enumerate() {
-        for &row in &lower.row_idx()[bounds[0]..bounds[1]] {
-            row_indices[next[row]] = column;
-            next[row] += 1;
-        }
-    }
-    SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices)
-}
-
-/// Computes the sparsity of a factor of the matrix with this upper triangle; `threshold` forces it to be simplicial or
-/// supernodal.
+/// Computes the sparsity of a factor; `threshold` forces it to be simplicial or supernodal.
 fn symbolic_cholesky(
-    upper: &SymbolicSparseColMat<usize>,
+    structure: &SymbolicSparseColMat<usize>,
     threshold: SupernodalThreshold,
 ) -> Result<SymbolicCholesky<usize>, SolverError> {
     let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
-    let ordering = SymmetricOrdering::Identity;
-    factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|_| SolverError::TooLarge)
+    let ordering = SymmetricOrdering::Amd;
+    factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
 }
 
 /// Returns the numbers of operations of a factorization and of a back substitution.
