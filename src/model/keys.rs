@@ -173,7 +173,7 @@ pub const KEYS: &[Key] = keys! {
     "solver.method": Choice(&["linear", "warped", "newton", "auto"]), Default(r#""newton""#), r#""warped""#,
         "linear: linear theory. warped: the article's iteration. newton: Newton's method with the exact tangent. auto: the cheapest of these that meets max_error_percent.";
     "solver.tolerance": Number(limits::TOLERANCE), Default("1e-8"), "1e-10",
-        "Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which a solve has converged.";
+        "Unbalanced force, relative to the sum of all forces of elements, below which a solve has converged.";
     "solver.max_iterations": Integer(limits::MAX_ITERATIONS), Default("1000"), "50",
         "Linear solves after which a solve has failed.";
     "solver.accept_after": Integer(limits::ACCEPT_AFTER), Default("0"), "3",

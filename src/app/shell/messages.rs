@@ -37,6 +37,8 @@ impl Lab {
             .default_width(width - 24.0)
             .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
         area.show(ctx, |ui| {
+            // While there was nothing to show, the area had no width.
+            ui.set_max_width(width - 24.0);
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
                 let is_closed = banner(ui, |ui| {
