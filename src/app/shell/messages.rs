@@ -33,12 +33,13 @@ impl Lab {
     /// Shows warnings and offers under the toolbar.
     pub(super) fn show_banners(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let width = ctx.content_rect().width();
+        let banner_width = (width - 24.0).max(0.0);
         let area = egui::Area::new(egui::Id::unique("banners"))
-            .default_width(width - 24.0)
+            .default_width(banner_width)
             .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
         area.show(ctx, |ui| {
             // While there was nothing to show, the area had no width.
-            ui.set_max_width(width - 24.0);
+            ui.set_max_width(banner_width);
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
                 let is_closed = banner(ui, |ui| {
