@@ -653,3 +653,17 @@ fn a_recording_of_the_scene_is_complete_when_the_window_closes() {
     let (pictures, _) = movie(&path).unwrap();
     assert!((1..251).contains(&pictures), "{pictures}");
 }
+
+/// Where neither settings nor copies of unsaved edits can be written, the user learns it, once.
+#[test]
+fn a_window_without_a_folder_for_settings_says_so() {
+    let Some(desktop) = Desktop::start() else { return };
+    std::fs::write(desktop.config.path().join("warpbeam"), "a file in place of the folder").unwrap();
+    let window = Window::open(&desktop, &["run", "article"]);
+    window.key("p");
+    let messages = ["Unsaved changes would not survive a crash: ", "The settings are not saved: "];
+    wait_for("the warnings", || messages.iter().all(|message| window.said().contains(message)).then_some(()));
+    let (code, said) = window.close();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(messages.iter().all(|message| said.matches(message).count() == 1), "{said}");
+}

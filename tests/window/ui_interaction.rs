@@ -1245,3 +1245,19 @@ fn a_file_changed_by_another_program_is_not_overwritten_without_a_question() {
     assert_eq!(warpbeam::Scene::from_toml(&read(&path)).unwrap(), edited);
     assert!(harness.state_mut().request_close(&ctx), "all is saved");
 }
+
+/// A warning is shown until it is closed, and given once.
+#[test]
+fn a_warning_stays_until_it_is_closed() {
+    let mut harness = harness("article");
+    for message in ["first", "second", "first"] {
+        harness.state_mut().warn(message.to_owned());
+    }
+    for message in ["first", "second"] {
+        harness.run();
+        harness.get_by_label(message);
+        harness.get_by_role_and_label(Role::Button, "Close").click();
+    }
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Button, "Close").is_none());
+}

@@ -94,6 +94,8 @@ pub struct Recovery {
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
     left: Option<Place>,
+    /// Copies that cannot be read, and the reasons. They are kept: the user may repair them by hand.
+    unreadable: Vec<(PathBuf, String)>,
     /// `true` if the copy of the crashed window is no longer needed.
     discards_left: bool,
 }
@@ -126,22 +128,26 @@ impl Recovery {
     /// Error of the operating system, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
         std::fs::create_dir_all(folder)?;
-        let mut left = None;
+        let (mut left, mut unreadable) = (None, Vec::new());
         for number in 0..PLACES {
             let Some(place) = Place::lock(folder, number)? else { continue };
             if !place.file.exists() {
                 let (left, edits) = left.unzip();
-                return Ok((Self { place, written: None, last: None, left, discards_left: false }, edits));
+                return Ok((Self { place, written: None, last: None, left, unreadable, discards_left: false }, edits));
             }
             if left.is_none() {
                 match Unsaved::read(&place.file) {
                     Ok(edits) => left = Some((place, edits)),
-                    // An unreadable copy is kept: the user may repair it by hand.
-                    Err(error) => log::warn!("{}: {error}", place.file.display()),
+                    Err(error) => unreadable.push((place.file, error.to_string())),
                 }
             }
         }
         Err(io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display())))
+    }
+
+    /// Returns the copies that cannot be read, and the reasons.
+    pub(crate) fn unreadable(&self) -> &[(PathBuf, String)] {
+        &self.unreadable
     }
 
     /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
@@ -242,5 +248,6 @@ mod tests {
         let (window, left) = Recovery::open(folder.path()).unwrap();
         assert_eq!(left, None);
         assert!(file.exists() && window.place.file != file);
+        assert!(window.unreadable[0].0 == file && window.unreadable[0].1.contains("name"), "{:?}", window.unreadable);
     }
 }

@@ -22,12 +22,15 @@ impl Lab {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
     }
 
-    /// Prints a message, and shows it until the user closes it. A message is given once.
-    pub fn warn(&mut self, message: String) {
-        if !self.warnings.contains(&message) {
+    /// Prints a message, and shows it until the user closes it. Returns `false` if it has been given
+    /// before.
+    pub fn warn(&mut self, message: String) -> bool {
+        let is_new = !self.warnings.contains(&message);
+        if is_new {
             eprintln!("warpbeam: {message}");
             self.warnings.push(message);
         }
+        is_new
     }
 
     /// Shows warnings and offers under the toolbar.

@@ -114,15 +114,23 @@ fn run_with(
     };
     lab.set_settings(&ctx, settings.clone());
     lab.set_easing(true);
-    unreadable.into_iter().for_each(|message| lab.warn(message));
+    unreadable.into_iter().for_each(|message| _ = lab.warn(message));
     let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
     let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
         Ok((recovery, left)) => {
             left.into_iter().for_each(|left| lab.offer(left));
+            for (file, reason) in recovery.unreadable() {
+                let file = file.display();
+                lab.warn(fill!(
+                    "%{file} has unsaved changes, but cannot be read: %{reason}",
+                    file = file,
+                    reason = reason
+                ));
+            }
             Some(recovery)
         }
         Err(error) => {
-            log::warn!("{}: {error}", folder.display());
+            lab.warn(no_copy(format!("{}: {error}", folder.display())));
             None
         }
     });
@@ -154,6 +162,11 @@ fn run_with(
     ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
     app.keep_settings();
     app.error.map_or(Ok(()), Err)
+}
+
+/// Returns the warning for edits of which there is no copy.
+fn no_copy(reason: impl std::fmt::Display) -> String {
+    fill!("Unsaved changes would not survive a crash: %{reason}", reason = reason)
 }
 
 struct App {
@@ -355,10 +368,7 @@ impl App {
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
         let delay = delay.min(self.keep_unsaved());
-        if IS_PAGE {
-            // A page is closed without notice.
-            self.keep_settings();
-        }
+        self.keep_settings();
         self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
         for request in requests {
             match request {
@@ -396,7 +406,7 @@ impl App {
         match recovery.keep(self.lab.unsaved()) {
             Ok(due) => due.map_or(Duration::MAX, |due| due.saturating_duration_since(Instant::now())),
             Err(error) => {
-                log::warn!("no copy of unsaved changes was kept: {error}");
+                self.warn(no_copy(error));
                 Duration::MAX
             }
         }
@@ -407,7 +417,7 @@ impl App {
         if let Some(recovery) = &mut self.recovery
             && let Err(error) = recovery.keep(None)
         {
-            log::warn!("the copy of unsaved changes is still there: {error}");
+            self.warn(fill!("The copy of unsaved changes could not be removed: %{reason}", reason = error));
         }
         self.quit(event_loop, None);
     }
@@ -467,6 +477,15 @@ impl App {
         }
     }
 
+    /// Prints and shows a warning, once.
+    fn warn(&mut self, message: String) {
+        if self.lab.warn(message)
+            && let Some(open) = &self.open
+        {
+            open.window.request_redraw();
+        }
+    }
+
     fn schedule(&mut self, delay: Duration) {
         self.wake = None;
         if delay.is_zero() {
@@ -505,7 +524,10 @@ impl App {
         if let (Some(file), true) = (&self.settings_file, settings != self.settings) {
             match settings.save(&self.settings, file) {
                 Ok(()) => self.settings = settings,
-                Err(error) => log::warn!("{}: {error}", file.display()),
+                Err(error) => {
+                    let reason = format!("{}: {error}", file.display());
+                    self.warn(fill!("The settings are not saved: %{reason}", reason = reason));
+                }
             }
         }
     }

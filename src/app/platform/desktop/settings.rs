@@ -39,7 +39,7 @@ pub(crate) fn lock(file: &Path) -> std::io::Result<File> {
 /// # Errors
 /// Error of the operating system.
 pub(crate) fn write(file: &Path, text: &str) -> std::io::Result<()> {
-    files::save(file, text.as_bytes())
+    files::save_without_sync(file, text.as_bytes())
 }
 
 /// Renames settings that cannot be read, and returns their new name.
