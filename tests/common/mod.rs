@@ -20,6 +20,16 @@ use std::process::{Command, Output};
 use warpbeam::scene::{Analysis, Scene, Source, open, registry};
 use warpbeam::simulation::{Simulation, Status};
 
+/// Returns `true` where sweeps run in full: by `scripts/test --all`.
+pub fn sweeps_run_in_full() -> bool {
+    std::env::var_os("WARPBEAM_ALL_SCENES").is_some()
+}
+
+/// Returns all cases of a sweep where sweeps run in full, and otherwise the first of every `stride` cases.
+pub fn sampled<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
+    cases.into_iter().step_by(if sweeps_run_in_full() { 1 } else { stride }).collect()
+}
+
 /// Opens a built-in scene.
 pub fn scene(id: &str) -> Scene {
     scene_with(id, &[])

@@ -105,7 +105,7 @@ fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
 #[test]
 fn claims_about_random_scenes_are_true() {
     let first: u64 = std::env::var("WARPBEAM_SEED").map_or(11_000, |seed| seed.parse().unwrap());
-    let count = if std::env::var_os("WARPBEAM_ALL_SCENES").is_some() { 300 } else { 30 };
+    let count = if crate::common::sweeps_run_in_full() { 300 } else { 30 };
     let (mut claims, mut unsolved) = (Claims::default(), 0);
     for seed in (first..).take(count) {
         let mut scene = random::scene(seed);

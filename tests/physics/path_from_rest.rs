@@ -316,7 +316,7 @@ fn first_seed(usual: u64) -> u64 {
 
 /// Number of scenes of a sweep: a tenth of them in the plain suite.
 fn share(all: u64) -> u64 {
-    if std::env::var_os("WARPBEAM_ALL_SCENES").is_some() { all } else { all / 10 }
+    if crate::common::sweeps_run_in_full() { all } else { all / 10 }
 }
 
 /// Returns the equilibrium that loading in small steps leads to, each by full Newton steps from the one before; `None`

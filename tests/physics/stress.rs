@@ -260,11 +260,8 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(scene: &Scene, fine_cells: [u32; 2]) -> Self {
+    fn of(scene: &Scene, fine: &Simulation) -> Self {
         let coarse = crate::common::solved(scene);
-        let fine = crate::common::solved(
-            &scene.clone().with_element(ElementKind::T6).with_cells(fine_cells[0], fine_cells[1]),
-        );
         let (fine_mesh, fine_nodal) = (fine.system().mesh(), fine.nodal_stress());
         let mesh = coarse.system().mesh();
         let entry = mesh.element().entry();
@@ -296,12 +293,13 @@ fn the_mesh_error_is_about_the_true_one() {
     for (id, tip) in [("cantilever", 1), ("gravity", 2), ("elastica", 1), ("incline", 1), ("roll-up", 1)] {
         let scene = crate::common::scene(id);
         let beam = scene.beam.clone().unwrap();
+        let fine_across = ((120.0 * beam.height / beam.length).round() as u32).max(2);
+        let fine = crate::common::solved(&scene.clone().with_element(ElementKind::T6).with_cells(120, fine_across));
         for kind in ElementKind::all() {
             for along in [10, 20, 40] {
                 let across = ((f64::from(along) * beam.height / beam.length).round() as u32).max(tip);
                 let scene = scene.clone().with_element(kind).with_cells(along, across);
-                let fine = [120, ((120.0 * beam.height / beam.length).round() as u32).max(2)];
-                let found = Errors::of(&scene, fine);
+                let found = Errors::of(&scene, &fine);
                 let text = format!("{id} {kind:?} {along}×{across}: {found:?}");
                 if kind == ElementKind::Q4 && across == 1 {
                     // In a single row every cell has the same error, which recovery cannot detect.
