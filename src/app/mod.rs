@@ -27,7 +27,7 @@ pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneSetting, PaneS
 #[doc(hidden)]
 pub use modes::learn::card_count;
 pub use offscreen::record::{MovieFormat, Phase, RecordError, RecordOptions, RecordProgress, Recorded, record};
-pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, ShotOptions, picture, shot};
+pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, Shot, ShotOptions, picture, shot};
 pub use panel::PANEL_WIDTH;
 #[doc(hidden)]
 pub use session::compared_solve::PaneEnd;

@@ -31,17 +31,21 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         "it measures solves; for a motion, use `warpbeam study`",
     )?;
     let watch = Watch::new();
-    let status = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
+    let shot = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
     let interrupted = watch.is_cancelled();
     drop(watch);
     if interrupted {
         eprintln!("warpbeam: interrupted: the picture shows only the settings measured until then");
         return Ok(ExitCode::from(NOT_CONVERGED));
     }
-    if let Some(reason) = status.failure() {
-        eprintln!("warpbeam: {}: {reason}", status.word());
+    if let Some(reason) = shot.status.failure() {
+        eprintln!("warpbeam: {}: {reason}", shot.status.word());
     }
-    Ok(exit_code(&status))
+    if let Some(reason) = shot.study_error {
+        eprintln!("warpbeam: no study: {reason}");
+        return Ok(ExitCode::from(NOT_CONVERGED));
+    }
+    Ok(exit_code(&shot.status))
 }
 
 /// Runs `warpbeam` without a command.

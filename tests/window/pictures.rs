@@ -82,3 +82,18 @@ fn a_picture_without_a_desktop_prints_nothing() {
     assert_eq!(stderr(&output), "");
     assert!(folder.path().join("x.png").exists());
 }
+
+/// A study that fails is said with its reason, and the exit code is 1; the picture of the solution is there.
+#[test]
+fn a_shot_without_its_study_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut unprobed = crate::common::scene("article");
+    unprobed.probes.clear();
+    std::fs::write(folder.path().join("unprobed.toml"), unprobed.to_toml().unwrap()).unwrap();
+    let args = ["shot", "unprobed.toml", "--study", "-o", "x.png", "--size", "320x200"];
+    let output = program(folder.path(), &args).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("no study: ") && said.contains("probe"), "{said}");
+    assert!(folder.path().join("x.png").exists());
+}

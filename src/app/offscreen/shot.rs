@@ -14,7 +14,7 @@ use crate::image::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Simulation, Status};
-use crate::study::{Extent, Observer, Study};
+use crate::study::{Extent, Observer, Study, StudyError};
 
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;
@@ -58,8 +58,17 @@ impl Default for ShotOptions {
     }
 }
 
-/// Solves the scene and writes its image; returns the final status. `observe` receives the progress of a study and can
-/// cancel it: the image then shows the measurements made so far.
+/// Result of [`shot`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// Status of the scene's solution.
+    pub status: Status,
+    /// Reason for which the image shows no study, although [`ShotOptions::study`] asks for one.
+    pub study_error: Option<StudyError>,
+}
+
+/// Solves the scene and writes its image. `observe` receives the progress of a study and can cancel it: the image then
+/// shows the measurements made so far.
 ///
 /// # Errors
 /// [`AppError::Render`].
@@ -70,7 +79,7 @@ pub fn shot(
     options: &ShotOptions,
     output: &Path,
     observe: Observer<'_>,
-) -> Result<Status, AppError> {
+) -> Result<Shot, AppError> {
     let gpu = Gpu::headless()?;
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
@@ -82,11 +91,12 @@ pub fn shot(
     if let Some(card) = options.learn {
         lab.show_card(card);
     }
+    let mut study_error = None;
     if options.study {
         let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
         match Study::until_cancelled(lab.scene(), extent, observe) {
             Ok((study, _)) => lab.show_study(study),
-            Err(error) => log::error!("no study: {error}"),
+            Err(error) => study_error = Some(error),
         }
     }
     if let Some(integrators) = &options.motion {
@@ -99,7 +109,7 @@ pub fn shot(
     lab.solve();
     let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;
     picture.write_png(output).map_err(RenderError::from)?;
-    Ok(lab.simulation().status().clone())
+    Ok(Shot { status: lab.simulation().status().clone(), study_error })
 }
 
 /// Draws the current state of the lab into an image of this size, pixels.

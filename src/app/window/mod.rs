@@ -328,7 +328,10 @@ impl App {
                 ui.ctx().request_repaint_after(POLL);
             }
         });
-        open.clipboard.after(&output.platform_output);
+        if let Some(reason) = open.clipboard.after(&output.platform_output) {
+            self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason = reason));
+            self.ctx.request_repaint();
+        }
         open.input.handle_platform_output_with_event_loop(
             &open.window,
             event_loop,

@@ -12,6 +12,8 @@ use crate::app::platform::web::browser;
 thread_local! {
     /// Text that the browser has handed over, to be pasted.
     static PASTED: RefCell<Option<String>> = RefCell::default();
+    /// Reason for which the browser has refused a copy.
+    static REFUSED: RefCell<Option<String>> = RefCell::default();
 }
 
 /// Connection to the browser's clipboard.
@@ -46,19 +48,22 @@ impl Clipboard {
         events.extend(PASTED.take().map(egui::Event::Paste));
     }
 
-    /// Passes text copied in a frame to the browser's clipboard.
-    pub(crate) fn after(&mut self, output: &PlatformOutput) {
-        let Some(clipboard) = web_sys::window().map(|window| window.navigator().clipboard()) else { return };
+    /// Passes text copied in a frame to the browser's clipboard. Returns the reason if the copy of an earlier frame
+    /// failed: the browser answers later.
+    pub(crate) fn after(&mut self, output: &PlatformOutput) -> Option<String> {
+        let clipboard = web_sys::window()?.navigator().clipboard();
         for command in &output.commands {
             if let OutputCommand::CopyText(text) = command {
                 let written = clipboard.write_text(text);
                 spawn_local(async move {
                     if let Err(error) = JsFuture::from(written).await {
-                        log::warn!("not copied: {}", browser::message(&error));
+                        REFUSED.set(Some(browser::message(&error)));
+                        browser::wake();
                     }
                 });
             }
         }
+        REFUSED.take()
     }
 }
 
