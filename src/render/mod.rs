@@ -16,6 +16,7 @@ mod offscreen;
 pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
+pub(crate) use offscreen::to_rgba;
 
 /// Error of the renderer.
 #[derive(Debug, Error)]

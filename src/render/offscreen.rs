@@ -3,7 +3,7 @@
 use super::{Gpu, RenderError};
 use crate::image::Picture;
 
-/// Waits for all submitted work, and copies an RGBA texture to memory.
+/// Waits for all submitted work, and copies a texture of four bytes a pixel, RGBA or BGRA, to memory.
 ///
 /// # Errors
 /// [`RenderError::ReadBack`].
@@ -42,6 +42,15 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, Rende
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
     receiver.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
     let mapped = slice.get_mapped_range().map_err(|e| failed(e.to_string()))?;
-    let rgba = mapped.chunks_exact(padded_row as usize).flat_map(|line| &line[..row as usize]).copied().collect();
+    let mut rgba: Vec<u8> =
+        mapped.chunks_exact(padded_row as usize).flat_map(|line| &line[..row as usize]).copied().collect();
+    to_rgba(texture.format(), &mut rgba);
     Ok(Picture { size: [width, height], rgba })
+}
+
+/// Converts pixels of a texture to RGBA: those of a window can be BGRA.
+pub(crate) fn to_rgba(format: wgpu::TextureFormat, pixels: &mut [u8]) {
+    if matches!(format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
+        pixels.as_chunks_mut().0.iter_mut().for_each(|pixel: &mut [u8; 4]| pixel.swap(0, 2));
+    }
 }

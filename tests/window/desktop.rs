@@ -463,30 +463,17 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
 }
 
 /// When the tip of the arrow is dragged, the force follows the pointer. Ctrl+S saves it, `solve` converges to the
-/// displayed result, and Ctrl+Z restores the previous force.
+/// displayed result, and Ctrl+Z restores the previous force. A screenshot during the drag shows it, and does not end it.
 #[test]
 fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let Some(desktop) = Desktop::start() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
-    let window = Window::open(&desktop, &["run", path.to_str().unwrap()]);
+    let window = Window::open_in(&desktop, folder.path(), &["run", path.to_str().unwrap()]);
     let harness = laid_out();
     // A position without a control that the pointer would highlight.
     let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
-    window.point(corner.0, corner.1);
-    let before = window.settle();
-    window.point(tip.x, tip.y);
-    desktop.xdotool(&["mousedown", "1"]);
-    // To the left and up: a smaller force in another direction.
-    let increment = egui::vec2(-60.0, -45.0);
-    for part in [0.25, 0.5, 0.75, 1.0] {
-        window.point(tip.x + part * increment.x, tip.y + part * increment.y);
-    }
-    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
-    desktop.xdotool(&["mouseup", "1"]);
-    window.point(corner.0, corner.1);
-    let after = window.settle();
     let until = |what: &str, key: &str, done: &dyn Fn() -> bool| {
         let mut asked: Option<Instant> = None;
         wait_for(what, || {
@@ -497,6 +484,35 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
             done().then_some(())
         });
     };
+    window.point(corner.0, corner.1);
+    let before = window.settle();
+    window.point(tip.x, tip.y);
+    desktop.xdotool(&["mousedown", "1"]);
+    // To the left and up: a smaller force in another direction.
+    let increment = egui::vec2(-60.0, -45.0);
+    let drag = |parts: [f32; 2]| parts.map(|part| window.point(tip.x + part * increment.x, tip.y + part * increment.y));
+    drag([0.25, 0.5]);
+    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 5_000).then_some(()));
+    let held = window.settle();
+    let screenshot = folder.path().join("warpbeam-001.png");
+    let mut asked: Option<Instant> = None;
+    let screenshot = wait_for("the whole screenshot", || {
+        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            // The window has the focus: to give it again would end the drag.
+            desktop.xdotool(&["key", "s"]);
+            asked = Some(Instant::now());
+        }
+        read_bgrx(&screenshot)
+    });
+    // The arrow that is held is highlighted.
+    let different = changed(&screenshot, &held);
+    assert!(different < 20, "{different} pixels differ from the window");
+    window.wait_for_picture("the message to vanish", &held);
+    drag([0.75, 1.0]);
+    wait_for("the drag to go on after the screenshot", || (changed(&held, &window.image()) > 5_000).then_some(()));
+    desktop.xdotool(&["mouseup", "1"]);
+    window.point(corner.0, corner.1);
+    let after = window.settle();
     let force = || {
         let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
         saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()

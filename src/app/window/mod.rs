@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::ViewportId;
+use egui::{ClippedPrimitive, ViewportId};
 use egui_wgpu::ScreenDescriptor;
 use thiserror::Error;
 use web_time::{Duration, Instant};
@@ -25,7 +25,6 @@ use crate::app::language::fill;
 use crate::app::offscreen::painter::Stage;
 use crate::app::offscreen::record::{LiveRecording, pointer};
 use crate::app::offscreen::recorder::Recorder;
-use crate::app::offscreen::shot::picture;
 use crate::app::platform::clipboard::Clipboard;
 use crate::app::platform::new_file::NewFile;
 use crate::app::platform::{self, IS_PAGE};
@@ -35,7 +34,7 @@ use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MOST_UNKNOWNS;
 use crate::app::task::thread::POLL;
 use crate::app::{AppError, ThemeChoice};
-use crate::render::{Gpu, RenderError};
+use crate::render::{Gpu, RenderError, View, read_texture};
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
 
@@ -290,6 +289,22 @@ impl OpenWindow {
         Ok(None)
     }
 
+    /// Draws the frame of the window again, into an image, and saves it under a new name.
+    fn screenshot(
+        &mut self,
+        screen: &ScreenDescriptor,
+        primitives: &[ClippedPrimitive],
+        views: &[View<'_>],
+    ) -> Result<PathBuf, ScreenshotError> {
+        let file = new_file("png")?;
+        let Self { gpu, stage, configuration, .. } = self;
+        let usage = wgpu::TextureUsages::COPY_SRC;
+        let target = gpu.target("screenshot", configuration.format, screen.size_in_pixels, 1, usage);
+        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, primitives, views);
+        read_texture(gpu, &target)?.write_png(file.path()).map_err(RenderError::from)?;
+        Ok(file.path().to_owned())
+    }
+
     fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
         ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
     }
@@ -350,6 +365,9 @@ impl App {
         };
         let screen = open.screen(output.pixels_per_point);
         let views = self.lab.views(screen.pixels_per_point);
+        // A page saves the frame that it has drawn.
+        let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
+        let screenshot = takes_screenshot.then(|| open.screenshot(&screen, &primitives, &views));
         if let Some(recording) = &mut self.recording {
             recording.pass_frames(&open.gpu);
             if let Some(number) = recording.due(now) {
@@ -375,7 +393,7 @@ impl App {
         self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
         for request in requests {
             match request {
-                Request::Screenshot => self.screenshot(screen.pixels_per_point),
+                Request::Screenshot => self.say_saved(screenshot.as_ref()),
                 Request::DiscardCopy => self.recovery.iter_mut().for_each(Recovery::discard_left),
                 Request::Record => self.record(now),
                 Request::RecordScene => self.record_scene(),
@@ -501,24 +519,18 @@ impl App {
         }
     }
 
-    fn screenshot(&mut self, pixels_per_point: f32) {
-        let Some(open) = &self.open else { return };
+    /// Says where a screenshot was saved, or why it was not; a page saves its frame now.
+    fn say_saved(&mut self, screenshot: Option<&Result<PathBuf, ScreenshotError>>) {
         const NAME: &str = "warpbeam.png";
-        if platform::page::save_frame(&open.window, NAME) {
-            return self.lab.say(&self.ctx, fill!("Saved %{file}", file = NAME));
-        }
-        let size = [open.configuration.width, open.configuration.height];
-        let saved = new_file("png").map_err(ScreenshotError::from).and_then(|file| {
-            let picture = picture(&open.gpu, &mut self.lab, size, pixels_per_point, self.ctx.theme())?;
-            picture.write_png(file.path()).map_err(RenderError::from)?;
-            Ok(file.path().to_owned())
-        });
-        let message = match saved {
-            Ok(path) => fill!("Saved %{file}", file = path.display()),
-            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
+        let message = match screenshot {
+            Some(Ok(path)) => fill!("Saved %{file}", file = path.display()),
+            Some(Err(reason)) => fill!("No screenshot: %{reason}", reason = reason),
+            None if self.open.as_ref().is_some_and(|open| platform::page::save_frame(&open.window, NAME)) => {
+                fill!("Saved %{file}", file = NAME)
+            }
+            None => fill!("No screenshot: %{reason}", reason = "canvas"),
         };
-        self.lab.say(&self.ctx, message);
-        open.window.request_redraw();
+        self.say(message);
     }
 
     /// Writes the settings to their file, if they have changed.

@@ -15,7 +15,7 @@ use crate::app::offscreen::painter::Stage;
 use crate::app::platform::new_file::NewFile;
 use crate::app::task::thread::{Task, Update};
 use crate::image::Picture;
-use crate::render::{Gpu, RenderError, View};
+use crate::render::{Gpu, RenderError, View, to_rgba};
 
 /// Frames per second.
 const RATE: u16 = 25;
@@ -176,10 +176,7 @@ impl LiveRecording {
         let row = 4 * self.size[0] as usize;
         let lines = mapped.chunks_exact(padded_row(self.size[0]) as usize);
         let mut rgba: Vec<u8> = lines.filter_map(|line| line.get(..row)).flatten().copied().collect();
-        use wgpu::TextureFormat as Format;
-        if matches!(self.target.format(), Format::Bgra8Unorm | Format::Bgra8UnormSrgb) {
-            rgba.as_chunks_mut().0.iter_mut().for_each(|pixel: &mut [u8; 4]| pixel.swap(0, 2));
-        }
+        to_rgba(self.target.format(), &mut rgba);
         Ok(Picture { size: self.size, rgba })
     }
 

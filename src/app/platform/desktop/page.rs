@@ -7,7 +7,7 @@ pub(crate) fn set_title(window: &Window, title: &str) {
     window.set_title(title);
 }
 
-/// Saves the drawn frame as an image; returns `false` if the program has to draw it again for that.
+/// Returns `false`: a program draws its frame again for an image.
 pub(crate) fn save_frame(_: &Window, _: &str) -> bool {
     false
 }
