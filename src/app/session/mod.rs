@@ -102,6 +102,14 @@ pub(crate) struct Grab {
     pub release: bool,
 }
 
+/// Equilibrium with the numbers of its search.
+#[derive(Debug)]
+struct BeforeGrab {
+    simulation: Simulation,
+    timings: Timings,
+    residuals: Vec<f64>,
+}
+
 /// One model being worked on.
 #[derive(Debug)]
 pub(crate) struct Session {
@@ -126,6 +134,8 @@ pub(crate) struct Session {
     quality: Quality,
     /// Last equilibrium, displayed in place of a state that diverges.
     converged: Option<Simulation>,
+    /// Equilibrium before the body was grabbed, which its release restores.
+    before_grab: Option<BeforeGrab>,
     facts: Facts,
     /// `true` if the scene's file has changed on disk since it was read or saved.
     is_outdated: bool,
@@ -152,6 +162,7 @@ impl Session {
             playback: Playback::default(),
             quality: Quality::default(),
             converged: None,
+            before_grab: None,
             facts: Facts::default(),
             is_outdated: false,
             changed: Changed::default(),
@@ -586,15 +597,14 @@ impl Session {
         self.simulation.restore(state).is_ok()
     }
 
-    /// Grabs, pulls and releases the body, and its companion motions under other integrators.
+    /// Grabs, pulls and releases the body, and its companion motions under other integrators. A release restores the
+    /// equilibrium before the grab, unless the scene has changed.
     pub(crate) fn grab(&mut self, grab: Grab) {
         if self.is_in_background() {
             return;
         }
-        if let Some(point) = grab.start
-            && self.simulation.grab(point)
-        {
-            self.playback.grab(point);
+        if let Some(point) = grab.start {
+            self.start_grab(point);
         }
         if let Some(target) = grab.target
             && self.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
@@ -608,7 +618,31 @@ impl Session {
         }
     }
 
+    /// Grabs the body at a material point. A body in equilibrium is replaced by a copy, and kept.
+    fn start_grab(&mut self, point: MaterialPoint) {
+        let is_final = matches!(self.simulation.status(), Status::Converged | Status::Accepted);
+        let copy = self.simulation.equilibrium().filter(|_| is_final).map(Equilibrium::snapshot);
+        let kept = copy.map(|copy| std::mem::replace(&mut self.simulation, copy));
+        let is_grabbed = self.simulation.grab(point);
+        if is_grabbed {
+            self.playback.grab(point);
+        }
+        match kept {
+            Some(simulation) if is_grabbed => {
+                let residuals = self.residuals.clone();
+                self.before_grab = Some(BeforeGrab { simulation, timings: self.timings, residuals });
+            }
+            Some(simulation) => self.simulation = simulation,
+            None => {}
+        }
+    }
+
     fn release(&mut self) {
+        let before = self.before_grab.take();
+        if let Some(before) = before.filter(|before| before.simulation.scene() == self.simulation.scene()) {
+            (self.simulation, self.timings, self.residuals) = (before.simulation, before.timings, before.residuals);
+            return;
+        }
         self.simulation.release();
         self.playback.release();
     }

@@ -186,6 +186,33 @@ fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
     assert_eq!(session.simulation().state().time(), 0.0);
 }
 
+/// After a grab the body is in the equilibrium before, with all its numbers: no search has taken their place.
+#[test]
+fn a_released_body_has_the_numbers_of_its_equilibrium() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(false);
+    let numbers = |session: &Session| {
+        let simulation = session.simulation();
+        let certificate = simulation.equilibrium().unwrap().certificate();
+        let solve = (simulation.status().clone(), simulation.iterations(), *simulation.timings());
+        (solve, certificate, session.residuals().to_vec(), simulation.displacement().to_vec())
+    };
+    let before = numbers(&session);
+    assert!(before.1.is_some());
+    let point = session.simulation().system().mesh().locate(Vector2::new(4.0, 0.5)).unwrap();
+    session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
+    (0..40).for_each(|_| session.iterate(1));
+    assert!(tip(&session) > 1.0, "the pull lifts the tip");
+    session.grab(Grab { release: true, ..Grab::default() });
+    assert_eq!(numbers(&session), before);
+    // A load that has changed meanwhile counts.
+    session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
+    session.apply(with_force(&session, -200.0)).unwrap();
+    session.grab(Grab { release: true, ..Grab::default() });
+    session.solve(false);
+    assert!(tip(&session) < 1.5 * before.3.iter().map(|u| u.y).fold(0.0, f64::min), "{}", tip(&session));
+}
+
 #[test]
 fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     let mut session = session(cantilever(-100.0));

@@ -1,5 +1,5 @@
-//! Interaction of the pointer with the view. A press on the tip of an arrow sets its load, a press on the body grabs
-//! it, and a press on empty space moves the view. The wheel zooms about the pointer.
+//! Interaction of the pointer with the view. A press on the tip of an arrow sets its load, a drag of the body grabs it,
+//! and a drag of empty space moves the view. The wheel zooms about the pointer.
 
 use std::ops::RangeInclusive;
 
@@ -31,12 +31,22 @@ enum Held {
     Nothing,
     /// The tip of an arrow.
     Tip(Grip),
-    /// The body, grabbed at a point.
-    Body(MaterialPoint),
+    /// The body, pressed at a point; grabbed once the pointer leaves it.
+    Body(Press),
     /// The view, pressed at a point of a body that cannot be grabbed.
     Point(MaterialPoint),
     /// Empty space.
     Space,
+}
+
+/// Press on a body that can be grabbed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Press {
+    point: MaterialPoint,
+    /// Vector from the point to the pointer when it was pressed, m.
+    offset: Vector2<f64>,
+    /// `true` if the body is grabbed.
+    grabs: bool,
 }
 
 /// State of the pointer: its hover target and the target of its press.
@@ -68,6 +78,9 @@ pub(crate) struct Interaction {
 
 /// Distance within which the pointer counts as on a thin body, points.
 const NEAR: f64 = 8.0;
+
+/// Distance between pointer and pressed point from which a press is a drag, points.
+const DRAG_DISTANCE: f64 = 4.0;
 
 /// Interaction that the body allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +114,16 @@ impl HitTargets<'_> {
         self.camera.to_world([f64::from(at.x), f64::from(at.y)])
     }
 
+    /// Returns the vector from a material point to a position in the plane, m; `None` if the mesh has no such point.
+    fn offset(&self, point: MaterialPoint, place: Vector2<f64>) -> Option<Vector2<f64>> {
+        let weights = self.mesh?.weights(point)?;
+        let mut offset = place;
+        for (node, weight) in weights {
+            offset -= self.positions.get(node as usize)? * weight;
+        }
+        Some(offset)
+    }
+
     fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
         self.mesh?.pick(self.positions, self.outline, place, NEAR / self.camera.scale)
     }
@@ -120,10 +143,15 @@ impl Pointer {
         self.over_body.zip(self.at)
     }
 
-    /// Returns `true` if a load handle or the body is grabbed; the view must not move then, because the grabbed point
-    /// would move with it.
+    /// Returns `true` if a load handle or the body is held; the view must not move then, because the held point would
+    /// move with it.
     pub(crate) fn holds(&self) -> bool {
         matches!(self.held, Held::Tip(..) | Held::Body(_))
+    }
+
+    /// Returns `true` if the body is grabbed.
+    fn grabs(&self) -> bool {
+        matches!(self.held, Held::Body(Press { grabs: true, .. }))
     }
 
     /// Processes the pointer over the view with this `response`.
@@ -154,7 +182,7 @@ impl Pointer {
         if pressed && is_here && fingers.is_none() {
             // The pointer may have moved since the press.
             let at = origin.or(at);
-            self.held = at.map_or(Held::Nothing, |at| Self::take(response, targets, &mut interaction, body, at));
+            self.held = at.map_or(Held::Nothing, |at| Self::take(response, targets, body, at));
         }
         // The pointer may also have moved after the release.
         if let Some(at) = let_go_at.or(at) {
@@ -168,13 +196,13 @@ impl Pointer {
             }
         } else if response.clicked() {
             match self.held {
-                Held::Body(point) | Held::Point(point) => interaction.clicked = Some(Some(point)),
+                Held::Body(Press { point, .. }) | Held::Point(point) => interaction.clicked = Some(Some(point)),
                 Held::Space => interaction.clicked = Some(None),
                 Held::Tip(..) | Held::Nothing => {}
             }
         }
         if !down || fingers.is_some() {
-            interaction.grab.release = matches!(self.held, Held::Body(_));
+            interaction.grab.release = self.grabs();
             self.held = Held::Nothing;
         }
         self.hover(ui, response, targets, body, down);
@@ -185,23 +213,17 @@ impl Pointer {
     }
 
     /// Returns the target of a press; load handles come before the body, which they may cover.
-    fn take(
-        response: &Response,
-        targets: &HitTargets<'_>,
-        interaction: &mut Interaction,
-        body: Target,
-        at: Pos2,
-    ) -> Held {
+    fn take(response: &Response, targets: &HitTargets<'_>, body: Target, at: Pos2) -> Held {
         if let Some(handle) = handle::at(targets.handles, at) {
             return Held::Tip(Grip::new(*handle, at));
         }
-        let reached = targets.point(targets.place(response, at)).filter(|_| body != Target::None);
+        let place = targets.place(response, at);
+        let reached = targets.point(place).filter(|_| body != Target::None);
         let Some(point) = reached else { return Held::Space };
-        if body != Target::Grabbable {
-            return Held::Point(point);
+        match targets.offset(point, place) {
+            Some(offset) if body == Target::Grabbable => Held::Body(Press { point, offset, grabs: false }),
+            _ => Held::Point(point),
         }
-        interaction.grab.start = Some(point);
-        Held::Body(point)
     }
 
     /// Moves the pressed target with the pointer.
@@ -218,7 +240,16 @@ impl Pointer {
                 grip.follow(at, keys.alt || keys.ctrl);
                 interaction.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
             }
-            Held::Body(_) if body == Target::Grabbable => interaction.grab.target = Some(targets.place(response, at)),
+            Held::Body(press) if body == Target::Grabbable => {
+                let place = targets.place(response, at);
+                if !press.grabs {
+                    // In a motion, the body can also move away from a pointer that stands still.
+                    let moved = targets.offset(press.point, place).map_or(0.0, |offset| (offset - press.offset).norm());
+                    press.grabs = moved * targets.camera.scale > DRAG_DISTANCE;
+                    interaction.grab.start = press.grabs.then_some(press.point);
+                }
+                interaction.grab.target = press.grabs.then_some(place);
+            }
             Held::Body(_) | Held::Point(_) | Held::Space | Held::Nothing => {}
         }
     }
