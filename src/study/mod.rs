@@ -29,6 +29,8 @@ pub use motion::MotionStudy;
 pub use progress::{Extent, Observer, PartialObserver, Progress, StudyError};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use reference::MOST_CERTIFIED;
+#[cfg(feature = "app")]
+pub(crate) use reference::is_known_unstable;
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::times_from_rest;

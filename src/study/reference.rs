@@ -14,7 +14,7 @@ use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{number, two_digits};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{ProbeResult, Simulation, SimulationError, Status};
+use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
 
 /// Origin of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -300,15 +300,26 @@ impl Reference {
 /// than the solve or its reference.
 pub(crate) const MOST_CERTIFIED: usize = 100_000;
 
-/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite.
+/// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has not
+/// been.
 fn is_unstable(simulation: &Simulation) -> bool {
-    if *simulation.status() != Status::Converged || simulation.is_linear() {
-        return false;
-    }
-    let Some(search) = simulation.equilibrium() else { return false };
     let is_small = simulation.system().dofs() <= MOST_CERTIFIED;
-    let certificate = search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
-    certificate.and_then(|c| c.stable) == Some(false)
+    match simulation.equilibrium().filter(|search| is_small && search.certificate().is_none()) {
+        Some(search) if *simulation.status() == Status::Converged => {
+            let mut copy = search.snapshot();
+            copy.certify();
+            is_known_unstable(&copy)
+        }
+        _ => is_known_unstable(simulation),
+    }
+}
+
+/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite. It has no reference
+/// solution: a solution on another mesh leaves it.
+pub(crate) fn is_known_unstable(simulation: &Simulation) -> bool {
+    let certificate = simulation.equilibrium().and_then(Equilibrium::certificate);
+    let is_stable = certificate.and_then(|certificate| certificate.stable);
+    *simulation.status() == Status::Converged && !simulation.is_linear() && is_stable == Some(false)
 }
 
 /// Returns the reference of a probe; `None` if its error, m, is too large a fraction of its displacement.

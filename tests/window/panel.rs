@@ -1046,3 +1046,15 @@ fn the_error_shows_that_the_reference_is_being_computed() {
     harness.run();
     assert!(!says(&harness));
 }
+
+/// A straight column above its buckling load has no error, in the window as in `solve`: its equilibrium is unstable.
+#[test]
+fn an_unstable_equilibrium_has_no_error() {
+    let mut harness = harness("column");
+    let set = ["load.0.force=[-520,0]", "solver.method=\"newton\""];
+    harness.state_mut().set_scene(crate::common::scene_with("column", &set)).unwrap();
+    harness.run();
+    harness.state_mut().solve();
+    harness.run();
+    assert!(harness.query_by_label_contains("ERROR \u{2013} no reference").is_some(), "{:?}", texts(&harness));
+}

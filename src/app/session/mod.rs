@@ -17,6 +17,7 @@ pub(crate) mod undo;
 
 use std::io;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -34,6 +35,7 @@ use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
+use crate::study::{Reference, StudyError, is_known_unstable};
 use crate::timings::Timings;
 
 /// Change of the model that can be undone.
@@ -204,6 +206,17 @@ impl Session {
 
     pub(crate) fn facts(&self) -> &Facts {
         &self.facts
+    }
+
+    /// Returns the reference solution that errors of the displayed result are measured against, or the reason for which
+    /// there is none; `None` while neither is known.
+    pub(crate) fn reference(&self) -> Option<Result<&Reference, &Sentence>> {
+        static UNSTABLE: LazyLock<Sentence> = LazyLock::new(|| (&StudyError::Unstable).into());
+        if is_known_unstable(&self.simulation) {
+            return Some(Err(&UNSTABLE));
+        }
+        let facts = &self.facts.reference;
+        facts.failure(&self.scene).map(Err).or_else(|| facts.get(&self.scene).map(Ok))
     }
 
     pub(crate) fn timings(&self) -> &Timings {

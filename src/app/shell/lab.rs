@@ -251,8 +251,8 @@ impl Lab {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
         let facts = session.facts();
         Readout {
-            reference: facts.reference.get(session.scene()),
-            reference_failure: facts.reference.failure(session.scene()),
+            reference: session.reference().and_then(Result::ok),
+            reference_failure: session.reference().and_then(Result::err),
             path: facts.path.get(session.scene()).map(|path| path.to(session.simulation().displacement())),
             equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
             quality: session.quality(),

@@ -78,7 +78,7 @@ impl<'a> Content<'a> {
             && !session.is_motion()
             && !session.iterates()
             && session.simulation().mouse_spring().is_none();
-        session.facts().reference.get(session.scene()).filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
+        session.reference().and_then(Result::ok).filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
