@@ -1,6 +1,7 @@
 //! Simulation of a scene: each [`Simulation::step`] is one iteration towards the equilibrium, or one time step; and
 //! results of the current state.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
@@ -540,6 +541,15 @@ impl Simulation {
             self.step();
         }
         &self.status
+    }
+
+    /// Steps as [`Self::solve`], and asks `watch` before each step; ends early if it breaks.
+    pub(crate) fn solve_watched(&mut self, watch: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+        while self.status == Status::Running {
+            watch()?;
+            self.step();
+        }
+        ControlFlow::Continue(())
     }
 
     /// Interrupts a search or a motion, leaving the best available state.

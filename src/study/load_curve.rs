@@ -1,5 +1,6 @@
 //! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -9,6 +10,7 @@ use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
 use crate::method::METHODS;
 use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
+use crate::study::load_path::PathObserver;
 
 /// Load factor with its deflections.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -83,6 +85,12 @@ impl LoadCurve {
     /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip.
     #[must_use]
     pub fn new(scene: &Scene) -> Option<Self> {
+        Self::observed(scene, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Returns the curve as [`Self::new`], with progress reports; `None` also if it is cancelled.
+    #[must_use]
+    pub fn observed(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         // A scene that cannot be simulated has no curve.
         let system = Simulation::new(scene).ok()?.system().clone();
@@ -114,7 +122,11 @@ impl LoadCurve {
             Some(samples)
         };
         let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
-        let methods = METHODS.iter().filter_map(|entry| method_point(scene, entry.kind, &system)).collect();
+        let mut methods = Vec::new();
+        for (i, entry) in METHODS.iter().enumerate() {
+            let watch = &mut || observe(i as f64 / METHODS.len() as f64);
+            methods.extend(method_point(scene, entry.kind, &system, watch)?);
+        }
         Some(Self { samples, buckles_at, departures, methods })
     }
 }
@@ -137,14 +149,22 @@ fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Opti
     Some(Departure { percent, at })
 }
 
-fn method_point(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Option<MethodPoint> {
+/// Returns the result of a method; `None` if `watch` cancels, and `Some(None)` if the scene cannot be simulated.
+fn method_point(
+    scene: &Scene,
+    method: MethodKind,
+    system: &Arc<System>,
+    watch: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Option<Option<MethodPoint>> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.accept_after = 0;
-    let mut simulation = Simulation::with_system(&scene, system.clone()).ok()?;
-    simulation.solve();
-    let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"))?;
-    let tip = probe.mean(simulation.displacement());
+    let Ok(mut simulation) = Simulation::with_system(&scene, system.clone()) else { return Some(None) };
+    if simulation.solve_watched(watch).is_break() {
+        return None;
+    }
+    let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"));
+    let Some(tip) = probe.map(|probe| probe.mean(simulation.displacement())) else { return Some(None) };
     let stable = simulation.certify().stable;
-    Some(MethodPoint { method, tip, status: simulation.status().clone(), stable })
+    Some(Some(MethodPoint { method, tip, status: simulation.status().clone(), stable }))
 }

@@ -182,7 +182,7 @@ impl LoadPath {
         let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
         let mut summary = match search.path_events() {
             Some(events) => PathSummary::of(events.jump, &events.bifurcations),
-            None if is_small => Self::end_of(simulation)?.to(simulation.displacement()),
+            None if is_small => Self::end_of(simulation, observe)?.to(simulation.displacement()),
             None => return None,
         };
         if is_small && summary.elsewhere.is_none() && simulation.problem().supports().move_the_body() {
@@ -193,14 +193,21 @@ impl LoadPath {
     }
 
     /// Follows the load path of a simulation's scene on its mesh; returns its critical points and the displacement at
-    /// its end, m.
-    fn end_of(simulation: &Simulation) -> Option<PathFromRest> {
+    /// its end, m; `None` if the path cannot be followed, or is cancelled.
+    fn end_of(simulation: &Simulation, observe: PathObserver<'_>) -> Option<PathFromRest> {
         let mut scene = simulation.scene().clone();
         scene.solver.method = MethodKind::Newton;
         scene.solver.accept_after = 0;
         scene.solver.max_iterations = MAX_SOLVES;
         let mut follower = Simulation::with_system(&scene, simulation.system().clone()).ok()?;
-        if *follower.solve() != Status::Converged {
+        while *follower.status() == Status::Running {
+            let factor = follower.equilibrium()?.load_factor();
+            if observe(factor).is_break() {
+                return None;
+            }
+            follower.step();
+        }
+        if *follower.status() != Status::Converged {
             return None;
         }
         let events = follower.equilibrium()?.path_events()?;
@@ -208,11 +215,12 @@ impl LoadPath {
         Some(PathFromRest { summary, end: follower.displacement().to_vec() })
     }
 
-    /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or the model is too large.
+    /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or is cancelled, or the model
+    /// is too large.
     #[must_use]
-    pub fn end_of_scene(scene: &Scene) -> Option<PathFromRest> {
+    pub fn end_of_scene(scene: &Scene, observe: PathObserver<'_>) -> Option<PathFromRest> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
-        (simulation.system().dofs() <= MAX_UNKNOWNS).then(|| Self::end_of(&simulation))?
+        (simulation.system().dofs() <= MAX_UNKNOWNS).then(|| Self::end_of(&simulation, observe))?
     }
 
     /// Summarizes the path.

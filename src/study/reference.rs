@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::fine::{Effort, Fine, MovedPoint, fine};
-use super::progress::Observer;
+use super::progress::{Observer, check};
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{number, two_digits};
@@ -333,22 +333,34 @@ pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// Runs a method to its end with a sufficient number of iterations.
-fn run_to_end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Simulation, StudyError> {
+/// Runs a method to its end with a sufficient number of iterations. `watch` cancels it by [`ControlFlow::Break`].
+fn run_to_end(
+    scene: &Scene,
+    method: MethodKind,
+    system: &Arc<System>,
+    watch: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<Simulation, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
     scene.solver.accept_after = 0;
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
-    if *simulation.solve() != Status::Converged && method == MethodKind::Newton {
+    check(simulation.solve_watched(watch))?;
+    if *simulation.status() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoReference);
     }
     Ok(simulation)
 }
 
-/// Returns the final displacements of the probes by a method, with a sufficient number of iterations.
-pub(super) fn end(scene: &Scene, method: MethodKind, system: &Arc<System>) -> Result<Vec<Vector2<f64>>, StudyError> {
-    Ok(probe_displacements(&run_to_end(scene, method, system)?))
+/// Returns the final displacements of the probes by a method, with a sufficient number of iterations. `watch` cancels
+/// the computation by [`ControlFlow::Break`].
+pub(super) fn end(
+    scene: &Scene,
+    method: MethodKind,
+    system: &Arc<System>,
+    watch: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<Vec<Vector2<f64>>, StudyError> {
+    Ok(probe_displacements(&run_to_end(scene, method, system, watch)?))
 }
 
 fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {

@@ -3,6 +3,7 @@
 //! A solve starts from rest, which is the hardest case; data computed once per mesh (sparsity, ordering, the factor of
 //! the stiffness at rest that `auto` keeps) already exist.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -198,7 +199,7 @@ impl Study {
         let meshes = meshes(scene, extent);
         let mut study = Self::begin(scene, &mut |progress| observe(progress, None))?;
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let ends = |mesh: &MeshChoice, _: &CalledOff| MeshEnds::find(scene, mesh);
+        let ends = |mesh: &MeshChoice, cancelled: &CalledOff| MeshEnds::find(scene, mesh, &mut || cancelled.flow());
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
             observe(Progress { fraction, now: &sentence!("end state of every method") }, None)
@@ -376,12 +377,17 @@ pub(super) struct MeshEnds {
 }
 
 impl MeshEnds {
-    pub fn find(scene: &Scene, mesh: &MeshChoice) -> Result<Self, StudyError> {
+    /// Computes the results on a mesh. `watch` cancels the computation by [`ControlFlow::Break`].
+    pub fn find(
+        scene: &Scene,
+        mesh: &MeshChoice,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Self, StudyError> {
         let meshed = mesh.with(MethodKind::Newton).apply(scene);
         let system = system_of(&meshed)?;
         let start = Instant::now();
-        let first_end = |method| -> Result<_, StudyError> {
-            Ok(end(&meshed, method, &system)?.first().copied().unwrap_or_default())
+        let mut first_end = |method| -> Result<_, StudyError> {
+            Ok(end(&meshed, method, &system, watch)?.first().copied().unwrap_or_default())
         };
         let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
         Ok(Self { system, exact, linear, time: start.elapsed() })

@@ -3,6 +3,7 @@
 use super::progress::{Extent, Observer, Progress, StudyError, check};
 use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
 use crate::scene::Scene;
+use crate::sentence::sentence;
 
 /// Requirements for a solve; `None` for no requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,10 +103,13 @@ impl Tuning {
             }
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
-            let ends = MeshEnds::find(scene, mesh)?;
-            let measured = study.measure(scene, mesh, &ends, &mut |part, now| {
-                let fraction = (done + part * weight) / all;
-                check(observe(Progress { fraction, now }))
+            let watch =
+                &mut || observe(Progress { fraction: done / all, now: &sentence!("end state of every method") });
+            let measured = MeshEnds::find(scene, mesh, watch).and_then(|ends| {
+                study.measure(scene, mesh, &ends, &mut |part, now| {
+                    let fraction = (done + part * weight) / all;
+                    check(observe(Progress { fraction, now }))
+                })
             });
             is_partial = measured == Err(StudyError::Cancelled);
             if is_partial {

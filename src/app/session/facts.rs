@@ -25,17 +25,19 @@ facts! {
     /// Reference solution that errors are measured against.
     ReferenceFact by without_settings = "reference": Reference, find_reference;
     /// Load–displacement curve.
-    CurveFact = "curve": Curve, |scene, _| Ok(curve(scene));
+    CurveFact = "curve": Curve, |scene, watch| Ok(curve(scene, watch));
     /// End of the load path from rest, and the jumps on it.
-    PathFact = "path": PathFromRest, |scene, _| Ok(LoadPath::end_of_scene(scene));
+    PathFact = "path": PathFromRest, |scene, watch| Ok(LoadPath::end_of_scene(scene, watch));
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, _| Ok(natural_frequency(scene));
 }
 
-fn curve(scene: &Scene) -> Option<Curve> {
+fn curve(scene: &Scene, watch: Watch<'_>) -> Option<Curve> {
     let own = || SentScene(scene.clone());
-    let path = || Some(Curve::Path(Box::new((LoadPath::of(scene)?, own()))));
-    LoadCurve::new(scene).map(|curve| Curve::Beam(Box::new((curve, own())))).or_else(path)
+    if let Some(curve) = LoadCurve::observed(scene, watch) {
+        return Some(Curve::Beam(Box::new((curve, own()))));
+    }
+    Some(Curve::Path(Box::new((LoadPath::follow(scene, watch)?, own()))))
 }
 
 /// Results of the current scene; each is `None` until it has been computed.
@@ -104,4 +106,31 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / TAU)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::app::task::keyed::Fact;
+    use crate::scene::open;
+
+    /// A cancelled computation ends before its first solve: each search asks before each of its steps.
+    #[test]
+    fn results_are_cancelled() {
+        fn asked<F: Fact>(scene: &Scene) -> u32 {
+            let mut asked = 0;
+            let _ = F::compute(scene, &mut |_| {
+                asked += 1;
+                ControlFlow::Break(())
+            });
+            asked
+        }
+        for id in ["cantilever", "snap"] {
+            let scene = open(&crate::scene::Source { name: id.into(), assignments: Vec::new() }).unwrap();
+            let all = [asked::<ReferenceFact>(&scene), asked::<CurveFact>(&scene), asked::<PathFact>(&scene)];
+            assert!(all.iter().all(|asked| (1..4).contains(asked)), "{id}: {all:?}");
+        }
+    }
 }

@@ -27,6 +27,8 @@ use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
     background: Option<Background>,
+    /// Study that starts once the one in progress has ended: two at a time would slow each other down.
+    next: Option<(Scene, Extent)>,
     /// `true` if the last study was cancelled.
     is_partial: bool,
     study: Option<Measured>,
@@ -58,8 +60,13 @@ impl From<Limits> for Demand {
 }
 
 impl Budget {
-    /// Starts a study of a scene; the previous study is dropped.
+    /// Starts a study of a scene, and drops the previous one; one in progress is cancelled, and awaited.
     pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
+        if let Some(background) = &self.background {
+            background.cancel();
+            self.next = Some((scene.clone(), extent));
+            return;
+        }
         *self = Self { of: Some(without_settings(scene)), limits: self.limits, ..Self::default() };
         match Background::start(scene.clone(), extent) {
             Ok(background) => self.background = Some(background),
@@ -67,14 +74,11 @@ impl Budget {
         }
     }
 
-    /// Cancels the study; measurements made so far are kept.
+    /// Cancels the study, which then ends soon; measurements made so far are kept.
     pub(crate) fn cancel(&mut self) {
-        let Some(background) = self.background.take() else { return };
-        self.is_partial = true;
-        // The measurements of a motion are reported when the study ends.
-        if self.of.as_ref().is_some_and(|scene| scene.analysis == Analysis::Dynamic) {
+        if let Some(background) = &self.background {
             background.cancel();
-            self.background = Some(background);
+            (self.is_partial, self.next) = (true, None);
         }
     }
 
@@ -127,6 +131,10 @@ impl Budget {
             StudyState::Ended(result) => {
                 self.error = result.err();
                 self.background = None;
+                if let Some((scene, extent)) = self.next.take() {
+                    self.measure(&scene, extent);
+                    ctx.request_repaint();
+                }
             }
         }
     }
@@ -395,4 +403,30 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 plot.points(ring);
             }
         });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Source, open};
+
+    /// A study that is measured again starts once the cancelled one has ended.
+    #[test]
+    fn one_study_runs_at_a_time() {
+        let of = |id: &str| open(&Source { name: id.into(), assignments: Vec::new() }).unwrap();
+        let (first, second) = (of("cantilever"), of("article"));
+        let (ctx, mut budget) = (Context::default(), Budget::default());
+        budget.measure(&first, Extent::Full);
+        budget.cancel();
+        assert!(budget.runs() && budget.is_partial, "a cancelled study is awaited");
+        budget.measure(&second, Extent::Quick);
+        assert_eq!(budget.of, Some(without_settings(&first)));
+        while budget.runs() {
+            assert_eq!(budget.next.is_some(), budget.of == Some(without_settings(&first)));
+            budget.poll(&ctx);
+            std::thread::yield_now();
+        }
+        assert_eq!(budget.of, Some(without_settings(&second)));
+        assert!(budget.error.is_none() && !budget.is_partial && budget.study().is_some());
+    }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::task::keyed::{Keyed, facts};
+use crate::app::task::keyed::{Keyed, Watch, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
@@ -65,9 +65,9 @@ pub(crate) enum Needs {
 
 facts! {
     /// Spectral radius ρ of the warped iteration at the equilibrium.
-    Rho by without_solver = "rho": f64, |scene, _| Ok(fixed_point_rho(scene));
+    Rho by without_solver = "rho": f64, |scene, watch| Ok(fixed_point_rho(scene, watch));
     /// Errors of all elements.
-    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, _| Ok(locking::errors(scene));
+    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, watch| Ok(locking::errors(scene, watch));
 }
 
 fn without_solver(scene: &Scene) -> Scene {
@@ -484,14 +484,16 @@ pub(crate) fn article() -> Option<(Source, Scene)> {
 
 /// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
 /// warped iteration may diverge.
-fn fixed_point_rho(scene: &Scene) -> Option<f64> {
+fn fixed_point_rho(scene: &Scene, watch: Watch<'_>) -> Option<f64> {
     if scene.analysis != Analysis::Static {
         return None;
     }
     let mut scene = scene.clone();
     scene.solver.method = MethodKind::Newton;
     let mut simulation = Simulation::new(&scene).ok()?;
-    simulation.solve();
+    if simulation.solve_watched(&mut || watch(0.0)).is_break() {
+        return None;
+    }
     simulation.certify().fixed_point_rho
 }
 
