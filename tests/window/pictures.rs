@@ -5,6 +5,7 @@ use crate::common::{program, scene, stderr, warpbeam};
 use warpbeam::app::picture;
 use warpbeam::image::Picture;
 use warpbeam::render::Gpu;
+use warpbeam::simulation::Status;
 
 /// The golden comparison detects a beam that bends a little more.
 #[test]
@@ -96,4 +97,34 @@ fn a_shot_without_its_study_fails() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("no study: ") && said.contains("probe"), "{said}");
     assert!(folder.path().join("x.png").exists());
+}
+
+/// The last equilibrium is drawn under the name and in the colour of its own method, not of the one that diverges.
+#[test]
+fn the_last_equilibrium_keeps_the_name_of_its_method() {
+    let gpu = Gpu::headless().unwrap();
+    let mut lab = lab("article");
+    let scene_of = |method: &str, force: f64| {
+        crate::common::scene_with(
+            "article",
+            &[&format!("solver.method=\"{method}\""), &format!("load.0.force=[0,{force}]")],
+        )
+    };
+    // Line and name in the legend; the error after the name is not known for a state that is not drawn.
+    let mut legend = |method: &str, force: f64| {
+        lab.set_scene(scene_of(method, force)).unwrap();
+        lab.solve();
+        // The state is kept when it is drawn.
+        let drawn = [(); 2].map(|()| picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap());
+        let rows = drawn[1].rgba.chunks_exact(4 * 1280).skip(48).take(20);
+        (lab.simulation().status().clone(), rows.flat_map(|row| row[4 * 14..4 * 80].to_vec()).collect::<Vec<u8>>())
+    };
+    let (status, newton) = legend("newton", -30_000.0);
+    assert_eq!(status, Status::Converged);
+    let (status, last) = legend("warped", -1e6);
+    assert!(matches!(status, Status::Diverged(_)), "{status:?}");
+    assert!(last == newton);
+    let (status, warped) = legend("warped", -30_000.0);
+    assert_eq!(status, Status::Converged);
+    assert!(warped != newton);
 }

@@ -27,6 +27,8 @@ pub(crate) struct Overlay<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
+    /// Scene of the drawn body: that of the last equilibrium while it is drawn in place of a state that diverges.
+    pub drawn: &'a Scene,
     pub options: &'a ViewOptions,
     pub camera: Camera,
     /// Positions of the nodes, m.
@@ -121,7 +123,7 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.drawn)));
     }
     for line in overlay.exact {
         // A background stroke keeps the line visible over the body.
@@ -178,7 +180,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.drawn))).chain(others) {
         let end = playback.shown_time().unwrap_or(f64::INFINITY);
         let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
         let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
@@ -443,11 +445,11 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Some(error) => format!("{word}  {}", percent(error)),
         None => word.to_owned(),
     };
-    let own = match overlay.scene.analysis {
-        Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
-        Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
+    let own = match overlay.drawn.analysis {
+        Analysis::Static => with_error(tr(overlay.drawn.solver.method.id()), overlay.errors.own),
+        Analysis::Dynamic => tr(overlay.drawn.dynamics.integrator.id()).to_owned(),
     };
-    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
+    let mut lines = vec![(palette.solution(overlay.drawn), Mark::Line, own)];
     for companion in overlay.playback.companions() {
         lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }

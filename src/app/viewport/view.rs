@@ -492,6 +492,7 @@ impl Viewport {
         let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
             scene: shown.scene(),
+            drawn: content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation).scene(),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,

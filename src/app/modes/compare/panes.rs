@@ -305,6 +305,7 @@ impl<P: ComparedPane> Panes<P> {
             let overlay = Overlay {
                 apart: false,
                 scene,
+                drawn: scene,
                 system,
                 geometry: &display.geometry,
                 options: input.view,
