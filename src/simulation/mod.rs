@@ -544,9 +544,9 @@ impl Simulation {
     }
 
     /// Steps as [`Self::solve`], and asks `watch` before each step; ends early if it breaks.
-    pub(crate) fn solve_watched(&mut self, watch: &mut dyn FnMut() -> ControlFlow<()>) -> ControlFlow<()> {
+    pub(crate) fn solve_watched(&mut self, watch: &mut dyn FnMut(&Self) -> ControlFlow<()>) -> ControlFlow<()> {
         while self.status == Status::Running {
-            watch()?;
+            watch(self)?;
             self.step();
         }
         ControlFlow::Continue(())

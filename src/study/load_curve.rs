@@ -124,8 +124,14 @@ impl LoadCurve {
         let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
         let mut methods = Vec::new();
         for (i, entry) in METHODS.iter().enumerate() {
-            let watch = &mut || observe(i as f64 / METHODS.len() as f64);
-            methods.extend(method_point(scene, entry.kind, &system, watch)?);
+            let mut flow = ControlFlow::Continue(());
+            methods.extend(method_point(scene, entry.kind, &system, &mut || {
+                flow = observe(i as f64 / METHODS.len() as f64);
+                flow
+            }));
+            if flow.is_break() {
+                return None;
+            }
         }
         Some(Self { samples, buckles_at, departures, methods })
     }
@@ -149,22 +155,22 @@ fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Opti
     Some(Departure { percent, at })
 }
 
-/// Returns the result of a method; `None` if `watch` cancels, and `Some(None)` if the scene cannot be simulated.
+/// Returns the result of a method; `None` if the scene cannot be simulated, or `watch` cancels.
 fn method_point(
     scene: &Scene,
     method: MethodKind,
     system: &Arc<System>,
     watch: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Option<Option<MethodPoint>> {
+) -> Option<MethodPoint> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.accept_after = 0;
-    let Ok(mut simulation) = Simulation::with_system(&scene, system.clone()) else { return Some(None) };
-    if simulation.solve_watched(watch).is_break() {
+    let mut simulation = Simulation::with_system(&scene, system.clone()).ok()?;
+    if simulation.solve_watched(&mut |_| watch()).is_break() {
         return None;
     }
-    let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"));
-    let Some(tip) = probe.map(|probe| probe.mean(simulation.displacement())) else { return Some(None) };
+    let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"))?;
+    let tip = probe.mean(simulation.displacement());
     let stable = simulation.certify().stable;
-    Some(Some(MethodPoint { method, tip, status: simulation.status().clone(), stable }))
+    Some(MethodPoint { method, tip, status: simulation.status().clone(), stable })
 }

@@ -13,7 +13,7 @@ use crate::method::{
 };
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
 use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{Simulation, Status, SupportReaction, supports_power};
+use crate::simulation::{Equilibrium, Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest, largest_distance};
 use crate::timings::Timings;
 
@@ -200,14 +200,9 @@ impl LoadPath {
         scene.solver.accept_after = 0;
         scene.solver.max_iterations = MAX_SOLVES;
         let mut follower = Simulation::with_system(&scene, simulation.system().clone()).ok()?;
-        while *follower.status() == Status::Running {
-            let factor = follower.equilibrium()?.load_factor();
-            if observe(factor).is_break() {
-                return None;
-            }
-            follower.step();
-        }
-        if *follower.status() != Status::Converged {
+        let reached = |follower: &Simulation| follower.equilibrium().map_or(0.0, Equilibrium::load_factor);
+        let flow = follower.solve_watched(&mut |follower| observe(reached(follower)));
+        if flow.is_break() || *follower.status() != Status::Converged {
             return None;
         }
         let events = follower.equilibrium()?.path_events()?;

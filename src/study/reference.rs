@@ -12,6 +12,7 @@ use super::progress::{Observer, check};
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{number, two_digits};
+use crate::method::Certificate;
 use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
@@ -304,22 +305,22 @@ pub(crate) const MOST_CERTIFIED: usize = 100_000;
 /// been.
 fn is_unstable(simulation: &Simulation) -> bool {
     let is_small = simulation.system().dofs() <= MOST_CERTIFIED;
-    match simulation.equilibrium().filter(|search| is_small && search.certificate().is_none()) {
-        Some(search) if *simulation.status() == Status::Converged => {
-            let mut copy = search.snapshot();
-            copy.certify();
-            is_known_unstable(&copy)
-        }
-        _ => is_known_unstable(simulation),
-    }
+    let examine =
+        |search: Equilibrium<'_>| search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
+    is_unstable_by(simulation, examine)
 }
 
 /// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite. It has no reference
 /// solution: a solution on another mesh leaves it.
+#[cfg(feature = "app")]
 pub(crate) fn is_known_unstable(simulation: &Simulation) -> bool {
-    let certificate = simulation.equilibrium().and_then(Equilibrium::certificate);
-    let is_stable = certificate.and_then(|certificate| certificate.stable);
-    *simulation.status() == Status::Converged && !simulation.is_linear() && is_stable == Some(false)
+    is_unstable_by(simulation, |search| search.certificate())
+}
+
+fn is_unstable_by(simulation: &Simulation, certificate: impl FnOnce(Equilibrium<'_>) -> Option<Certificate>) -> bool {
+    *simulation.status() == Status::Converged
+        && !simulation.is_linear()
+        && simulation.equilibrium().and_then(certificate).and_then(|c| c.stable) == Some(false)
 }
 
 /// Returns the reference of a probe; `None` if its error, m, is too large a fraction of its displacement.
@@ -333,25 +334,6 @@ pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// Runs a method to its end with a sufficient number of iterations. `watch` cancels it by [`ControlFlow::Break`].
-fn run_to_end(
-    scene: &Scene,
-    method: MethodKind,
-    system: &Arc<System>,
-    watch: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Result<Simulation, StudyError> {
-    let mut scene = scene.clone();
-    scene.solver.method = method;
-    scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
-    scene.solver.accept_after = 0;
-    let mut simulation = Simulation::with_system(&scene, system.clone())?;
-    check(simulation.solve_watched(watch))?;
-    if *simulation.status() != Status::Converged && method == MethodKind::Newton {
-        return Err(StudyError::NoReference);
-    }
-    Ok(simulation)
-}
-
 /// Returns the final displacements of the probes by a method, with a sufficient number of iterations. `watch` cancels
 /// the computation by [`ControlFlow::Break`].
 pub(super) fn end(
@@ -360,7 +342,16 @@ pub(super) fn end(
     system: &Arc<System>,
     watch: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
-    Ok(probe_displacements(&run_to_end(scene, method, system, watch)?))
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
+    scene.solver.accept_after = 0;
+    let mut simulation = Simulation::with_system(&scene, system.clone())?;
+    check(simulation.solve_watched(&mut |_| watch()))?;
+    if *simulation.status() != Status::Converged && method == MethodKind::Newton {
+        return Err(StudyError::NoReference);
+    }
+    Ok(probe_displacements(&simulation))
 }
 
 fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {

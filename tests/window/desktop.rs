@@ -98,6 +98,12 @@ impl Desktop {
         assert!(output.status.success(), "xdotool {args:?}: {}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
     }
+
+    /// Presses a key in a window; returns `true` if there was a window to receive it.
+    fn key(&self, window: &str, key: &str) -> bool {
+        let keys = ["windowactivate", "--sync", window, "key", "--clearmodifiers", key];
+        self.command("xdotool").args(keys).output().unwrap().status.success()
+    }
 }
 
 /// The program and its window.
@@ -201,8 +207,7 @@ impl<'a> Window<'a> {
 
     /// Presses a key; returns `true` if there was a window to receive it.
     fn key(&self, key: &str) -> bool {
-        let keys = ["windowactivate", "--sync", &self.id, "key", "--clearmodifiers", key];
-        self.desktop.command("xdotool").args(keys).output().unwrap().status.success()
+        self.desktop.key(&self.id, key)
     }
 
     fn point(&self, x: f32, y: f32) {
@@ -223,15 +228,9 @@ impl<'a> Window<'a> {
 
     /// Closes the window by these keys.
     fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
-        let mut asked: Option<Instant> = None;
-        let status = wait_for("the program to end", || {
-            // A key can be lost while another window gets the focus, so that it is pressed again.
-            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-                keys.iter().for_each(|key| _ = self.key(key));
-                asked = Some(Instant::now());
-            }
-            self.process.try_wait().unwrap()
-        });
+        let (desktop, id) = (self.desktop, self.id.clone());
+        let press = || keys.iter().for_each(|key| _ = desktop.key(&id, key));
+        let status = ask_until("the program to end", press, || self.process.try_wait().unwrap());
         (status.code(), self.said())
     }
 
@@ -416,14 +415,7 @@ fn s_saves_a_screenshot() {
     window.point(1000.0, 700.0);
     let shown = window.settle();
     let path = folder.path().join("warpbeam-001.png");
-    let mut asked: Option<Instant> = None;
-    let bgrx = wait_for("the whole screenshot", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            window.key("s");
-            asked = Some(Instant::now());
-        }
-        read_bgrx(&path)
-    });
+    let bgrx = ask_until("the whole screenshot", || _ = window.key("s"), || read_bgrx(&path));
     assert_eq!(bgrx.len(), shown.len());
     let different = changed(&bgrx, &shown);
     assert!(different < 1_000, "{different} pixels differ from the window");
@@ -474,16 +466,6 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let harness = laid_out();
     // A position without a control that the pointer would highlight.
     let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
-    let until = |what: &str, key: &str, done: &dyn Fn() -> bool| {
-        let mut asked: Option<Instant> = None;
-        wait_for(what, || {
-            if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-                window.key(key);
-                asked = Some(Instant::now());
-            }
-            done().then_some(())
-        });
-    };
     window.point(corner.0, corner.1);
     let before = window.settle();
     window.point(tip.x, tip.y);
@@ -495,21 +477,16 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 5_000).then_some(()));
     let held = window.settle();
     let screenshot = folder.path().join("warpbeam-001.png");
-    let mut asked: Option<Instant> = None;
-    let screenshot = wait_for("the whole screenshot", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            // The window has the focus: to give it again would end the drag.
-            desktop.xdotool(&["key", "s"]);
-            asked = Some(Instant::now());
-        }
-        read_bgrx(&screenshot)
-    });
+    // The window has the focus: to give it again would end the drag.
+    let press = || _ = desktop.xdotool(&["key", "s"]);
+    let screenshot = ask_until("the whole screenshot", press, || read_bgrx(&screenshot));
     // The arrow that is held is highlighted.
     let different = changed(&screenshot, &held);
     assert!(different < 20, "{different} pixels differ from the window");
     window.wait_for_picture("the message to vanish", &held);
     drag([0.75, 1.0]);
     wait_for("the drag to go on after the screenshot", || (changed(&held, &window.image()) > 5_000).then_some(()));
+    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
     desktop.xdotool(&["mouseup", "1"]);
     window.point(corner.0, corner.1);
     let after = window.settle();
@@ -517,7 +494,7 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
         let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
         saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()
     };
-    until("the saved scene", "ctrl+s", &|| force() != [0.0, -30_000.0]);
+    press_until(&window, "ctrl+s", "the saved scene", || force() != [0.0, -30_000.0]);
     let [fx, fy] = force();
     assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
     let json = solve_json(&[path.to_str().unwrap()]);
@@ -528,7 +505,7 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     assert_eq!(shot.status.code(), Some(0));
     let different = changed(&read_bgrx(&picture).unwrap(), &after);
     assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
-    until("the scene as it was", "ctrl+z", &|| changed(&before, &window.image()) < 2_000);
+    press_until(&window, "ctrl+z", "the scene as it was", || changed(&before, &window.image()) < 2_000);
     window.discard_well();
 }
 
@@ -564,16 +541,12 @@ fn edits_survive_a_killed_window() {
     };
     let next = Window::open(&desktop, &["run", "article"]);
     assert!(changed(&next.settle(), &edited) > 10_000, "it starts with the scene as it was opened");
-    let mut asked: Option<Instant> = None;
-    wait_for("the restored edits", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            next.point(restore.x, restore.y);
-            desktop.xdotool(&["click", "1"]);
-            next.point(420.0, 735.0);
-            asked = Some(Instant::now());
-        }
-        next.shows(&edited).then_some(())
-    });
+    let click = || {
+        next.point(restore.x, restore.y);
+        desktop.xdotool(&["click", "1"]);
+        next.point(420.0, 735.0);
+    };
+    ask_until("the restored edits", click, || next.shows(&edited).then_some(()));
     wait_for("another copy", || copies.join("1.toml").exists().then_some(()));
     assert!(!copies.join("0.toml").exists(), "it would be offered again");
     next.discard_well();
@@ -599,36 +572,16 @@ fn v_records_the_window_while_the_body_is_pulled() {
     let folder = tempfile::tempdir().unwrap();
     let window = Window::open_in(&desktop, folder.path(), &["run", "jelly"]);
     let path = folder.path().join("warpbeam-001.gif");
-    let mut asked: Option<Instant> = None;
-    wait_for("the recording to begin", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            window.key("v");
-            asked = Some(Instant::now());
-        }
-        path.exists().then_some(())
-    });
+    press_until(&window, "v", "the recording to begin", || path.exists());
     for x in [500.0, 560.0, 620.0] {
         window.point(x, 400.0);
         std::thread::sleep(Duration::from_millis(400));
     }
-    let mut asked: Option<Instant> = None;
-    let (pictures, seconds) = wait_for("the whole recording", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            window.key("v");
-            asked = Some(Instant::now());
-        }
-        movie(&path)
-    });
+    let (pictures, seconds) = ask_until("the whole recording", || _ = window.key("v"), || movie(&path));
     assert!(pictures >= 5 && seconds >= 1.0, "{pictures} pictures, {seconds} s");
     let path = folder.path().join("warpbeam-002.gif");
-    let mut asked: Option<Instant> = None;
-    wait_for("another recording to begin", || {
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            window.key("v");
-            asked = Some(Instant::now());
-        }
-        std::fs::metadata(&path).is_ok_and(|file| file.len() > 0).then_some(())
-    });
+    let has_begun = || std::fs::metadata(&path).is_ok_and(|file| file.len() > 0);
+    press_until(&window, "v", "another recording to begin", has_begun);
     window.close_well();
     let (pictures, _) = movie(&path).unwrap();
     assert!(pictures >= 1);
@@ -650,17 +603,21 @@ fn two_recordings_at_a_time_have_a_file_each() {
 
 /// Presses a key, again if it has had no effect for a while, until a condition holds.
 fn press_until(window: &Window<'_>, key: &str, what: &str, mut done: impl FnMut() -> bool) {
+    ask_until(what, || _ = window.key(key), || done().then_some(()));
+}
+
+/// Calls `ask`, again if it has had no effect for a while, until `ready` returns a value: a key or a click can be lost
+/// while another window gets the focus.
+fn ask_until<T>(what: &str, mut ask: impl FnMut(), mut ready: impl FnMut() -> Option<T>) -> T {
     let mut asked: Option<Instant> = None;
     wait_for(what, || {
-        if done() {
-            return Some(());
-        }
-        if asked.is_none_or(|at| at.elapsed() > AGAIN) {
-            window.key(key);
+        let value = ready();
+        if value.is_none() && asked.is_none_or(|at| at.elapsed() > AGAIN) {
+            ask();
             asked = Some(Instant::now());
         }
-        None
-    });
+        value
+    })
 }
 
 /// The window asks before it closes during a recording of the scene. The file then has the pictures so far.

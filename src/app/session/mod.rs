@@ -633,20 +633,20 @@ impl Session {
 
     /// Grabs the body at a material point. A body in equilibrium is replaced by a copy, and kept.
     fn start_grab(&mut self, point: MaterialPoint) {
-        let is_final = matches!(self.simulation.status(), Status::Converged | Status::Accepted);
-        let copy = self.simulation.equilibrium().filter(|_| is_final).map(Equilibrium::snapshot);
-        let kept = copy.map(|copy| std::mem::replace(&mut self.simulation, copy));
-        let is_grabbed = self.simulation.grab(point);
-        if is_grabbed {
-            self.playback.grab(point);
-        }
-        match kept {
-            Some(simulation) if is_grabbed => {
-                let residuals = self.residuals.clone();
-                self.before_grab = Some(BeforeGrab { simulation, timings: self.timings, residuals });
+        let is_final = self.simulation.status().is_success();
+        match self.simulation.equilibrium().filter(|_| is_final).map(Equilibrium::snapshot) {
+            Some(mut copy) => {
+                if copy.grab(point) {
+                    let simulation = std::mem::replace(&mut self.simulation, copy);
+                    let residuals = self.residuals.clone();
+                    self.before_grab = Some(BeforeGrab { simulation, timings: self.timings, residuals });
+                }
             }
-            Some(simulation) => self.simulation = simulation,
-            None => {}
+            None => {
+                if self.simulation.grab(point) {
+                    self.playback.grab(point);
+                }
+            }
         }
     }
 

@@ -200,7 +200,10 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     let before = numbers(&session);
     assert!(before.1.is_some());
     let point = session.simulation().system().mesh().locate(Vector2::new(4.0, 0.5)).unwrap();
-    session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
+    session.grab(Grab { start: Some(point), ..Grab::default() });
+    let (spring, force) = session.simulation().mouse_spring().unwrap();
+    assert!(force.norm() < 1e-6 * spring.largest_force(), "a hand that does not pull pulls with {force} N");
+    session.grab(Grab { target: Some(Vector2::new(3.0, 2.0)), ..Grab::default() });
     (0..40).for_each(|_| session.iterate(1));
     assert!(tip(&session) > 1.0, "the pull lifts the tip");
     session.grab(Grab { release: true, ..Grab::default() });

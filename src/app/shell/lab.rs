@@ -249,10 +249,10 @@ impl Lab {
     /// Returns the state that bars, panel and cards show.
     pub(super) fn readout(&self) -> Readout<'_> {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
-        let facts = session.facts();
+        let (facts, reference) = (session.facts(), session.reference());
         Readout {
-            reference: session.reference().and_then(Result::ok),
-            reference_failure: session.reference().and_then(Result::err),
+            reference: reference.and_then(Result::ok),
+            reference_failure: reference.and_then(Result::err),
             path: facts.path.get(session.scene()).map(|path| path.to(session.simulation().displacement())),
             equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
             quality: session.quality(),

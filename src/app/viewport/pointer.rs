@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 
 use crate::app::session::Grab;
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
+use crate::app::viewport::probe;
 use crate::mesh::{MaterialPoint, Mesh, Segment};
 use crate::render::Camera;
 
@@ -32,16 +33,16 @@ enum Held {
     /// The tip of an arrow.
     Tip(Grip),
     /// The body, pressed at a point; grabbed once the pointer leaves it.
-    Body(Press),
+    Body(PressedPoint),
     /// The view, pressed at a point of a body that cannot be grabbed.
     Point(MaterialPoint),
     /// Empty space.
     Space,
 }
 
-/// Press on a body that can be grabbed.
+/// Material point that is pressed, of a body that can be grabbed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Press {
+struct PressedPoint {
     point: MaterialPoint,
     /// Vector from the point to the pointer when it was pressed, m.
     offset: Vector2<f64>,
@@ -116,12 +117,7 @@ impl HitTargets<'_> {
 
     /// Returns the vector from a material point to a position in the plane, m; `None` if the mesh has no such point.
     fn offset(&self, point: MaterialPoint, place: Vector2<f64>) -> Option<Vector2<f64>> {
-        let weights = self.mesh?.weights(point)?;
-        let mut offset = place;
-        for (node, weight) in weights {
-            offset -= self.positions.get(node as usize)? * weight;
-        }
-        Some(offset)
+        Some(place - probe::place(self.mesh?, self.positions, point)?)
     }
 
     fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
@@ -151,7 +147,7 @@ impl Pointer {
 
     /// Returns `true` if the body is grabbed.
     fn grabs(&self) -> bool {
-        matches!(self.held, Held::Body(Press { grabs: true, .. }))
+        matches!(self.held, Held::Body(PressedPoint { grabs: true, .. }))
     }
 
     /// Processes the pointer over the view with this `response`.
@@ -196,7 +192,7 @@ impl Pointer {
             }
         } else if response.clicked() {
             match self.held {
-                Held::Body(Press { point, .. }) | Held::Point(point) => interaction.clicked = Some(Some(point)),
+                Held::Body(PressedPoint { point, .. }) | Held::Point(point) => interaction.clicked = Some(Some(point)),
                 Held::Space => interaction.clicked = Some(None),
                 Held::Tip(..) | Held::Nothing => {}
             }
@@ -221,7 +217,7 @@ impl Pointer {
         let reached = targets.point(place).filter(|_| body != Target::None);
         let Some(point) = reached else { return Held::Space };
         match targets.offset(point, place) {
-            Some(offset) if body == Target::Grabbable => Held::Body(Press { point, offset, grabs: false }),
+            Some(offset) if body == Target::Grabbable => Held::Body(PressedPoint { point, offset, grabs: false }),
             _ => Held::Point(point),
         }
     }

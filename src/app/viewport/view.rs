@@ -243,7 +243,7 @@ impl Viewport {
     /// Updates the drawn mesh to the current state.
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
         self.shows_converged = self.hides_divergence(content);
-        let simulation = content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation);
+        let simulation = self.drawn(content);
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
         self.body.update(simulation, content.session.geometry(), content.options, played);
@@ -279,6 +279,11 @@ impl Viewport {
     /// Returns the drawn body; animations are ignored.
     fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
         content.session.converged().filter(|_| self.shows_converged).unwrap_or(content.simulation())
+    }
+
+    /// Returns the drawn body.
+    fn drawn<'a>(&self, content: &Content<'a>) -> &'a Simulation {
+        content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation)
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
@@ -492,7 +497,7 @@ impl Viewport {
         let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
             scene: shown.scene(),
-            drawn: content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation).scene(),
+            drawn: self.drawn(content).scene(),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,

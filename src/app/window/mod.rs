@@ -522,13 +522,14 @@ impl App {
     /// Says where a screenshot was saved, or why it was not; a page saves its frame now.
     fn say_saved(&mut self, screenshot: Option<&Result<PathBuf, ScreenshotError>>) {
         const NAME: &str = "warpbeam.png";
-        let message = match screenshot {
-            Some(Ok(path)) => fill!("Saved %{file}", file = path.display()),
-            Some(Err(reason)) => fill!("No screenshot: %{reason}", reason = reason),
-            None if self.open.as_ref().is_some_and(|open| platform::page::save_frame(&open.window, NAME)) => {
-                fill!("Saved %{file}", file = NAME)
-            }
-            None => fill!("No screenshot: %{reason}", reason = "canvas"),
+        let saved = match (screenshot, &self.open) {
+            (Some(saved), _) => saved.as_ref().map(|path| path.display().to_string()).map_err(ToString::to_string),
+            (None, Some(open)) => platform::page::save_frame(&open.window, NAME).map(|()| NAME.to_owned()),
+            (None, None) => return,
+        };
+        let message = match saved {
+            Ok(file) => fill!("Saved %{file}", file = file),
+            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
         };
         self.say(message);
     }

@@ -30,7 +30,7 @@ pub(super) fn errors(scene: &Scene, watch: Watch<'_>) -> Option<Vec<ElementError
         scene.set_element(element);
         scene.solver.method = MethodKind::Newton;
         let mut simulation = Simulation::new(&scene).ok()?;
-        let is_cancelled = simulation.solve_watched(&mut || watch(1.0)).is_break();
+        let is_cancelled = simulation.solve_watched(&mut |_| watch(1.0)).is_break();
         if is_cancelled || *simulation.status() != Status::Converged {
             return None;
         }

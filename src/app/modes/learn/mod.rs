@@ -491,7 +491,7 @@ fn fixed_point_rho(scene: &Scene, watch: Watch<'_>) -> Option<f64> {
     let mut scene = scene.clone();
     scene.solver.method = MethodKind::Newton;
     let mut simulation = Simulation::new(&scene).ok()?;
-    if simulation.solve_watched(&mut || watch(0.0)).is_break() {
+    if simulation.solve_watched(&mut |_| watch(0.0)).is_break() {
         return None;
     }
     simulation.certify().fixed_point_rho

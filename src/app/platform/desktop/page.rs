@@ -7,9 +7,9 @@ pub(crate) fn set_title(window: &Window, title: &str) {
     window.set_title(title);
 }
 
-/// Returns `false`: a program draws its frame again for an image.
-pub(crate) fn save_frame(_: &Window, _: &str) -> bool {
-    false
+/// Does nothing: a program draws its frame again for an image.
+pub(crate) fn save_frame(_: &Window, _: &str) -> Result<(), String> {
+    Ok(())
 }
 
 /// Tells the page that a frame has been drawn. `report` returns the state of the window as JSON; it receives the number

@@ -125,15 +125,19 @@ pub(crate) fn set_title(_: &Window, title: &str) {
     }
 }
 
-/// Saves the drawn frame as an image; returns `false` if the program has to draw it again for that.
-pub(crate) fn save_frame(window: &Window, name: &str) -> bool {
+/// Saves the drawn frame as an image.
+///
+/// # Errors
+/// Message of the browser.
+pub(crate) fn save_frame(window: &Window, name: &str) -> Result<(), String> {
     let name = name.to_owned();
     let done = Closure::once_into_js(move |blob: Option<Blob>| {
         if let Some(Err(error)) = blob.map(|blob| files::download(&name, &blob)) {
             log::warn!("no picture: {}", browser::message(&error));
         }
     });
-    window.canvas().is_some_and(|canvas| canvas.to_blob(done.unchecked_ref()).is_ok())
+    let canvas = window.canvas().ok_or("canvas")?;
+    canvas.to_blob(done.unchecked_ref()).map_err(|error| browser::message(&error))
 }
 
 /// Tells the page that a frame has been drawn. `report` returns the state of the window as JSON; it receives the number
