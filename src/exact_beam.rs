@@ -129,12 +129,12 @@ impl ClampedBeam {
             end.fixed_view::<2, 2>(2, 2).determinant()
         };
         /// Upper bound of β, between the first two roots of the slender beam, 1.875 and 4.694.
-        const MOST: f64 = 4.0;
+        const MAX_BETA: f64 = 4.0;
         const SCAN: f64 = 0.05;
         let (mut low, mut high) = (SCAN, 2.0 * SCAN);
         while at_tip(high) > 0.0 {
             (low, high) = (high, high + SCAN);
-            if high > MOST {
+            if high > MAX_BETA {
                 return None;
             }
         }

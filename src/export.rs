@@ -85,7 +85,7 @@ pub fn write(simulation: &Simulation, path: &Path) -> Result<(), ExportError> {
 }
 
 /// Approximate upper limit of the number of states in a series; more would fill the disk.
-pub const MOST_STATES: u64 = 300;
+pub const MAX_STATES: u64 = 300;
 
 /// Writer of a motion, step by step. The file is valid whenever [`Self::finish`] is called.
 ///
@@ -95,7 +95,7 @@ pub const MOST_STATES: u64 = 300;
 ///   `integrator`, `pulses`, `hands`. In every row kinetic + elastic + potential + dissipated + integrator − pulses −
 ///   hands is the same.
 /// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … in the same folder: the first and the last
-///   state, and every n-th step, with the smallest n that gives at most [`MOST_STATES`] states.
+///   state, and every n-th step, with the smallest n that gives at most [`MAX_STATES`] states.
 /// - `.vtu`: the last state.
 #[doc(hidden)]
 #[derive(Debug)]
@@ -137,7 +137,7 @@ impl MotionWriter {
             Format::Pvd => {
                 let settings = &simulation.scene().dynamics;
                 let steps = (settings.duration / settings.time_step).ceil() as u64;
-                MotionFile::Series(Series { stride: steps.div_ceil(MOST_STATES).max(1), steps: 0, states: Vec::new() })
+                MotionFile::Series(Series { stride: steps.div_ceil(MAX_STATES).max(1), steps: 0, states: Vec::new() })
             }
         };
         let mut writer = Self { path: path.to_owned(), kind };

@@ -9,7 +9,7 @@ use crate::simulation::Field;
 use crate::study::figure::Figure;
 
 /// Largest number of iterations per displayed frame.
-pub(crate) const MOST_ITERATIONS: u32 = 100;
+pub(crate) const MAX_ITERATIONS: u32 = 100;
 
 /// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]

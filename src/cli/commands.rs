@@ -18,7 +18,7 @@ use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult}
 use crate::stress::{inversion_warning, strain_warning};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Effort, Extent, LoadCurve, LoadPath, MOST_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
+    Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
     Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
 };
 
@@ -35,7 +35,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     fits("--certificate", certificate)?;
     let set_up = began.elapsed();
     let watch = Watch::new();
-    let certifies = certificate || !no_certificate && simulation.system().dofs() <= MOST_CERTIFIED;
+    let certifies = certificate || !no_certificate && simulation.system().dofs() <= MAX_CERTIFIED;
     let mut path = None;
     let written = match (scene.analysis, &out) {
         (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {

@@ -58,7 +58,7 @@ impl MeanForce {
 /// Largest number of terms of a difference quotient.
 const TERMS: usize = 3;
 /// Number of solves after which the iteration of a stage fails; usually two to eight suffice.
-const MOST_SOLVES: u32 = 30;
+const MAX_SOLVES: u32 = 30;
 /// Relative accuracy of the only correction of a stage, as a fraction of the error requested for the motion.
 const ACCURACY: f64 = 0.03;
 /// Relative accuracy of a correction that is followed by others, whose residual shows the remaining error.
@@ -117,7 +117,7 @@ impl StageSolver<'_> {
     pub(super) fn solve(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) -> Result<(), StepError> {
         let (most, tolerance) = match self.solves {
             Solves::Times(most) => (most, None),
-            Solves::Tolerance(tolerance) => (MOST_SOLVES, Some(tolerance)),
+            Solves::Tolerance(tolerance) => (MAX_SOLVES, Some(tolerance)),
         };
         self.memory.corrector.begin_stage();
         let mut before = f64::INFINITY;

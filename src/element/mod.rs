@@ -104,7 +104,7 @@ registry! {
 }
 
 /// Largest number of nodes along a side of an element.
-pub(crate) const MOST_SIDE_NODES: usize = most_side_nodes(ELEMENTS);
+pub(crate) const MAX_SIDE_NODES: usize = most_side_nodes(ELEMENTS);
 
 const fn most_side_nodes(elements: &[&ElementType]) -> usize {
     let (mut most, mut element) = (0, 0);
@@ -370,12 +370,12 @@ fn cosine_minus_1<T: Number>(Rotation { c, s }: Rotation<T>) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::{ELEMENTS, ElementKind, ElementType, MOST_SIDE_NODES, most_side_nodes};
+    use super::{ELEMENTS, ElementKind, ElementType, MAX_SIDE_NODES, most_side_nodes};
 
     #[test]
     fn segments_have_room_for_the_longest_side_of_the_registry() {
         let longest = ELEMENTS.iter().flat_map(|e| e.sides).map(|side| side.len()).max();
-        assert_eq!(longest, Some(MOST_SIDE_NODES));
+        assert_eq!(longest, Some(MAX_SIDE_NODES));
         let t3 = ElementKind::T3.entry();
         let cubic = ElementType { sides: &[&[0, 1], &[1, 3, 4, 2], &[2, 0]], ..*t3 };
         assert_eq!(most_side_nodes(&[&cubic, t3]), 4);

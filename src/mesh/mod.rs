@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::element::{ElementType, MOST_SIDE_NODES};
+use crate::element::{ElementType, MAX_SIDE_NODES};
 use crate::model::ElementKind;
 
 mod beam;
@@ -78,7 +78,7 @@ pub enum MeshError {
 /// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    nodes: [u32; MOST_SIDE_NODES],
+    nodes: [u32; MAX_SIDE_NODES],
     count: usize,
 }
 
@@ -88,10 +88,10 @@ impl Segment {
     #[must_use]
     pub fn new(nodes: &[u32]) -> Option<Self> {
         let count = nodes.len();
-        if !(2..=MOST_SIDE_NODES).contains(&count) {
+        if !(2..=MAX_SIDE_NODES).contains(&count) {
             return None;
         }
-        let mut own = [0; MOST_SIDE_NODES];
+        let mut own = [0; MAX_SIDE_NODES];
         own[..count].copy_from_slice(nodes);
         Some(Self { nodes: own, count })
     }
@@ -416,7 +416,7 @@ impl Mesh {
     pub fn sides<'a>(&self, nodes: &'a [u32]) -> impl Iterator<Item = Segment> + 'a {
         let sides = self.element.entry().sides;
         sides.iter().filter_map(|side| {
-            let mut own = [0; MOST_SIDE_NODES];
+            let mut own = [0; MAX_SIDE_NODES];
             own.iter_mut().zip(*side).for_each(|(node, &i)| *node = nodes[i]);
             Segment::new(&own[..side.len()])
         })

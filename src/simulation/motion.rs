@@ -14,14 +14,14 @@ use crate::state::{State, largest};
 use crate::timings::Timings;
 
 /// Largest number of halvings of a step before the motion stops.
-const MOST_HALVINGS: u32 = 10;
+const MAX_HALVINGS: u32 = 10;
 /// Largest displacement, in sizes of the body; beyond, strains have lost half of their digits.
 const FARTHEST: f64 = 1e6;
 /// Fraction of a step that counts as rounding error of the time.
 const NO_TIME: f64 = 1e-6;
 /// Largest energy added by a step, relative to the energy of the body and the work on it; a step that adds more has
 /// failed.
-const MOST_ADDED: f64 = 0.25;
+const MAX_ADDED: f64 = 0.25;
 /// Largest relative residual of a stage while a mouse spring is attached.
 const GRABBED: f64 = 1e-6;
 /// Speed below which a node counts as at rest, body sizes per second.
@@ -237,7 +237,7 @@ impl TimeStepping {
                     // An explicit scheme beyond its critical step should fail visibly; failures due to a mouse spring
                     // are handled by halving.
                     let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
-                    if halvings == MOST_HALVINGS || gives_up {
+                    if halvings == MAX_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
                         break;
                     }
@@ -270,7 +270,7 @@ impl TimeStepping {
         if self.records_energy() {
             let (Body { scene, problem, state }, mut ledger) = (body, self.ledger);
             ledger.record(energies, problem, &self.mass, inertia(scene), state);
-            if self.is_guarded && ledger.has_gained_since(&self.ledger, MOST_ADDED) {
+            if self.is_guarded && ledger.has_gained_since(&self.ledger, MAX_ADDED) {
                 return Err(StepError::AddedEnergy);
             }
             self.ledger = ledger;

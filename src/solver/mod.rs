@@ -88,7 +88,7 @@ impl Symbolic {
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
         let cholesky = |threshold| symbolic_cholesky(&structure, threshold);
         let supernodal = cholesky(SupernodalThreshold::FORCE_SUPERNODAL)?;
-        let (definite, indefinite) = if n <= MOST_SIMPLICIAL {
+        let (definite, indefinite) = if n <= MAX_SIMPLICIAL {
             let simplicial = cholesky(SupernodalThreshold::FORCE_SIMPLICIAL)?;
             if simplicial.len_val() <= SPARSE * n { (simplicial, Some(supernodal)) } else { (supernodal, None) }
         } else {
@@ -110,7 +110,7 @@ impl Symbolic {
 /// triangles (12.5); with 16 and more entries, from about two thousand unknowns on, 10 % slower and more.
 const SPARSE: usize = 14;
 /// Number of unknowns above which a simplicial factor is not tried, because it has more entries.
-const MOST_SIMPLICIAL: usize = 2500;
+const MAX_SIMPLICIAL: usize = 2500;
 
 /// Computes the sparsity of a factor; `threshold` forces it to be simplicial or supernodal.
 fn symbolic_cholesky(

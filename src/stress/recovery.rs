@@ -107,21 +107,21 @@ struct Fit {
     /// Scales positions relative to the centre to unit covariance.
     scale: Matrix2<f64>,
     /// Polynomial coefficients that a unit value at each point contributes.
-    coefficients: Vec<[f64; MOST_TERMS]>,
+    coefficients: Vec<[f64; MAX_TERMS]>,
 }
 
 /// Number of terms of a complete polynomial of degree 2, the highest that is fitted.
-const MOST_TERMS: usize = 6;
+const MAX_TERMS: usize = 6;
 /// Smallest ratio of points to polynomial terms in a patch inside the body.
-const ENOUGH: f64 = 1.3;
+const MIN_POINTS_PER_TERM: f64 = 1.3;
 /// The same for corners on the outline, where all points lie to one side.
-const ENOUGH_OUTSIDE: f64 = 1.5;
+const MIN_POINTS_PER_TERM_OUTSIDE: f64 = 1.5;
 /// Decay length of the weights of points with the distance from the corner, in standard deviations of the patch. Chosen
 /// by the stresses at the hole of Kirsch's plate and inside it: without weights, six-node triangles have 1.5 times the
 /// error.
 const REACH: f64 = 2.0;
 /// Largest number of rings of elements in a patch.
-const MOST_RINGS: u32 = 3;
+const MAX_RINGS: u32 = 3;
 
 impl<'a> Patches<'a> {
     fn new(mesh: &'a Mesh) -> Self {
@@ -175,14 +175,14 @@ impl<'a> Patches<'a> {
         let per_element = self.mesh.entry().points.len() as u32;
         let mut patch = self.around(corner).to_vec();
         let mut rings = 1;
-        let spare = if self.outer[corner as usize] { ENOUGH_OUTSIDE } else { ENOUGH };
+        let spare = if self.outer[corner as usize] { MIN_POINTS_PER_TERM_OUTSIDE } else { MIN_POINTS_PER_TERM };
         let needed = ((self.degree + 1) * (self.degree + 2) / 2) as f64 * spare;
         loop {
             let enough = (patch.len() * per_element as usize) as f64 >= needed;
             if enough && self.solve(self.mesh.node(corner), &patch, self.degree, fit) {
                 return;
             }
-            if rings == MOST_RINGS || !self.grow(&mut patch) {
+            if rings == MAX_RINGS || !self.grow(&mut patch) {
                 break;
             }
             rings += 1;
@@ -231,7 +231,7 @@ impl Fit {
             let weight = (-(self.scale * (x - about)).norm_squared() / (REACH * REACH)).exp();
             normal += weight * basis * basis.transpose();
             total += weight;
-            let mut coefficients = [0.0; MOST_TERMS];
+            let mut coefficients = [0.0; MAX_TERMS];
             coefficients.iter_mut().zip(&basis).for_each(|(own, term)| *own = weight * term);
             self.coefficients.push(coefficients);
         }
@@ -253,7 +253,7 @@ impl Fit {
     }
 
     /// Evaluates the terms of a complete polynomial of degree 2 at a position.
-    fn terms(&self, at: Vector2<f64>) -> [f64; MOST_TERMS] {
+    fn terms(&self, at: Vector2<f64>) -> [f64; MAX_TERMS] {
         let x = self.scale * (at - self.centre);
         [1.0, x.x, x.y, x.x * x.x, x.x * x.y, x.y * x.y]
     }

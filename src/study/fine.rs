@@ -104,7 +104,7 @@ const REFINEMENTS: i32 = 3;
 /// Distances of mesh lines from the ends of a slender beam, relative to its height; sections do not stay plane there.
 const LAYERS: [f64; 3] = [0.25, 1.0, 4.0];
 /// Number of meshes needed to show a rate of convergence.
-const LEAST_MESHES: usize = 3;
+const MIN_MESHES: usize = 3;
 /// Distance between two mesh lines, relative to the cell size in the other direction, below which they are merged.
 const NARROWEST: f64 = 1e-4;
 /// Iteration limit of Newton's method per mesh.
@@ -162,7 +162,7 @@ pub(super) fn fine(
             // continuous problem.
             return Err(StudyError::NoReference);
         }
-        let fine_enough = solutions.len() >= LEAST_MESHES && is_good_enough(&solutions, has_point, effort);
+        let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
         let next_fits = 4 * unknowns <= effort.most_unknowns() && search.has_work_for(4 * unknowns);
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {

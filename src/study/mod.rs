@@ -28,7 +28,7 @@ pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathS
 pub use motion::MotionStudy;
 pub use progress::{Extent, Observer, PartialObserver, Progress, StudyError};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
-pub(crate) use reference::MOST_CERTIFIED;
+pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
 pub(crate) use reference::is_known_unstable;
 pub use reference::{ProbeReference, Reference, ReferenceSource};

@@ -299,12 +299,12 @@ impl Reference {
 
 /// Largest number of unknowns of solutions that are certified automatically; beyond, certification takes much longer
 /// than the solve or its reference.
-pub(crate) const MOST_CERTIFIED: usize = 100_000;
+pub(crate) const MAX_CERTIFIED: usize = 100_000;
 
 /// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has not
 /// been.
 fn is_unstable(simulation: &Simulation) -> bool {
-    let is_small = simulation.system().dofs() <= MOST_CERTIFIED;
+    let is_small = simulation.system().dofs() <= MAX_CERTIFIED;
     let examine =
         |search: Equilibrium<'_>| search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
     is_unstable_by(simulation, examine)

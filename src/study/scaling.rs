@@ -60,11 +60,11 @@ const UNKNOWNS: [f64; 11] = [1e2, 2e2, 5e2, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2
 /// Number of meshes of a quick study.
 const QUICK: usize = 5;
 /// Time spent on the iterations of a mesh.
-const ENOUGH: Duration = Duration::from_millis(500);
+const MIN_TIME: Duration = Duration::from_millis(500);
 /// Largest number of timed iterations per mesh.
-const MOST: usize = 101;
+const MAX_TIMED: usize = 101;
 /// Smallest number of timed iterations per mesh.
-const FEWEST: usize = 3;
+const MIN_TIMED: usize = 3;
 /// Smallest measurable memory increase, MiB.
 const RESOLVED: f64 = 1.0;
 
@@ -179,7 +179,7 @@ fn measure(
     let mut simulation = Simulation::new(&setting.apply(scene))?;
     // The first iteration warms up.
     simulation.step();
-    let runs = Runs { count: FEWEST..=MOST, enough: ENOUGH };
+    let runs = Runs { count: MIN_TIMED..=MAX_TIMED, enough: MIN_TIME };
     let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
         simulation.step();
     });

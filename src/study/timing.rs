@@ -12,7 +12,7 @@ const WARM_UP: usize = 2;
 /// Number of measured repetitions.
 const REPETITIONS: usize = 9;
 /// Number of measured repetitions if they take long, because long times vary less.
-const FEWEST: usize = 3;
+const MIN_REPETITIONS: usize = 3;
 /// Time after which repetitions count as long.
 const LONG: Duration = Duration::from_millis(400);
 
@@ -22,7 +22,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
     let mut runs: Vec<Vec<Timings>> = Vec::new();
     let start = Instant::now();
     for repetition in 0..WARM_UP + REPETITIONS {
-        if runs.len() >= FEWEST && start.elapsed() > LONG {
+        if runs.len() >= MIN_REPETITIONS && start.elapsed() > LONG {
             break;
         }
         simulation.reset();
@@ -57,7 +57,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
 /// Returns the approximate time that [`times_from_rest`] takes if a single run takes `run`.
 #[must_use]
 pub fn expected_time(run: Duration) -> Duration {
-    let [all, fewest] = [REPETITIONS, FEWEST].map(|repetitions| run * (WARM_UP + repetitions) as u32);
+    let [all, fewest] = [REPETITIONS, MIN_REPETITIONS].map(|repetitions| run * (WARM_UP + repetitions) as u32);
     all.min(fewest.max(LONG))
 }
 

@@ -166,11 +166,11 @@ pub struct Study {
 }
 
 /// Largest number of iterations for methods that have not converged before.
-const MOST_ITERATIONS: u32 = 20;
+const MAX_ITERATIONS: u32 = 20;
 /// Fraction of a study's time spent before timing starts.
 const ENDS_SHARE: f64 = 0.1;
 /// Numbers of iterations that are recorded.
-const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MOST_ITERATIONS];
+const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MAX_ITERATIONS];
 
 impl Study {
     /// Measures a scene. `observe` receives the progress, and breaks to cancel.
@@ -277,7 +277,7 @@ impl Study {
             )?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
-            let most = if method == MethodKind::Auto { u32::MAX } else { MOST_ITERATIONS };
+            let most = if method == MethodKind::Auto { u32::MAX } else { MAX_ITERATIONS };
             let times = times_from_rest(&mut simulation, most);
             simulation.reset();
             for (iterations, time) in (1..).zip(times) {
@@ -401,7 +401,7 @@ impl MeshEnds {
 
 /// Largest number of rows of cells in meshes that are measured in addition to those with square cells; elements without
 /// locking need few rows.
-const MOST_FEW: u32 = 2;
+const MAX_ROWS: u32 = 2;
 /// Largest ratio of height to length of such cells.
 const HIGHEST_CELL: f64 = 4.0;
 
@@ -423,7 +423,7 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
             let pieces = f64::from(pieces);
             let squares = f64::from(along) * beam.height / beam.length;
             let as_high = (squares / pieces).round().max(1.0) as u32;
-            let few = |across: u32| across <= MOST_FEW && squares / f64::from(across) <= HIGHEST_CELL;
+            let few = |across: u32| across <= MAX_ROWS && squares / f64::from(across) <= HIGHEST_CELL;
             for across in (1..=as_high).filter(|&across| across == as_high || few(across)) {
                 let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
                 // The weight includes the setup of the mesh.

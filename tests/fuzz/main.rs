@@ -16,11 +16,11 @@ use warpbeam::simulation::{Field, Simulation, Status};
 static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Largest memory that all tests of this file together may use, MB.
-const MOST_MEMORY_MB: f32 = 256.0;
+const MAX_MEMORY_MB: f32 = 256.0;
 
 fn memory_is_bounded() {
     let peak = MEMORY.peak_usage_as_mb();
-    assert!(peak < MOST_MEMORY_MB, "{peak} MB");
+    assert!(peak < MAX_MEMORY_MB, "{peak} MB");
 }
 
 /// Choices taken from the bytes of an input, then from a random sequence seeded with them.

@@ -3,7 +3,7 @@
 use crate::app::session::has_mesh_of;
 use egui::Ui;
 
-use crate::app::action::MOST_ITERATIONS;
+use crate::app::action::MAX_ITERATIONS;
 use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, NumberRow, PanelState, number_rows};
 use crate::app::readout::Readout;
@@ -235,7 +235,7 @@ pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
         label: "Iterations/frame",
         tooltip: "Iterations per displayed frame: with more, the solve takes fewer frames, but each frame takes \
                   longer.",
-        limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MOST_ITERATIONS) },
+        limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MAX_ITERATIONS) },
         slider: 1.0..=20.0,
         scale: SliderScale::Linear,
         whole: true,

@@ -8,7 +8,7 @@ use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{Bodies, MOST_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, Solved, Start};
+use crate::app::task::solve::{Bodies, MAX_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, Solved, Start};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Equilibrium, Simulation, Status};
@@ -59,7 +59,7 @@ struct Rollback {
 impl Default for Background {
     fn default() -> Self {
         Self {
-            most_unknowns: MOST_UNKNOWNS,
+            most_unknowns: MAX_UNKNOWNS,
             is_large: false,
             work: Work::Idle,
             returned: None,

@@ -7,7 +7,7 @@ use web_time::{Duration, Instant};
 
 use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
-use crate::app::task::solve::{Bodies, MOST_PANE_UNKNOWNS, Model, Phase, SolveRequest, Start};
+use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, Start};
 use crate::assembly::System;
 use crate::scene::{Beam, MeshFile, Scene};
 use crate::sentence::{Sentence, sentence};
@@ -287,7 +287,7 @@ impl ComparedSolve {
         self.from_rest = simulation.is_none();
         let system = Equations::of(equations, &scene);
         let model = model(simulation, system);
-        self.is_large = scene.unknowns() > MOST_PANE_UNKNOWNS;
+        self.is_large = scene.unknowns() > MAX_PANE_UNKNOWNS;
         if self.is_large {
             self.send(scene, model, Start::Present);
         } else {

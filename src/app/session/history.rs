@@ -8,7 +8,7 @@ use crate::dynamics::Ledger;
 use crate::simulation::Simulation;
 
 /// Largest number of samples; older ones are dropped.
-const MOST_SAMPLES: usize = 8192;
+const MAX_SAMPLES: usize = 8192;
 
 /// Recorded time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl History {
         if let Some(probe) = probe.filter(|probe| probe.name != self.probe) {
             self.probe.clone_from(&probe.name);
         }
-        if self.samples.len() == MOST_SAMPLES {
+        if self.samples.len() == MAX_SAMPLES {
             self.samples.pop_front();
         }
         let displacement = see(state.displacement());

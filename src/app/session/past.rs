@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::simulation::{Moment, Simulation};
 
 /// Largest number of moments: fifteen seconds of playing time at 60 Hz.
-const MOST_MOMENTS: usize = 900;
+const MAX_MOMENTS: usize = 900;
 
 /// Moments of a motion ordered by time.
 #[derive(Debug, Default)]
@@ -24,7 +24,7 @@ impl Past {
             return;
         }
         if let Some(bytes) = self.moments.front().map(Moment::bytes) {
-            let most = (most_bytes / bytes.max(1)).min(MOST_MOMENTS);
+            let most = (most_bytes / bytes.max(1)).min(MAX_MOMENTS);
             while self.moments.len() >= most.max(1) {
                 self.spare.extend(self.moments.pop_front());
             }
@@ -117,7 +117,7 @@ mod tests {
         let times: Vec<f64> = past.moments().iter().map(|moment| moment.state().time()).collect();
         assert_eq!(times, [13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0], "the last seven");
         assert!(after(20, 0).0.moments().len() <= 1, "no room for two");
-        assert_eq!(after(1000, 5000).0.moments().len(), MOST_MOMENTS);
+        assert_eq!(after(1000, 5000).0.moments().len(), MAX_MOMENTS);
     }
 
     #[test]

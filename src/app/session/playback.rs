@@ -11,7 +11,7 @@ use crate::simulation::{Motion, Simulation, Status};
 use crate::state::State;
 
 /// Largest memory for the recorded moments of all motions, bytes.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 /// Shortest playing time between two recorded moments, s: one frame at 60 Hz, less rounding.
 const BETWEEN_MOMENTS: f64 = 1.0 / 61.0;
 
@@ -98,7 +98,7 @@ impl Playback {
 
     /// Records the current moment of the motion and its companions.
     fn keep_moment(&mut self, simulation: &Simulation) {
-        let most_bytes = MOST_BYTES / (1 + self.companions.len());
+        let most_bytes = MAX_BYTES / (1 + self.companions.len());
         self.past.record(simulation, most_bytes);
         for companion in self.companions.iter_mut().filter(|companion| !companion.is_absent) {
             companion.past.record(&companion.simulation, most_bytes);
@@ -266,7 +266,7 @@ impl Playback {
         if companion.restore(simulation.state()).is_ok() {
             let (history, past) = (History::default(), Past::default());
             self.companions.push(Companion { integrator, simulation: companion, history, past, is_absent: false });
-            self.companions.last_mut().into_iter().for_each(|c| c.past.record(&c.simulation, MOST_BYTES));
+            self.companions.last_mut().into_iter().for_each(|c| c.past.record(&c.simulation, MAX_BYTES));
         }
     }
 

@@ -6,7 +6,7 @@ use crate::app::session::document::Document;
 use crate::scene::{Scene, Source};
 
 /// Largest number of undo steps.
-const MOST: usize = 200;
+const MAX_STEPS: usize = 200;
 
 /// Scene of an earlier state of the session, and its document.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ impl UndoHistory {
             return;
         }
         self.edited = label;
-        if self.past.len() == MOST {
+        if self.past.len() == MAX_STEPS {
             self.past.pop_front();
         }
         self.past.push_back(before);
@@ -164,7 +164,7 @@ mod tests {
         edits.record(snapshot(5.0), Some("Direction"));
         assert_eq!(edits.undo(snapshot(6.0)), Some(snapshot(5.0)));
         assert_eq!(edits.undo(snapshot(5.0)), Some(snapshot(0.0)));
-        (0..3 * MOST).for_each(|_| edits.record(snapshot(0.0), None));
-        assert_eq!(edits.past.len(), MOST);
+        (0..3 * MAX_STEPS).for_each(|_| edits.record(snapshot(0.0), None));
+        assert_eq!(edits.past.len(), MAX_STEPS);
     }
 }

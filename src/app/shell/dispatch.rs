@@ -1,6 +1,6 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
-use crate::app::action::{Action, MOST_ITERATIONS};
+use crate::app::action::{Action, MAX_ITERATIONS};
 use crate::app::language::{fill, said, tr};
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
@@ -93,7 +93,7 @@ impl Lab {
                 self.follow_session();
             }
             Action::Apply(scene, iterations) => {
-                self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MOST_ITERATIONS)));
+                self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MAX_ITERATIONS)));
             }
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
@@ -129,7 +129,7 @@ impl Lab {
                 self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
-            Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MOST_ITERATIONS)),
+            Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MAX_ITERATIONS)),
             Action::Fit => {
                 self.desk.viewport.fit();
                 self.desk.compare.fit();

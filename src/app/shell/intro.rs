@@ -7,7 +7,7 @@ use crate::simulation::Simulation;
 /// Duration, s.
 const DURATION: f64 = 1.5;
 /// Largest number of unknowns: every frame solves the model again.
-const MOST_UNKNOWNS: usize = 2000;
+const MAX_UNKNOWNS: usize = 2000;
 
 /// Animation towards an equilibrium that is already known. Every frame is an equilibrium under a fraction of the load.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Intro {
     /// Returns the animation of a static scene; `None` for a motion or a large model.
     pub(crate) fn new(simulation: &Simulation) -> Option<Self> {
         let scene = simulation.scene();
-        let small = simulation.system().dofs() <= MOST_UNKNOWNS;
+        let small = simulation.system().dofs() <= MAX_UNKNOWNS;
         if simulation.motion().is_some() || !small {
             return None;
         }

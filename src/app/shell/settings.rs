@@ -13,7 +13,7 @@ use crate::app::view_options::Drawer;
 use crate::simulation::Field;
 
 /// Largest number of recent files.
-const MOST_RECENT: usize = 10;
+const MAX_RECENT: usize = 10;
 /// Accepted width and height of the window, points.
 const SIDES: std::ops::RangeInclusive<f32> = 200.0..=8192.0;
 
@@ -102,7 +102,7 @@ impl Settings {
         let mut own = self.clone();
         let theirs = stored.clone().try_into().map(|theirs: Self| theirs.recent).unwrap_or_default();
         own.recent.extend(theirs.into_iter().filter(|path| !self.recent.contains(path)));
-        own.recent.truncate(MOST_RECENT);
+        own.recent.truncate(MAX_RECENT);
         let (own, before) = (table(&own)?, table(before)?);
         for key in own.keys().chain(before.keys()).filter(|key| own.get(*key) != before.get(*key)) {
             match own.get(key) {
@@ -151,7 +151,7 @@ impl Settings {
         }
         self.recent.retain(|other| *other != path);
         self.recent.insert(0, path);
-        self.recent.truncate(MOST_RECENT);
+        self.recent.truncate(MAX_RECENT);
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
         settings.set_size([900.0, 700.0]);
         (0..30).for_each(|i| settings.add_recent(Path::new(&format!("scene-{i}.toml"))));
         settings.add_recent(Path::new("scene-25.toml"));
-        assert_eq!(settings.recent().len(), MOST_RECENT);
+        assert_eq!(settings.recent().len(), MAX_RECENT);
         assert!(settings.recent()[0].ends_with("scene-25.toml") && settings.recent()[1].ends_with("scene-29.toml"));
         settings.save(&Settings::default(), &file).unwrap();
         assert_eq!(Settings::load(&file), (settings, None));

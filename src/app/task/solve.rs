@@ -13,15 +13,15 @@ use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 
 /// Largest number of unknowns of a model that is meshed and solved between two frames.
-pub(crate) const MOST_UNKNOWNS: u64 = 16_000;
+pub(crate) const MAX_UNKNOWNS: u64 = 16_000;
 /// Largest number of unknowns of a model that is solved between two frames in a pane of Compare, which shows several.
-pub(crate) const MOST_PANE_UNKNOWNS: u64 = 4000;
+pub(crate) const MAX_PANE_UNKNOWNS: u64 = 4000;
 
 /// Time between two snapshots while a model is solved.
 const SNAPSHOT: Duration = Duration::from_millis(100);
 
 /// Largest number of residuals recorded for one solve.
-const MOST_RESIDUALS: usize = 400;
+const MAX_RESIDUALS: usize = 400;
 
 /// Simulation, and the one of linear theory on the same equations; `None` if it could not be set up.
 #[derive(Debug)]
@@ -138,7 +138,7 @@ pub(crate) type Outcome = Result<Box<Solved>, Box<Rejected>>;
 
 /// Records the residual of an iteration; a new solve starts a new list.
 pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
-    if simulation.iterations() <= 1 || residuals.len() >= MOST_RESIDUALS {
+    if simulation.iterations() <= 1 || residuals.len() >= MAX_RESIDUALS {
         residuals.clear();
     }
     residuals.push(simulation.residual());

@@ -21,7 +21,7 @@ const DECADE: [f64; 2] = [20.0, 60.0];
 /// Opening length and additional length as fractions of the shorter side of the view, limited by the ranges above.
 const SHARE: [f64; 2] = [0.12, 0.09];
 /// Smallest ratio of the largest force of a slider to the force that the scene opens with.
-pub(crate) const LEAST_SPAN: f64 = 4.0;
+pub(crate) const MIN_SPAN: f64 = 4.0;
 /// Distance from a tip within which a press grabs it, points.
 pub(crate) const NEAR: f32 = 13.0;
 /// Step of the direction while Shift is down, degrees.
@@ -86,7 +86,7 @@ pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
 /// linear theory.
 pub(crate) fn force_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
     let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]));
-    [usual, largest_force(material, system).max(LEAST_SPAN * usual)]
+    [usual, largest_force(material, system).max(MIN_SPAN * usual)]
 }
 
 /// Returns the point of application of a load: the middle of its edge, or its node; `None` if the edge does not exist.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
-use crate::app::viewport::arrow::{LEAST_SPAN, NEAR, power_of_ten_above};
+use crate::app::viewport::arrow::{MIN_SPAN, NEAR, power_of_ten_above};
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
@@ -41,7 +41,7 @@ fn rolling_moment(material: &Material, system: &System) -> f64 {
 /// moment of sliders. For a scene without moments the first is about a tenth of the moment that rolls the body up once.
 pub(crate) fn moment_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
     let usual = opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)));
-    [usual, largest_moment(material, system).max(LEAST_SPAN * usual)]
+    [usual, largest_moment(material, system).max(MIN_SPAN * usual)]
 }
 
 /// Circular arrow of a moment, in window coordinates.
@@ -145,8 +145,8 @@ impl MomentArrow {
     fn paint_arc(&self, painter: &Painter, sweep: f64, stroke: Stroke) {
         /// Length of a segment of the arc, rad, and largest number of segments.
         const PIECE: f64 = 0.15;
-        const MOST: f64 = 400.0;
-        let pieces = (sweep.abs() / PIECE).ceil().clamp(1.0, MOST);
+        const MAX_PIECES: f64 = 400.0;
+        let pieces = (sweep.abs() / PIECE).ceil().clamp(1.0, MAX_PIECES);
         let points = (0..=pieces as u32).map(|i| self.at(sweep * f64::from(i) / pieces).0);
         painter.add(Shape::line(points.collect(), stroke));
     }

@@ -176,7 +176,7 @@ fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], str
 fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// Duration of the trail, s.
     const DURATION: f64 = 2.0;
-    const MOST_PIECES: usize = 400;
+    const MAX_PIECES: usize = 400;
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
@@ -184,7 +184,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
         let end = playback.shown_time().unwrap_or(f64::INFINITY);
         let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
         let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
-        let stride = points.len().div_ceil(MOST_PIECES).max(1);
+        let stride = points.len().div_ceil(MAX_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
         for (i, ends) in kept.windows(2).enumerate() {
             if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
@@ -387,7 +387,7 @@ fn legend(
     palette: &Palette,
     visuals: &Visuals,
 ) -> Option<Rect> {
-    const MOST_TICKS: u32 = 5;
+    const MAX_TICKS: u32 = 5;
     if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
         return None;
     }
@@ -415,7 +415,7 @@ fn legend(
     painter.galley(corner, title, palette.text);
     let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), size);
     color_bar(painter, bar, palette.map(field));
-    for value in ticks(low, high, MOST_TICKS) {
+    for value in ticks(low, high, MAX_TICKS) {
         let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
         let text = engineering(value / 10f64.powi(power), "");

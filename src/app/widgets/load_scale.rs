@@ -86,8 +86,8 @@ impl LoadScale {
     pub(crate) fn slider(usual: f64, largest: f64) -> Self {
         const OPENING: f64 = 0.4;
         /// Smallest number of decades of the logarithmic part.
-        const LEAST: f64 = 0.3;
-        let decades = (largest / (STRAIGHT * usual)).log10().max(LEAST);
+        const MIN_DECADES: f64 = 0.3;
+        let decades = (largest / (STRAIGHT * usual)).log10().max(MIN_DECADES);
         Self { usual, stub: 0.0, opening: OPENING, decade: (1.0 - STRAIGHT * OPENING) / decades }
     }
 

@@ -59,10 +59,10 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
 
 /// Returns ticks at multiples of 1, 2 or 5 · 10ⁿ, as many as have room for their labels.
 fn round_marks(input: GridInput, apart: f32) -> Vec<GridMark> {
-    const MOST: f64 = 9.0;
+    const MAX_TICKS: f64 = 9.0;
     let (low, high) = input.bounds;
     let room = (high - low) / input.base_step_size * f64::from(NEAREST / apart);
-    let ticks = ticks(low, high, room.clamp(2.0, MOST) as u32);
+    let ticks = ticks(low, high, room.clamp(2.0, MAX_TICKS) as u32);
     let step_size = ticks.windows(2).next().map_or(high - low, |pair| pair[1] - pair[0]);
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }

@@ -31,7 +31,7 @@ use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
-use crate::app::task::solve::MOST_UNKNOWNS;
+use crate::app::task::solve::MAX_UNKNOWNS;
 use crate::app::task::thread::POLL;
 use crate::app::{AppError, ThemeChoice};
 use crate::render::{Gpu, RenderError, View, read_texture};
@@ -81,7 +81,7 @@ impl Display {
 /// Returns `true` if a scene is so large that it is meshed in the background after the window has opened.
 #[must_use]
 pub fn opens_in_background(scene: &Scene) -> bool {
-    scene.unknowns() > MOST_UNKNOWNS
+    scene.unknowns() > MAX_UNKNOWNS
 }
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed in the background while the

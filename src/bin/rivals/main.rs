@@ -123,9 +123,9 @@ const DAMPINGS: [f64; 2] = [0.5, 1.0];
 /// Iteration numbers of `fem` that are tried: the default, and the manual's value for stiff bodies.
 const CG_ITERATIONS: [usize; 2] = [20, 500];
 /// Computing time after which a combination is given up.
-const MOST_TIME: Duration = Duration::from_secs(15);
+const MAX_TIME: Duration = Duration::from_secs(15);
 /// Number of steps after which a combination is given up.
-const MOST_STEPS: u32 = 6000;
+const MAX_STEPS: u32 = 6000;
 /// Number of steps within [`WITHIN`] after which it counts as being at rest.
 const RESTS: u32 = 200;
 
@@ -162,7 +162,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
             let mut best: Option<Rival> = None;
             for swing in swings(solver) {
                 // A combination slower than the best one is not needed.
-                let limit = best.as_ref().and_then(|b| b.own).map_or(MOST_TIME, |own| own.time);
+                let limit = best.as_ref().and_then(|b| b.own).map_or(MAX_TIME, |own| own.time);
                 let body = Rapier::new(&problem, own, swing).ok_or(Error::NotItsScene)?;
                 let run = swing_in(body, [own, exact], limit);
                 let rival = Rival {
@@ -244,7 +244,7 @@ fn swing_in(mut body: Rapier<'_>, [own, reference]: [Vector2<f64>; 2], limit: Du
     let reachable = (own - reference).norm() <= WITHIN * reference.norm();
     let mut times = Vec::new();
     let mut now = Moment::default();
-    while now.steps < MOST_STEPS {
+    while now.steps < MAX_STEPS {
         let begun = Instant::now();
         body.step();
         let time = begun.elapsed();
@@ -255,7 +255,7 @@ fn swing_in(mut body: Rapier<'_>, [own, reference]: [Vector2<f64>; 2], limit: Du
         to_reference.see(now, (u - reference).norm() / reference.norm());
         let done = to_own.rests(now.steps).is_some() && (!reachable || to_reference.rests(now.steps).is_some());
         let late = now.time > limit && to_own.since.is_none_or(|since| since.time > limit);
-        if done || late || now.time > MOST_TIME {
+        if done || late || now.time > MAX_TIME {
             break;
         }
     }

@@ -233,11 +233,11 @@ impl Case {
             return scene;
         }
         /// Upper limit of the number of cells along the beam.
-        const MOST_CELLS: f64 = 200.0;
+        const MAX_CELLS: f64 = 200.0;
         let height = 1.0;
         let across = 2;
         let cell = height / f64::from(across);
-        let along = (self.slenderness * height / (self.aspect * cell)).round().clamp(1.0, MOST_CELLS);
+        let along = (self.slenderness * height / (self.aspect * cell)).round().clamp(1.0, MAX_CELLS);
         let length = self.slenderness * height;
         let force = self.alpha * self.young * height.powi(3) / 12.0 / (length * length);
         let material = Material { density: 0.0, plane: Plane::Strain, ..Material::new(self.young, self.poisson) };

@@ -256,7 +256,7 @@ pub struct MotionStudy {
 /// Largest number of timed runs per setting.
 const RUNS: usize = 5;
 /// Number of steps after which the time of a shortened motion is known.
-const ENOUGH_STEPS: u32 = 500;
+const MIN_STEPS: u32 = 500;
 
 /// Approximate fraction of a study's time spent on the reference solution.
 const REFERENCE_SHARE: f64 = 0.1;
@@ -497,8 +497,8 @@ impl FirstRun {
         let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
         let cut = u64::from(steps_of_sample) * u64::from(samples.count) > u64::from(plan.most_steps);
         let (steps, path) = if cut {
-            run(&mut simulation, ENOUGH_STEPS);
-            (ENOUGH_STEPS, Vec::new())
+            run(&mut simulation, MIN_STEPS);
+            (MIN_STEPS, Vec::new())
         } else {
             (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, cancelled)?)
         };

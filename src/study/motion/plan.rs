@@ -64,9 +64,9 @@ const REFERENCE_STEPS: u32 = 4;
 /// Step of the explicit integrator relative to its critical step.
 const BELOW_CRITICAL: f64 = 0.9;
 /// Smallest number of steps in a scene; a shorter scene is studied with shorter steps.
-const FEWEST_STEPS: f64 = 8.0;
+const MIN_STEPS: f64 = 8.0;
 /// Largest number of nodes, along times across, of a mesh with `factor` 1.
-const MOST_NODES: f64 = 1000.0;
+const MAX_NODES: f64 = 1000.0;
 
 impl Plan {
     /// Returns the number of reference steps between samples.
@@ -112,7 +112,7 @@ impl Samples {
         let own = scene.dynamics.time_step;
         let longest = lowest_period(scene)?.map_or(0.0, |period| periods * period).max(steps * own);
         let duration = scene.dynamics.duration.min(longest);
-        let mut interval = (plan.coarsest * own).min(duration / FEWEST_STEPS);
+        let mut interval = (plan.coarsest * own).min(duration / MIN_STEPS);
         // Doubled, so that the scene's own step remains one of the measured steps.
         while duration / interval > plan.most_samples {
             interval *= 2.0;
@@ -132,7 +132,7 @@ pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<
     let pieces = |element: ElementKind| element.entry().degree() as f64;
     let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
     // A scene with a very fine mesh is studied on coarser ones.
-    let factor = factor * (MOST_NODES / (own[0] * own[1])).sqrt().min(1.0);
+    let factor = factor * (MAX_NODES / (own[0] * own[1])).sqrt().min(1.0);
     Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
 }
 

@@ -55,7 +55,7 @@ impl std::fmt::Display for MotionReference {
 }
 
 /// Number of elements of a mesh file above which motions on the refined mesh take too long.
-const MOST_ELEMENTS: usize = 4000;
+const MAX_ELEMENTS: usize = 4000;
 
 impl MotionReference {
     /// Computes the reference for a study of this extent.
@@ -171,7 +171,7 @@ fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
     let (coarse, mut fine) = (with(0.5 * plan.reference_mesh)?, with(plan.reference_mesh)?);
     if scene.beam.is_none() {
         let mesh: &Mesh = fine.system.mesh();
-        if mesh.element_count() > MOST_ELEMENTS {
+        if mesh.element_count() > MAX_ELEMENTS {
             return Err(StudyError::TooFine { elements: mesh.element_count() });
         }
         let refined = System::with_mesh(&fine.scene, mesh.refined()).map_err(SimulationError::from)?;

@@ -211,7 +211,7 @@ pub(super) fn mesh_picker(
     scene: &Scene,
 ) {
     /// Largest number of cells offered.
-    const MOST: u64 = 40_000;
+    const MAX_CELLS: u64 = 40_000;
     let mesh_text = |[along, across]: [u32; 2]| format!("{along}×{across}");
     let Some(beam) = &scene.beam else {
         return combo(ui, pane, "mesh", "as meshed", width, &mut |ui| {
@@ -229,7 +229,7 @@ pub(super) fn mesh_picker(
         let coarser = own.map(|n| n.div_ceil(2));
         let finer = [1, 2, 4, 8, 16].map(|times| own.map(|n| n.saturating_mul(times)));
         let offered = std::iter::once(coarser).filter(|&c| c != own).chain(finer);
-        let small = offered.filter(|[a, b]| u64::from(*a) * u64::from(*b) <= MOST);
+        let small = offered.filter(|[a, b]| u64::from(*a) * u64::from(*b) <= MAX_CELLS);
         let other = cells.filter(|own| !small.clone().any(|offered| offered == *own));
         for offered in small.chain(other) {
             let about = match offered {

@@ -23,7 +23,7 @@ use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Ma
 use crate::study::{LoadCurve, Reference};
 
 /// Largest number of dots per setting.
-const MOST_DOTS: usize = 500;
+const MAX_DOTS: usize = 500;
 /// Relative difference of loads below which two dots are the same.
 const SAME_LOAD: f64 = 2e-3;
 
@@ -205,7 +205,7 @@ impl Trace {
         let dot = (axis.magnitude, reference.displacement);
         self.references.retain(|other| (other.0 - dot.0).abs() > SAME_LOAD * dot.0);
         self.references.push(dot);
-        if self.references.len() > MOST_DOTS {
+        if self.references.len() > MAX_DOTS {
             self.references.remove(0);
         }
     }
@@ -234,7 +234,7 @@ impl Trace {
             Some(other) => *other = dot,
             None => dots.push(dot),
         }
-        if dots.len() > MOST_DOTS {
+        if dots.len() > MAX_DOTS {
             dots.remove(0);
         }
         true

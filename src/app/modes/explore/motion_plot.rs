@@ -26,7 +26,7 @@ const SHOWN: f64 = 12.0;
 /// Space for the legend to the right of the data, as a fraction of the data's width.
 const LEGEND_ROOM: f64 = 0.22;
 /// Largest number of points of a line; longer lines are thinned.
-const MOST_POINTS: usize = 1000;
+const MAX_POINTS: usize = 1000;
 /// Largest number of samples of the spectrum; a power of two.
 const LONGEST_SPECTRUM: usize = 4096;
 /// Smallest number of samples of a spectrum.
@@ -92,7 +92,7 @@ fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'st
 
 fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPoint> {
     let samples: Vec<&Sample> = history.last(SHOWN).collect();
-    let stride = samples.len().div_ceil(MOST_POINTS).max(1);
+    let stride = samples.len().div_ceil(MAX_POINTS).max(1);
     let kept = samples.iter().rev().step_by(stride);
     kept.map(|s| PlotPoint::from(point(s))).collect()
 }

@@ -17,7 +17,7 @@ const SMALL_SIDE: f32 = 120.0;
 const LARGE_SIDE: f32 = 146.0;
 const GAP: f32 = 18.0;
 /// Largest number of unknowns of a body whose matrix is drawn.
-const MOST_UNKNOWNS: usize = 96;
+const MAX_UNKNOWNS: usize = 96;
 
 /// Shows the matrices.
 pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
@@ -64,7 +64,7 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
     ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));
-    let matrix = (all <= MOST_UNKNOWNS).then(|| assembled(simulation)).flatten();
+    let matrix = (all <= MAX_UNKNOWNS).then(|| assembled(simulation)).flatten();
     let Some(matrix) = matrix else {
         ui.label(tr("Too many unknowns to draw."));
         return;

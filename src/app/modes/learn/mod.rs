@@ -51,7 +51,7 @@ const TWO_COLUMNS: f32 = 560.0;
 const LOW_WINDOW: f32 = 560.0;
 
 /// Largest number of elements that are painted one by one.
-const MOST_ELEMENTS: usize = 3000;
+const MAX_ELEMENTS: usize = 3000;
 
 /// Expensive results of a scene that a card shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,7 +131,7 @@ impl View<'_> {
 
     /// Returns `true` if there are too many elements to paint each of them.
     fn is_fine(&self) -> bool {
-        self.simulation.system().mesh().element_count() > MOST_ELEMENTS
+        self.simulation.system().mesh().element_count() > MAX_ELEMENTS
     }
 
     /// Returns the drawn points of an element.

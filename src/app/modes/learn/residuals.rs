@@ -67,7 +67,7 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
 
 fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     /// Smallest number of iterations on the horizontal axis, and decimal exponent at the top of the vertical axis.
-    const FEWEST: usize = 12;
+    const MIN_ITERATIONS: usize = 12;
     const HIGHEST: f64 = 1.0;
     const LEFT: f32 = 40.0;
     const BELOW: f32 = 20.0;
@@ -80,7 +80,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     let residuals = shown.input.residuals;
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
-    let most = residuals.len().max(FEWEST) as f64;
+    let most = residuals.len().max(MIN_ITERATIONS) as f64;
     let place = |k: f64, exponent: f64| {
         let x = rect.left() + rect.width() * (k / most) as f32;
         pos2(x, rect.top() + rect.height() * ((HIGHEST - exponent) / (HIGHEST - bottom)) as f32)

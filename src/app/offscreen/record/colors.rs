@@ -10,7 +10,7 @@ use crate::image::Picture;
 type Color = [u8; 3];
 
 /// Largest number of colours of a GIF.
-const MOST: usize = 256;
+const MAX_COLORS: usize = 256;
 /// Number of colours that are taken over exactly: the most frequent ones, so that backgrounds and texts keep their
 /// colours.
 const EXACT: usize = 32;
@@ -33,9 +33,9 @@ impl Palette {
         let mut counts: Vec<_> = counts.into_iter().collect();
         // Sorted by frequency, then by value, so that the result is the same in every run.
         counts.sort_by_key(|&(color, count)| (std::cmp::Reverse(count), color));
-        let rare = counts.split_off(counts.len().min(if counts.len() > MOST { EXACT } else { MOST }));
+        let rare = counts.split_off(counts.len().min(if counts.len() > MAX_COLORS { EXACT } else { MAX_COLORS }));
         let mut palette: Vec<Color> = counts.into_iter().map(|(color, _)| color).collect();
-        palette.extend(quantized(&rare, MOST - palette.len()));
+        palette.extend(quantized(&rare, MAX_COLORS - palette.len()));
         if palette.is_empty() {
             palette.push([0; 3]);
         }
@@ -51,9 +51,9 @@ impl Palette {
     /// number of pixels without a similar palette colour.
     pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) -> usize {
         /// Largest number of cached colours.
-        const MOST_KNOWN: usize = 1 << 18;
+        const MAX_KNOWN: usize = 1 << 18;
         let Self { colors: palette, known } = self;
-        if known.len() > MOST_KNOWN {
+        if known.len() > MAX_KNOWN {
             known.clear();
         }
         indices.clear();
@@ -132,7 +132,7 @@ mod tests {
         let gradient = (0..4000_u32).map(|i| [(i / 16) as u8, (i / 20) as u8, 128 - (i / 40) as u8]);
         let many = picture(gradient.chain(std::iter::repeat_n(background, 9000)));
         let mut palette = Palette::of(std::slice::from_ref(&many));
-        assert!(palette.bytes().len() <= 3 * MOST);
+        assert!(palette.bytes().len() <= 3 * MAX_COLORS);
         let mut indices = Vec::new();
         palette.indices(&many, &mut indices);
         for (pixel, index) in many.rgba.chunks(4).zip(&indices) {

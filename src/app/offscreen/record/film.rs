@@ -222,10 +222,10 @@ impl Gif {
     /// Adds the changed part of a frame: the smallest rectangle that contains it.
     fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
         /// Fraction of pixels without a similar palette colour above which there is a new palette.
-        const MOST_POOR: f64 = 1e-3;
+        const MAX_POOR: f64 = 1e-3;
         let Self { encoder, palette, adapts, is_local, before, now } = self;
         let poor = palette.indices(picture, now);
-        if *adapts && poor as f64 > MOST_POOR * now.len() as f64 {
+        if *adapts && poor as f64 > MAX_POOR * now.len() as f64 {
             *palette = Palette::of(std::slice::from_ref(picture));
             palette.indices(picture, now);
             *is_local = true;

@@ -22,9 +22,9 @@ const RATE: u16 = 25;
 /// Largest side of the frames, pixels: larger windows are scaled down.
 const MAX_SIDE: f32 = 1280.0;
 /// Largest number of frames being copied from the graphics device; further frames are skipped.
-const MOST_READ: usize = 2;
+const MAX_READ: usize = 2;
 /// Largest number of frames waiting for the encoder; further frames are skipped.
-const MOST_WAITING: usize = 4;
+const MAX_WAITING: usize = 4;
 
 /// Recording of the window. Dropping it ends it with the frames taken so far.
 pub(crate) struct LiveRecording {
@@ -67,7 +67,7 @@ impl LiveRecording {
         let scale = (MAX_SIDE / window[0].max(window[1]).max(1) as f32).min(1.0);
         let size = window.map(|side| ((side as f32 * scale).round() as u32).max(1));
         let target = gpu.target("recording", format, size, 1, wgpu::TextureUsages::COPY_SRC);
-        let (sender, receiver) = sync_channel(MOST_WAITING);
+        let (sender, receiver) = sync_channel(MAX_WAITING);
         let end = Arc::new(AtomicU64::new(0));
         let (path, own_end) = (file.path().to_owned(), end.clone());
         let task = Task::start("recording", move |_| {
@@ -110,7 +110,7 @@ impl LiveRecording {
         screen: &ScreenDescriptor,
         (number, now): (u64, f64),
     ) {
-        if self.pending.len() >= MOST_READ {
+        if self.pending.len() >= MAX_READ {
             return;
         }
         // If the size of the window has changed, the image is scaled so that it fits.
@@ -364,7 +364,7 @@ mod tests {
                     (number, now),
                 );
             }
-            assert!(recording.pending.len() <= MOST_READ && recording.free.len() <= MOST_READ);
+            assert!(recording.pending.len() <= MAX_READ && recording.free.len() <= MAX_READ);
             stage.free_textures(&mut output.textures_delta);
         }
         let last = read_texture(&gpu, &recording.target).unwrap();

@@ -19,7 +19,7 @@ use crate::app::platform::web::{browser, files};
 /// Level of the compression of scenes in links, of 10.
 const LEVEL: u8 = 9;
 /// Largest text of a scene in a link, bytes.
-const MOST: usize = 1 << 20;
+const MAX_SCENE_BYTES: usize = 1 << 20;
 /// Begin of the fragment of an address that holds a scene.
 const FRAGMENT: &str = "scene=";
 
@@ -85,7 +85,7 @@ pub(crate) fn language() -> Option<String> {
 /// Returns the text of a scene in a link.
 fn decode(packed: &str) -> Result<String, LinkError> {
     let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;
-    let text = decompress_to_vec_with_limit(&bytes, MOST).map_err(LinkError::Compression)?;
+    let text = decompress_to_vec_with_limit(&bytes, MAX_SCENE_BYTES).map_err(LinkError::Compression)?;
     Ok(String::from_utf8(text)?)
 }
 

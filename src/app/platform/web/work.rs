@@ -14,7 +14,7 @@ use web_sys::{DedicatedWorkerGlobalScope, MessageEvent, WorkerOptions, WorkerTyp
 use crate::app::platform::web::browser;
 
 /// Largest number of workers that wait for a request. Each keeps the most memory that it has used.
-const MOST_IDLE: usize = 2;
+const MAX_IDLE: usize = 2;
 
 thread_local! {
     /// Workers that wait for a request.
@@ -138,7 +138,7 @@ fn rest(worker: &web_sys::Worker) {
     worker.set_onmessage(None);
     worker.set_onerror(None);
     IDLE.with_borrow_mut(|idle| {
-        if idle.len() < MOST_IDLE {
+        if idle.len() < MAX_IDLE {
             idle.push(worker.clone());
         } else {
             worker.terminate();

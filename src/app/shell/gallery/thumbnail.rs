@@ -18,10 +18,10 @@ use crate::simulation::{Field, Simulation, Status};
 /// Time at which a motion is shown, s.
 const MOMENT: f64 = 0.4;
 /// Largest number of iterations or time steps; large bodies have fewer.
-const MOST_STEPS: usize = 200;
-/// Largest product of unknowns and steps, unless that gives fewer steps than `FEWEST_STEPS`.
+const MAX_STEPS: usize = 200;
+/// Largest product of unknowns and steps, unless that gives fewer steps than `MIN_STEPS`.
 const WORK: usize = 400_000;
-const FEWEST_STEPS: usize = 8;
+const MIN_STEPS: usize = 8;
 
 /// Drawing of a scene.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -46,7 +46,7 @@ impl Thumbnail {
     pub(super) fn of(scene: &Scene, is_cancelled: impl Fn() -> bool) -> Option<Self> {
         let mut simulation = Simulation::new(scene).ok()?;
         simulation.keep_ledger(false);
-        let most = (WORK / simulation.system().dofs().max(1)).clamp(FEWEST_STEPS, MOST_STEPS);
+        let most = (WORK / simulation.system().dofs().max(1)).clamp(MIN_STEPS, MAX_STEPS);
         for _ in 0..most {
             let goes_on = *simulation.status() == Status::Running && simulation.state().time() < MOMENT;
             if !goes_on || is_cancelled() {
