@@ -44,7 +44,7 @@ fn stages(c: &mut Criterion) {
         let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
 
         c.bench_function(&format!("rotate/{dofs}"), |b| {
-            b.iter(|| system.follow(black_box(&mut state), Kinematics::Corotated));
+            b.iter(|| system.update_rotations(black_box(&mut state), Kinematics::Corotated));
         });
         c.bench_function(&format!("force/{dofs}"), |b| {
             b.iter(|| problem.linearize(black_box(&state), &mut forces, None));
@@ -137,7 +137,7 @@ fn sweeps(_: &mut Criterion) {
         let sweep = [None, Some(Tangent::WARPED), Some(Tangent::EXACT)].map(|tangent| {
             let mut sweep = || {
                 let matrix = tangent.map(|tangent| (tangent, &mut matrix));
-                problem.follow_and_linearize(black_box(&mut state), Kinematics::Corotated, &mut forces, matrix);
+                problem.update_and_linearize(black_box(&mut state), Kinematics::Corotated, &mut forces, matrix);
             };
             median((0..repetitions).map(|_| time(&mut sweep)).collect()).as_secs_f64() * 1e9 / count
         });
@@ -166,7 +166,7 @@ fn sweeps(_: &mut Criterion) {
                     state = state.with_displacement(u).unwrap();
                     let matrix = Some((tangent, &mut matrix));
                     let sweep = time(|| {
-                        problem.follow_and_linearize(&mut state, Kinematics::Corotated, &mut forces, matrix);
+                        problem.update_and_linearize(&mut state, Kinematics::Corotated, &mut forces, matrix);
                     });
                     plain.push(solve + sweep);
                 }

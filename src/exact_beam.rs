@@ -198,7 +198,7 @@ impl ClampedBeam {
     #[must_use]
     pub fn path_to_critical(&self, largest: f64, points: u32) -> (Vec<PathPoint>, Option<f64>) {
         let mut path = Vec::new();
-        let critical = self.follow(largest, points, &mut |factor, unknowns| {
+        let critical = self.visit_path(largest, points, &mut |factor, unknowns| {
             let tip = self.stations(unknowns, factor).pop();
             let tip = tip.unwrap_or(Tip { x: Vector2::zeros(), angle: 0.0 });
             path.push(PathPoint { factor, tip, clamp_moment: unknowns[1] * self.bending / self.length });
@@ -210,7 +210,7 @@ impl ClampedBeam {
     #[must_use]
     pub fn axis(&self) -> Option<Vec<Tip>> {
         let mut axis = None;
-        self.follow(1.0, 1, &mut |factor, unknowns| axis = Some(self.stations(unknowns, factor)));
+        self.visit_path(1.0, 1, &mut |factor, unknowns| axis = Some(self.stations(unknowns, factor)));
         axis
     }
 
@@ -229,7 +229,7 @@ impl ClampedBeam {
 
     /// Visits the equilibria of [`Self::path`]; returns the load factor of the bifurcation at which the path loses its
     /// stability, if that is why it ends.
-    fn follow(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) -> Option<f64> {
+    fn visit_path(&self, largest: f64, points: u32, visit: &mut dyn FnMut(f64, &DVector<f64>)) -> Option<f64> {
         /// Largest number of linearizations.
         const MAX_LINEARIZATIONS: u32 = 3000;
         let mut shooting = Shooting { beam: self, positive: None, scratch: DVector::zeros(2 * SEGMENTS) };

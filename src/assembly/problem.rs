@@ -236,8 +236,8 @@ impl Problem {
         });
     }
 
-    /// Performs [`System::follow`] and [`Self::linearize`] in the same loop, for a state with a new displacement.
-    pub fn follow_and_linearize(
+    /// Performs [`System::update_rotations`] and [`Self::linearize`] in the same loop, for a state with a new displacement.
+    pub fn update_and_linearize(
         &self,
         state: &mut State,
         kinematics: Kinematics,

@@ -327,13 +327,13 @@ impl System {
     /// [`StateError`] if the number of vectors differs from the number of nodes, or one is not finite.
     pub fn state_of(&self, u: &[Vector2<f64>]) -> Result<State, StateError> {
         let mut state = self.at_rest().with_displacement(u.to_vec())?;
-        self.follow(&mut state, Kinematics::Corotated);
+        self.update_rotations(&mut state, Kinematics::Corotated);
         Ok(state)
     }
 
     /// Sets rotations and edge angles to those of the displacement. Of the possible angles of an edge the one nearest
     /// to its previous angle is taken, so that full rotations are counted.
-    pub fn follow(&self, state: &mut State, kinematics: Kinematics) {
+    pub fn update_rotations(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, rotations, .. } = state;
         match kinematics {
             Kinematics::Corotated => self.elements().rotations(u.view(), rotations),

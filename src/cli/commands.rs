@@ -189,7 +189,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let is_png = picture.as_deref().map(is_png).transpose()?;
     out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
     let watch = Watch::new();
-    let path = LoadPath::follow(&scene, &mut |fraction| {
+    let path = LoadPath::observed(&scene, &mut |fraction| {
         watch.show(fraction, || "following the load path".to_owned());
         watch.flow()
     });

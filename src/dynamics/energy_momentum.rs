@@ -33,7 +33,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     solver.problem.set_stage(start.time + 0.5 * h, &|pulse| pulse.mean(start.time, start.time + h));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (h, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
-    solver.follow(state);
+    solver.update_rotations(state);
     let stage = Stage {
         inertia: 2.0 / (h * h),
         from_start: false,

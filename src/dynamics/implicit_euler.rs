@@ -34,7 +34,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         Tangent::WARPED
     } else {
         state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
-        solver.follow(state);
+        solver.update_rotations(state);
         solver.solves.tangent()
     };
     let stage = Stage {

@@ -114,13 +114,13 @@ impl LinearTheory {
         };
         if !self.in_use {
             scratch.seen.copy_from(start);
-            problem.follow_and_linearize(&mut scratch.seen, Kinematics::Corotated, &mut scratch.forces, None);
+            problem.update_and_linearize(&mut scratch.seen, Kinematics::Corotated, &mut scratch.forces, None);
             scratch.before.copy_from_slice(&scratch.forces.internal);
             self.checked = None;
         }
         let Scratch { seen, increment, forces, before, .. } = &mut **scratch;
         seen.copy_from(end);
-        problem.follow_and_linearize(seen, Kinematics::Corotated, forces, None);
+        problem.update_and_linearize(seen, Kinematics::Corotated, forces, None);
         combine(increment.displacement.overwrite(), [(1.0, &end.displacement), (-1.0, &start.displacement)]);
         let (stored, stiffness) = (problem.elastic_energy(end), 2.0 * problem.elastic_energy(increment));
         let corotated = dot(&increment.displacement, &forces.internal) - dot(&increment.displacement, before);

@@ -145,15 +145,15 @@ impl StageSolver<'_> {
             }
             before = residual.norm;
             self.correct(stage, tangent, gets_on, start, state)?;
-            self.follow(state);
+            self.update_rotations(state);
         }
         Ok(())
     }
 
     /// Updates rotations and edge angles to those of the displacement.
-    pub fn follow(&mut self, state: &mut State) {
+    pub fn update_rotations(&mut self, state: &mut State) {
         let (system, kinematics) = (self.problem.system(), self.kinematics);
-        timed(&mut self.timings.rotate, || system.follow(state, kinematics));
+        timed(&mut self.timings.rotate, || system.update_rotations(state, kinematics));
     }
 
     /// Returns the matrix of the elements that the next solve needs; `None` if a constant matrix is already factorized.

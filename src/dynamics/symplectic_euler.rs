@@ -68,7 +68,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if !is_finite(&state.displacement) || !is_finite(&state.velocity) {
         return Err(StepError::NotFinite);
     }
-    solver.follow(state);
+    solver.update_rotations(state);
     state.time = start.time + h;
     if !*records_energy {
         return Ok(StepEnergy::default());

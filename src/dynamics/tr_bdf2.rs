@@ -39,7 +39,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     solver.problem.set_stage(start.time + g, &|pulse| pulse.mean(start.time, start.time + g));
     combine(&mut solver.memory.free_flight, [(1.0, &start.displacement), (g, &start.velocity)]);
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
-    solver.follow(state);
+    solver.update_rotations(state);
     // `state.net_force` is overwritten at the end of the step.
     let mut net_force = std::mem::take(&mut state.net_force);
     solver.add_mouse_spring_force(spring_at_start, &mut net_force);
@@ -91,7 +91,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         ],
     );
     combine(state.displacement.overwrite(), [(1.0, &middle.displacement), (h - g, &middle.velocity)]);
-    solver.follow(state);
+    solver.update_rotations(state);
     let backward = Stage {
         inertia: 1.0 / (w * w),
         from_start: false,

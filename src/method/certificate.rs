@@ -60,7 +60,7 @@ pub fn support_stiffness(
     for h in [H, -H] {
         trial.copy_from(state);
         supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
-        system.follow(&mut trial, Kinematics::Corotated);
+        system.update_rotations(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
         pattern.restrict(forces.residual(), &mut workspace.free);
@@ -77,7 +77,7 @@ pub fn support_stiffness(
         let mut increment: Vec<_> = ahead.iter().zip(&trial.displacement).map(|(a, b)| (a - b) / (2.0 * H)).collect();
         supports.put(mesh, load_factor + h, Kinematics::Corotated, &mut trial.displacement);
         pattern.advance(&free, h, &mut trial.displacement);
-        system.follow(&mut trial, Kinematics::Corotated);
+        system.update_rotations(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
         // Along the free unknowns the forces balance up to the error of `free`, which therefore enters quadratically.

@@ -250,7 +250,7 @@ pub(crate) fn measure(
     timed(&mut timings.assemble, || {
         let matrix = tangent.map(|tangent| (tangent, &mut workspace.matrix));
         if follow {
-            problem.follow_and_linearize(state, kinematics, forces, matrix);
+            problem.update_and_linearize(state, kinematics, forces, matrix);
         } else {
             problem.linearize(state, forces, matrix);
         }

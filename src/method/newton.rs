@@ -250,7 +250,7 @@ impl Newton {
     }
 
     /// Follows the path by a step.
-    fn follow(&mut self, it: &mut Iteration<'_>) {
+    fn step_on_path(&mut self, it: &mut Iteration<'_>) {
         let NewtonPhase::Path(follower) = &mut self.phase else { return };
         let Iteration { problem, forces, workspace, timings, state, solves_left, .. } = it;
         let mut equations = StaticEquations::new(problem, forces, workspace, timings);
@@ -319,7 +319,7 @@ fn softening(it: &mut Iteration<'_>) -> f64 {
             for (u, d) in trial.displacement.overwrite().iter_mut().zip(&*nodal) {
                 *u += d * by;
             }
-            problem.follow_and_linearize(trial, Kinematics::Corotated, forces, None);
+            problem.update_and_linearize(trial, Kinematics::Corotated, forces, None);
             let dot = |f: &[Vector2<f64>]| nodal.iter().zip(f).map(|(d, f)| d.dot(f)).sum::<f64>();
             let internal = dot(forces.internal());
             if !loads_vary {
@@ -376,7 +376,7 @@ impl Method for Newton {
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         self.solves = 1;
         if let NewtonPhase::Path(_) = self.phase {
-            self.follow(it);
+            self.step_on_path(it);
             return Ok(());
         }
         self.steps += 1;
@@ -385,7 +385,7 @@ impl Method for Newton {
             self.from_rest = it.is_at_rest();
             if self.from_rest && supports.largest_load_step() < 1.0 {
                 self.begin_path();
-                self.follow(it);
+                self.step_on_path(it);
                 return Ok(());
             }
         }

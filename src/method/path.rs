@@ -65,7 +65,7 @@ impl StaticEquations<'_> {
         for h in [step, -step] {
             trial.copy_from(state);
             problem.supports().put(system.mesh(), factor + h, Kinematics::Corotated, &mut trial.displacement);
-            problem.follow_and_linearize(trial, Kinematics::Corotated, forces, None);
+            problem.update_and_linearize(trial, Kinematics::Corotated, forces, None);
             problem.balance(trial, Kinematics::Corotated, factor + h, forces);
             pattern.restrict(forces.residual(), free);
             rate.iter_mut().zip(&*free).for_each(|(rate, f)| *rate += f / (2.0 * h));
@@ -608,7 +608,7 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     for _ in 0..MAX_HALVINGS {
         trial.copy_from(state);
         pattern.advance(free, fraction, &mut trial.displacement);
-        problem.system().follow(trial, Kinematics::Corotated);
+        problem.system().update_rotations(trial, Kinematics::Corotated);
         let after = problem.energy(trial, factor);
         if after.is_finite() && after <= before - SUFFICIENT * fraction * promised + noise {
             state.copy_from(trial);

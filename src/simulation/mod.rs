@@ -224,11 +224,11 @@ impl Simulation {
         let mut body = Body { scene, problem, state };
         let process = Process::new(&mut body)?;
         let mut simulation = Self { body, process, status: Status::Running };
-        simulation.judge();
+        simulation.update_status();
         Ok(simulation)
     }
 
-    fn judge(&mut self) {
+    fn update_status(&mut self) {
         self.status = match &self.process {
             Process::Search(search) => search.status().clone(),
             Process::Motion(motion) => motion.status(&self.body.scene, &self.body.state),
@@ -244,7 +244,7 @@ impl Simulation {
             }
             Process::Motion(motion) => motion.reset(&mut self.body),
         }
-        self.judge();
+        self.update_status();
     }
 
     /// Restarts from this displacement, m, one vector per node, with zero velocity; fixed components are set to the
@@ -320,7 +320,7 @@ impl Simulation {
             Process::Search(_) => return self.restore(moment.state()),
             Process::Motion(motion) => motion.return_to(&mut self.body, moment),
         }
-        self.judge();
+        self.update_status();
         Ok(())
     }
 
@@ -330,7 +330,7 @@ impl Simulation {
             Process::Search(search) => search.restart(&mut self.body, Restart::AtRest),
             Process::Motion(motion) => motion.begin(&mut self.body),
         }
-        self.judge();
+        self.update_status();
     }
 
     /// Changes the scene, recomputing only what has changed. The state is kept if the mesh is unchanged: a search
@@ -366,7 +366,7 @@ impl Simulation {
                 Process::Motion(motion) => motion.edit(body, &before, change)?,
             }
         }
-        self.judge();
+        self.update_status();
         Ok(())
     }
 
@@ -507,7 +507,7 @@ impl Simulation {
             Process::Search(search) => search.pulled(&mut self.body, moved_only),
             Process::Motion(motion) => motion.pulled(&self.body),
         }
-        self.judge();
+        self.update_status();
     }
 
     /// Performs one iteration (assemble, factorize, solve, and the rotations and residual of the new state), or one
@@ -518,7 +518,7 @@ impl Simulation {
             Process::Search(search) => search.step(&mut self.body),
             Process::Motion(motion) => motion.step(&mut self.body),
         }
-        self.judge();
+        self.update_status();
         &self.status
     }
 
@@ -558,7 +558,7 @@ impl Simulation {
             Process::Search(search) => search.stop(&mut self.body),
             Process::Motion(motion) => motion.stop(&self.body),
         }
-        self.judge();
+        self.update_status();
     }
 
     /// Computes properties of the final state that do not depend on the method, at the cost of some solves; the result
@@ -670,7 +670,7 @@ impl Simulation {
         }
         let Body { problem, state, .. } = &self.body;
         let nodal = nodal.get_or_insert_with(|| NodalStress::empty(*problem.material()));
-        nodal.follow(problem, state, self.kinematics(), scratch);
+        nodal.update(problem, state, self.kinematics(), scratch);
         field.nodal_values(nodal, values);
     }
 

@@ -133,7 +133,7 @@ impl TimeStepping {
     /// Starts a motion from the current state and velocity.
     pub(super) fn begin(&mut self, body: &mut Body) {
         self.linear.invalidate();
-        body.problem.system().follow(&mut body.state, self.kinematics());
+        body.problem.system().update_rotations(&mut body.state, self.kinematics());
         self.begin_steps(body);
         let Body { scene, problem, state } = body;
         self.counts = Counts::default();
@@ -150,7 +150,7 @@ impl TimeStepping {
         self.linear.set_in_use(*is_linear);
         // Recomputed edge angles would differ by rounding errors.
         if *method != body.scene.solver.method {
-            body.problem.system().follow(&mut body.state, self.kinematics());
+            body.problem.system().update_rotations(&mut body.state, self.kinematics());
         }
         self.begin_steps(body);
         (self.ledger, self.counts, self.report) = (*ledger, *counts, *report);
@@ -191,7 +191,7 @@ impl TimeStepping {
             return Ok(());
         }
         problem.system().pattern().stop_fixed(&mut state.velocity);
-        problem.system().follow(state, self.kinematics());
+        problem.system().update_rotations(state, self.kinematics());
         problem.set_time(state.time);
         state.knows_net_force = false;
         self.stopped = None;
@@ -317,7 +317,7 @@ impl TimeStepping {
 
     /// Recomputes the start of a step with another strain measure.
     fn see(&mut self, body: &mut Body, kinematics: Kinematics) {
-        body.problem.system().follow(&mut body.state, kinematics);
+        body.problem.system().update_rotations(&mut body.state, kinematics);
         body.state.knows_net_force = false;
         self.start.copy_from(&body.state);
     }

@@ -238,7 +238,7 @@ impl Search {
             self.measure_forces(body, &mut workspace, why == Restart::AtRest, wanted, &mut unmeasured);
         }
         let verdict = self.with_method(body, &mut workspace, &mut unmeasured, |method, it| method.judge(it));
-        self.follow(body, &mut workspace, verdict, &mut unmeasured);
+        self.apply_verdict(body, &mut workspace, verdict, &mut unmeasured);
         self.workspace = Some(workspace);
     }
 
@@ -277,7 +277,7 @@ impl Search {
             Ok(()) => method.judge(it),
             Err(error) => method.recover(it, error),
         });
-        self.follow(body, &mut workspace, verdict, &mut timings);
+        self.apply_verdict(body, &mut workspace, verdict, &mut timings);
         self.workspace = Some(workspace);
         self.timings.add(&timings);
         self.last_iteration = timings;
@@ -305,7 +305,7 @@ impl Search {
     }
 
     /// Carries out the method's decision.
-    fn follow(&mut self, body: &mut Body, workspace: &mut Workspace, verdict: Verdict, timings: &mut Timings) {
+    fn apply_verdict(&mut self, body: &mut Body, workspace: &mut Workspace, verdict: Verdict, timings: &mut Timings) {
         match verdict {
             Verdict::Continue => {}
             Verdict::Changed => self.measure(body, workspace, timings),

@@ -40,11 +40,11 @@ impl ErrorEstimate {
     #[must_use]
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let mut result = Self::default();
-        result.follow(problem, state, nodal);
+        result.update(problem, state, nodal);
         result
     }
 
-    fn follow(&mut self, problem: &Problem, state: &State, nodal: &NodalStress) {
+    fn update(&mut self, problem: &Problem, state: &State, nodal: &NodalStress) {
         let mesh = problem.system().mesh();
         let entry = mesh.element().entry();
         let moduli = problem.material().membrane();

@@ -206,7 +206,7 @@ impl NodalStress {
     #[must_use]
     pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let mut result = Self::empty(*problem.material());
-        result.follow(problem, state, kinematics, &mut RecoveryScratch::default());
+        result.update(problem, state, kinematics, &mut RecoveryScratch::default());
         result
     }
 
@@ -218,7 +218,7 @@ impl NodalStress {
 
     /// Recovers another state, without allocating if the mesh is the same.
     #[doc(hidden)]
-    pub fn follow(
+    pub fn update(
         &mut self,
         problem: &Problem,
         state: &State,

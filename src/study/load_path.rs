@@ -161,12 +161,12 @@ impl LoadPath {
     /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
-        Self::follow(scene, &mut |_| ControlFlow::Continue(()))
+        Self::observed(scene, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Follows as [`Self::of`] with progress reports; a cancelled path ends early.
+    /// Follows the path as [`Self::of`] with progress reports; a cancelled path ends early.
     #[must_use]
-    pub fn follow(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
+    pub fn observed(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
         Tracer::new(&simulation)?.trace(DRAWN, observe)
     }

@@ -45,7 +45,7 @@ fn smallest_eigenvalue(simulation: &Simulation) -> f64 {
         let mut u = state.displacement().to_vec();
         pattern.add_free(direction, by, &mut u);
         state = state.with_displacement(u).unwrap();
-        system.follow(&mut state, Kinematics::Corotated);
+        system.update_rotations(&mut state, Kinematics::Corotated);
         problem.linearize(&state, &mut forces, None);
         problem.balance(&state, Kinematics::Corotated, 1.0, &mut forces);
         let mut free = vec![0.0; n];

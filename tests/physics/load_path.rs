@@ -81,7 +81,7 @@ fn moved_supports_do_the_work_that_is_stored() {
 #[test]
 fn a_cancelled_path_is_reported_as_interrupted() {
     let mut asked = 0;
-    let path = LoadPath::follow(&scene("jump"), &mut |_| {
+    let path = LoadPath::observed(&scene("jump"), &mut |_| {
         asked += 1;
         if asked < 20 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });

@@ -81,7 +81,7 @@ fn rolled_state(problem: &Problem, angle: f64) -> State {
             Vector2::new(x.x * 0.5 - s * x.y, 0.7 * x.x + c * x.y) - x
         });
         state = state.with_displacement(u.collect()).unwrap();
-        problem.system().follow(&mut state, Kinematics::Corotated);
+        problem.system().update_rotations(&mut state, Kinematics::Corotated);
     }
     state
 }
@@ -104,7 +104,7 @@ fn the_force_is_the_gradient_of_the_potential_beyond_a_full_rotation() {
                     let mut u = state.displacement().to_vec();
                     u[node][axis] += step;
                     let mut moved = state.with_displacement(u).unwrap();
-                    problem.system().follow(&mut moved, Kinematics::Corotated);
+                    problem.system().update_rotations(&mut moved, Kinematics::Corotated);
                     problem.loads().potential(&moved, FACTOR)
                 };
                 let numeric = -(potential(STEP) - potential(-STEP)) / (2.0 * STEP);

@@ -137,7 +137,7 @@ impl Tally {
 
 /// Checks for random scenes that |claimed − true error| is at most the claimed own error. The true error is taken from
 /// the finer of two independent solutions, and 1.5 times their distance is allowed for their own error.
-fn judge(seeds: impl Iterator<Item = u64>) -> Tally {
+fn compare_scenes(seeds: impl Iterator<Item = u64>) -> Tally {
     let mut tally = Tally::default();
     for seed in seeds {
         let scene = random::scene(seed);
@@ -187,7 +187,7 @@ fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
     let next = AtomicUsize::new(0);
     let untaken = || std::iter::from_fn(|| seeds.get(next.fetch_add(1, Ordering::Relaxed)).copied());
     let tally = std::thread::scope(|scope| {
-        let parts: Vec<_> = (0..threads).map(|_| scope.spawn(|| judge(untaken()))).collect();
+        let parts: Vec<_> = (0..threads).map(|_| scope.spawn(|| compare_scenes(untaken()))).collect();
         parts.into_iter().map(|part| part.join().unwrap()).fold(Tally::default(), Tally::with)
     });
     println!("{tally:?}");

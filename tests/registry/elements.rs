@@ -334,7 +334,7 @@ fn patch_test(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
         let mut linear = state(&problem, |x| x + gradient * x + Vector2::new(0.4, -0.1));
-        problem.system().follow(&mut linear, Kinematics::Linear);
+        problem.system().update_rotations(&mut linear, Kinematics::Linear);
         let turned = state(&problem, |x| turn.apply(stretch * x));
         assert!(turned.rotations().iter().all(|r| (r.c - turn.c).hypot(r.s - turn.s) < 1e-13));
         for state in [linear, turned] {
@@ -620,7 +620,7 @@ fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind
     let v: Vec<_> = nodes(&problem).iter().map(|x| Vector2::new((3.0 * x.y).sin() + x.x, x.x * x.y)).collect();
     let small: Vec<_> = v.iter().map(|v| v * 1e-3).collect();
     let mut strained = common_state(&problem, &small);
-    system.follow(&mut strained, Kinematics::Linear);
+    system.update_rotations(&mut strained, Kinematics::Linear);
     let elastic = forces(&problem, &strained);
     let viscous = force(&rest, StrainRate::Velocity(&small));
     let size = viscous.iter().map(|f| f.norm()).fold(0.0, f64::max);

@@ -344,7 +344,7 @@ impl Session {
             }
             std::mem::take(&mut rollback.is_another_document)
         });
-        self.follow_scene(&scene);
+        self.scene_changed(&scene);
         if is_another_document {
             self.start_document();
         }
@@ -426,7 +426,7 @@ impl Session {
             if let Some(geometry) = geometry {
                 self.geometry = geometry;
             }
-            self.follow_scene(&scene);
+            self.scene_changed(&scene);
         }
     }
 }

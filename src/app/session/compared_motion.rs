@@ -20,7 +20,7 @@ pub(crate) struct ComparedMotion {
 }
 
 impl ComparedMotion {
-    /// Returns the time step of the scene, s; `None` before the first [`Self::follow`].
+    /// Returns the time step of the scene, s; `None` before the first [`Self::set_scene`].
     pub(crate) fn time_step(&self) -> Option<f64> {
         self.scene.as_ref().map(|scene| scene.dynamics.time_step)
     }
@@ -52,7 +52,7 @@ impl ComparedMotion {
 
     /// Applies a changed scene. Returns `true` if the motion has to restart, because integrator, element or mesh have
     /// changed.
-    pub(crate) fn follow(&mut self, wanted: Scene) -> bool {
+    pub(crate) fn set_scene(&mut self, wanted: Scene) -> bool {
         if self.scene.as_ref() == Some(&wanted) {
             return false;
         }
@@ -110,13 +110,13 @@ mod tests {
             scene.moving(integrator, 0.01)
         };
         let mut motion = ComparedMotion::default();
-        assert!(motion.follow(fall(9.81, IntegratorKind::TrBdf2)));
+        assert!(motion.set_scene(fall(9.81, IntegratorKind::TrBdf2)));
         (0..5).for_each(|_| motion.step());
         let tip = motion.tip().unwrap();
         assert!(tip.y < 0.0 && motion.step_seconds().is_some());
-        assert!(!motion.follow(fall(20.0, IntegratorKind::TrBdf2)), "the motion continues");
+        assert!(!motion.set_scene(fall(20.0, IntegratorKind::TrBdf2)), "the motion continues");
         assert_eq!(motion.tip(), Some(tip));
-        assert!(motion.follow(fall(20.0, IntegratorKind::ImplicitEuler)));
+        assert!(motion.set_scene(fall(20.0, IntegratorKind::ImplicitEuler)));
         assert!(motion.step_seconds().is_none() && motion.tip() == Some(Vector2::zeros()));
     }
 
@@ -124,7 +124,7 @@ mod tests {
     fn an_unstable_motion_stops_and_names_the_reason() {
         let scene = Scene::beam(2.0, 0.5).clamp("left").gravity([0.0, -9.81]);
         let mut motion = ComparedMotion::default();
-        motion.follow(scene.moving(IntegratorKind::SymplecticEuler, 0.01));
+        motion.set_scene(scene.moving(IntegratorKind::SymplecticEuler, 0.01));
         for _ in 0..1000 {
             if !motion.is_sound() {
                 break;

@@ -361,7 +361,7 @@ impl ComparedSolve {
     }
 
     /// Solves a scene to the end, and waits for it.
-    pub(crate) fn settle(&mut self, wanted: Scene, equations: &[Equations]) {
+    pub(crate) fn solve_to_end(&mut self, wanted: Scene, equations: &[Equations]) {
         let system = Equations::of(equations, &wanted);
         self.body = set_up(model(None, system), &wanted);
         if let Body::Here(simulation) = &mut self.body {
@@ -415,7 +415,7 @@ mod tests {
     }
 
     /// Advances until no work is left; returns the number of frames.
-    fn settle(solve: &mut ComparedSolve, scene: &Scene) -> u32 {
+    fn iterate(solve: &mut ComparedSolve, scene: &Scene) -> u32 {
         let mut frames = 0;
         loop {
             solve.advance(scene.clone(), &[], frame(false));
@@ -439,7 +439,7 @@ mod tests {
     fn a_dragged_load_continues_and_its_cost_is_measured_from_rest() {
         let (light, heavy) = (scene(MethodKind::Newton, [12, 2], 1e3), scene(MethodKind::Newton, [12, 2], 4e6));
         let mut solve = ComparedSolve::new(None);
-        assert!(settle(&mut solve, &light) > 0, "one iteration per frame");
+        assert!(iterate(&mut solve, &light) > 0, "one iteration per frame");
         while !solve.waits() {
             solve.advance(heavy.clone(), &[], frame(true));
             assert!(solve.end().is_none(), "the load is still held");
@@ -447,7 +447,7 @@ mod tests {
         let (iterations, probe) = independent(&heavy);
         let (dragged, is_good) = solve.answer().unwrap();
         assert!(is_good && (dragged.u - probe.u).norm() < 1e-6 * probe.u.norm());
-        settle(&mut solve, &heavy);
+        iterate(&mut solve, &heavy);
         let end = solve.end().unwrap();
         assert_eq!((end.iterations, &end.probes[0]), (iterations, &probe));
     }
@@ -459,7 +459,7 @@ mod tests {
         solve.advance(scene(30.0), &[], frame(false));
         assert!(solve.is_away() && solve.is_outdated() && solve.answer().is_none());
         let last = scene(60.0);
-        settle(&mut solve, &last);
+        iterate(&mut solve, &last);
         let (iterations, probe) = independent(&last);
         let end = solve.end().unwrap();
         assert!((end.probes[0].u - probe.u).norm() < 1e-6 * probe.u.norm());
@@ -472,11 +472,11 @@ mod tests {
         let most = independent(&scene).0;
         assert!(most > 2, "the limit would not be reached");
         let mut solve = ComparedSolve::new(Some(2));
-        settle(&mut solve, &scene);
+        iterate(&mut solve, &scene);
         assert_eq!(solve.end().map(|end| (&end.status, end.iterations)), Some((&Status::Running, 2)));
         solve.restart(None);
         assert!(solve.end().is_none());
-        settle(&mut solve, &scene);
+        iterate(&mut solve, &scene);
         assert_eq!(solve.end().map(|end| end.iterations), Some(most));
     }
 
@@ -486,9 +486,9 @@ mod tests {
         let mut free = good.clone();
         free.supports.clear();
         let mut solve = ComparedSolve::new(None);
-        settle(&mut solve, &free);
+        iterate(&mut solve, &free);
         assert!(matches!(solve.activity(), Activity::Refused(_)) && solve.end().is_none());
-        settle(&mut solve, &good);
+        iterate(&mut solve, &good);
         assert!(matches!(solve.activity(), Activity::Rests(end) if end.status.is_success()));
     }
 }

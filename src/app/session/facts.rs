@@ -37,7 +37,7 @@ fn curve(scene: &Scene, watch: Watch<'_>) -> Option<Curve> {
     if let Some(curve) = LoadCurve::observed(scene, watch) {
         return Some(Curve::Beam(Box::new((curve, own()))));
     }
-    Some(Curve::Path(Box::new((LoadPath::follow(scene, watch)?, own()))))
+    Some(Curve::Path(Box::new((LoadPath::observed(scene, watch)?, own()))))
 }
 
 /// Results of the current scene; each is `None` until it has been computed.

@@ -291,8 +291,8 @@ impl Session {
     }
 
     /// Records the presses of the pointer: edits during one press are one undo step.
-    pub(crate) fn follow_press(&mut self, press: Press) {
-        self.undo.follow_press(press);
+    pub(crate) fn record_press(&mut self, press: Press) {
+        self.undo.record_press(press);
     }
 
     /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
@@ -378,14 +378,14 @@ impl Session {
         }
         self.scene = scene;
         self.note_size();
-        self.follow_scene(&before);
+        self.scene_changed(&before);
         let known = self.linear.take();
         self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
         Ok(())
     }
 
     /// Updates everything that depends on the simulation's scene after it has changed from `before`.
-    fn follow_scene(&mut self, before: &Scene) {
+    fn scene_changed(&mut self, before: &Scene) {
         self.changed.scene = true;
         let scene = self.simulation.scene();
         if scene == before {
@@ -395,7 +395,7 @@ impl Session {
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
         self.changed.body |= is_another_body;
-        self.playback.follow(scene, is_another_body);
+        self.playback.change_scene(scene, is_another_body);
         self.facts.turn_to(scene);
     }
 
@@ -570,7 +570,7 @@ impl Session {
 
     fn certify(&mut self) {
         self.simulation.certify();
-        self.quality.follow(&self.simulation);
+        self.quality.update(&self.simulation);
     }
 
     /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Results

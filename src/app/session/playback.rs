@@ -236,7 +236,7 @@ impl Playback {
 
     /// Adapts to a change of the scene; `is_another` is `true` if the body has changed. Recorded moments belong to the
     /// previous scene and are removed.
-    pub(crate) fn follow(&mut self, scene: &Scene, is_another: bool) {
+    pub(crate) fn change_scene(&mut self, scene: &Scene, is_another: bool) {
         self.discard_future();
         self.discard_past();
         if is_another {

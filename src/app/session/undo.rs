@@ -45,7 +45,7 @@ pub(crate) struct UndoHistory {
 impl UndoHistory {
     /// Records the state of the pointer: edits during one press, or during both presses of a double click, are one
     /// step.
-    pub(crate) fn follow_press(&mut self, press: Press) {
+    pub(crate) fn record_press(&mut self, press: Press) {
         let Press { now, is_pressed, goes_on, double_click } = press;
         if goes_on && !is_pressed {
             return;

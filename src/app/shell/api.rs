@@ -128,7 +128,7 @@ impl Lab {
 
     /// Fixes the camera and the range of the colour map.
     pub(crate) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
-        self.desk.viewport.look(camera);
+        self.desk.viewport.set_camera(camera);
         self.desk.view.fixed_range = Some(range);
     }
 
@@ -247,7 +247,7 @@ impl Lab {
     /// [`SimulationError`]; the lab is unchanged.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         self.desk.session.set_scene(scene)?;
-        self.follow_session();
+        self.apply_session_changes();
         Ok(())
     }
 

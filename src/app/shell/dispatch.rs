@@ -17,7 +17,7 @@ use crate::study::Extent;
 
 impl Lab {
     /// Updates the window after changes of the session.
-    pub(super) fn follow_session(&mut self) {
+    pub(super) fn apply_session_changes(&mut self) {
         let Desk { session, viewport, view, panel, budget, compare, motions } = &mut self.desk;
         let changed = session.take_changed();
         if changed == Changed::default() {
@@ -51,7 +51,7 @@ impl Lab {
     /// Applies an edit, and shows a message if it is refused.
     pub(super) fn apply(&mut self, ctx: &egui::Context, edit: Edit) -> bool {
         let applied = self.desk.session.apply(edit);
-        self.follow_session();
+        self.apply_session_changes();
         if let Err(error) = &applied {
             self.say(ctx, said(error));
         }
@@ -90,7 +90,7 @@ impl Lab {
                     Ok(_) => messages.remove(label),
                     Err(error) => messages.insert(label, (&error).into()),
                 };
-                self.follow_session();
+                self.apply_session_changes();
             }
             Action::Apply(scene, iterations) => {
                 self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MAX_ITERATIONS)));
@@ -183,7 +183,7 @@ impl Lab {
     /// Cancels the background solve.
     fn cancel(&mut self) {
         self.desk.session.cancel();
-        self.follow_session();
+        self.apply_session_changes();
     }
 
     /// Pauses, and makes one step in the current mode.
@@ -198,7 +198,7 @@ impl Lab {
         let line = self.lesson.as_ref().and_then(|lesson| lesson.learn.next_line(session.simulation(), ended));
         let Some(line) = line.filter(|_| !session.is_in_background()) else {
             session.step();
-            return self.follow_session();
+            return self.apply_session_changes();
         };
         session.pause();
         if ended && line == learn::AT_REST {
@@ -225,7 +225,7 @@ impl Lab {
                 lesson.learn.line = 0;
             }
         }
-        self.follow_session();
+        self.apply_session_changes();
     }
 
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.

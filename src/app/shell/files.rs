@@ -22,7 +22,7 @@ impl Lab {
 
     fn try_open(&mut self, source: Source) -> Result<(), EditError> {
         let opened = self.desk.session.apply(Edit::Open(source));
-        self.follow_session();
+        self.apply_session_changes();
         opened?;
         if let Some(path) = self.desk.session.document().path() {
             self.settings.add_recent(path);

@@ -186,7 +186,7 @@ impl Lab {
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
-        self.follow_session();
+        self.apply_session_changes();
         self.iterates()
     }
 
@@ -218,16 +218,16 @@ impl Lab {
     pub fn solve(&mut self) {
         let has_search = *self.simulation().status() == Status::Running;
         self.desk.session.solve(self.desk.view.drawer == Some(Drawer::Curve));
-        self.follow_session();
+        self.apply_session_changes();
         let Desk { session, view, compare, .. } = &mut self.desk;
         if session.is_motion() {
             return;
         }
         if let Some(lesson) = &mut self.lesson {
-            lesson.learn.settle(session.scene());
+            lesson.learn.wait(session.scene());
         }
         if view.mode == Mode::Compare {
-            compare.settle(session.scene(), session.simulation().system());
+            compare.solve_to_end(session.scene(), session.simulation().system());
         }
         if has_search {
             self.show_last_line();

@@ -34,7 +34,7 @@ impl Lab {
         palette::install(ui.ctx());
         language::speak(self.settings.language);
         let mut actions = Vec::new();
-        self.desk.session.follow_press(press(ui.ctx()));
+        self.desk.session.record_press(press(ui.ctx()));
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
         self.desk.budget.poll(ui.ctx());
@@ -279,7 +279,7 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
-        viewport.follow(ui, &content);
+        viewport.fit_camera(ui, &content);
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);

@@ -58,7 +58,7 @@ impl Lab {
 
     /// Shows the notices of the session.
     pub(super) fn show_notices(&mut self, ctx: &egui::Context) {
-        self.follow_session();
+        self.apply_session_changes();
         for (integrator, step) in self.desk.session.take_unstable() {
             let integrator = tr(integrator.id());
             let text = match step {

@@ -21,7 +21,7 @@ pub(crate) struct Quality {
 
 impl Quality {
     /// Computes the quality of the current state, unless it is already known.
-    pub(crate) fn follow(&mut self, simulation: &Simulation) {
+    pub(crate) fn update(&mut self, simulation: &Simulation) {
         if self.is_of(simulation) {
             return;
         }

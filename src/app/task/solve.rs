@@ -227,7 +227,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlo
     if is_displayed && has_ended && report(Progress::Phase(Phase::Certifying)).is_continue() {
         bodies.simulation.certify();
         let mut own = Quality::default();
-        own.follow(&bodies.simulation);
+        own.update(&bodies.simulation);
         quality = Some(own);
     }
     Ok(Box::new(Solved { snapshot: Snapshot { bodies, geometry, residuals }, quality }))

@@ -49,7 +49,7 @@ impl CameraController {
 
     /// Sets the box that the camera fits, m; boxes that are not finite are ignored. To be called for converged states
     /// and motions only.
-    pub(crate) fn follow(&mut self, whole: Box2) {
+    pub(crate) fn set_whole(&mut self, whole: Box2) {
         let sound = |p: &Vector2<f64>| p.x.is_finite() && p.y.is_finite();
         if whole.iter().all(sound) {
             self.whole = whole;
@@ -72,7 +72,7 @@ impl CameraController {
     }
 
     /// Jumps to `camera` without animation, so that dragging does not lag.
-    pub(crate) fn look(&mut self, camera: Camera) {
+    pub(crate) fn set_camera(&mut self, camera: Camera) {
         self.own = Some(camera);
         self.shown = camera;
         self.is_new = false;
@@ -127,7 +127,7 @@ mod tests {
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
         let first = controller.camera();
         assert_eq!(first, fitted(&controller));
-        controller.follow([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
+        controller.set_whole([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
         let goal = fitted(&controller);
         let distance = |camera: Camera| (camera.center - goal.center).norm();
         let mut last = distance(first);
@@ -149,7 +149,7 @@ mod tests {
         let after = |frames: u32| {
             let mut controller = CameraController::new(REST);
             controller.aim(fitted(&controller), None);
-            controller.follow([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
+            controller.set_whole([Vector2::new(-50.0, -20.0), Vector2::new(60.0, 30.0)]);
             for _ in 0..frames {
                 controller.aim(fitted(&controller), Some(0.12 / f64::from(frames)));
             }
@@ -163,7 +163,7 @@ mod tests {
     fn without_animation_the_camera_is_set_at_once() {
         let mut controller = CameraController::new(REST);
         controller.aim(fitted(&controller), None);
-        controller.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        controller.set_whole([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
         assert!(!controller.aim(fitted(&controller), None));
         assert_eq!(controller.camera(), fitted(&controller));
     }
@@ -173,8 +173,8 @@ mod tests {
         let mut controller = CameraController::new(REST);
         controller.aim(fitted(&controller), None);
         let own = Camera { center: Vector2::new(3.0, 1.0), scale: 200.0 };
-        controller.look(own);
-        controller.follow([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
+        controller.set_camera(own);
+        controller.set_whole([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
         assert_eq!(controller.camera(), own);
         controller.fit();
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn a_state_that_is_not_finite_is_not_followed() {
         let mut controller = CameraController::new(REST);
-        controller.follow([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
+        controller.set_whole([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
         assert_eq!(controller.whole(), REST);
     }
 }

@@ -108,7 +108,7 @@ impl Grip {
     }
 
     /// Moves the handle with the pointer, which is now at `at`; by a tenth of the distance if `slow`.
-    pub(crate) fn follow(&mut self, at: Pos2, slow: bool) {
+    pub(crate) fn drag_to(&mut self, at: Pos2, slow: bool) {
         const SLOW: f32 = 0.1;
         let part = if slow { SLOW } else { 1.0 };
         self.by += part * (at - self.last);

@@ -151,7 +151,7 @@ impl Pointer {
     }
 
     /// Processes the pointer over the view with this `response`.
-    pub(crate) fn follow(
+    pub(crate) fn process(
         &mut self,
         ui: &Ui,
         response: &Response,
@@ -203,7 +203,7 @@ impl Pointer {
         }
         self.hover(ui, response, targets, body, down);
         if interaction.camera == CameraMove::None {
-            interaction.camera = self.look(ui, response, targets, fingers);
+            interaction.camera = self.move_camera(ui, response, targets, fingers);
         }
         interaction
     }
@@ -233,7 +233,7 @@ impl Pointer {
     ) {
         match &mut self.held {
             Held::Tip(grip) => {
-                grip.follow(at, keys.alt || keys.ctrl);
+                grip.drag_to(at, keys.alt || keys.ctrl);
                 interaction.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
             }
             Held::Body(press) if body == Target::Grabbable => {
@@ -276,7 +276,13 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn look(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> CameraMove {
+    fn move_camera(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        targets: &HitTargets<'_>,
+        fingers: Option<Vec2>,
+    ) -> CameraMove {
         let mut camera = targets.camera;
         let mut look = CameraMove::None;
         // Two fingers move the view, whatever is under them.

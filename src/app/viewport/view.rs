@@ -184,8 +184,8 @@ impl Viewport {
     }
 
     /// Sets the camera; it no longer follows the body.
-    pub(crate) fn look(&mut self, camera: Camera) {
-        self.camera.look(camera);
+    pub(crate) fn set_camera(&mut self, camera: Camera) {
+        self.camera.set_camera(camera);
     }
 
     /// Changes to another mesh. A camera set by the user is kept.
@@ -236,7 +236,7 @@ impl Viewport {
         };
         self.rect = rect;
         let body = if content.session.is_in_background() { Target::Visible } else { Target::Grabbable };
-        let interaction = self.pointer.follow(ui, &response, &targets, body);
+        let interaction = self.pointer.process(ui, &response, &targets, body);
         (response, interaction)
     }
 
@@ -290,7 +290,7 @@ impl Viewport {
     pub(crate) fn take(&mut self, interaction: &Interaction, response: &Response, content: &Content<'_>) {
         match interaction.camera {
             CameraMove::None => {}
-            CameraMove::To(camera) => self.camera.look(camera),
+            CameraMove::To(camera) => self.camera.set_camera(camera),
             CameraMove::Fit => self.camera.fit(),
         }
         // On a card of Learn a click selects a triangle.
@@ -361,7 +361,7 @@ impl Viewport {
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
     /// converged are not followed, because they may be anywhere.
-    pub(crate) fn follow(&mut self, ui: &Ui, content: &Content<'_>) {
+    pub(crate) fn fit_camera(&mut self, ui: &Ui, content: &Content<'_>) {
         // Moving the camera would also move the point that the pointer has grabbed.
         if self.pointer.holds() {
             return;
@@ -393,7 +393,7 @@ impl Viewport {
                 include(&mut positions(reach));
             }
             self.swept = Some([low, high]).filter(|_| is_motion);
-            self.camera.follow([low, high]);
+            self.camera.set_whole([low, high]);
             let least = least_margins(content, [low, high], size);
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
@@ -409,7 +409,7 @@ impl Viewport {
     pub(crate) fn expect_bending(&mut self, content: &Content<'_>) {
         let (low, high) = content.mesh().bounds();
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
-        self.camera.follow([low, high]);
+        self.camera.set_whole([low, high]);
         let least = least_margins(content, [low, high], self.size());
         let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };

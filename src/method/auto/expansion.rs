@@ -108,7 +108,7 @@ impl Expansion {
                     let terms = first.iter().zip(second.iter());
                     let displacement = probe.displacement.overwrite().iter_mut().zip(terms);
                     displacement.for_each(|(p, (u, v))| *p = u * scale + v * (scale * scale));
-                    problem.follow_and_linearize(probe, Kinematics::Corotated, forces, None);
+                    problem.update_and_linearize(probe, Kinematics::Corotated, forces, None);
                     problem.balance(probe, Kinematics::Corotated, scale, forces);
                     let weight = 0.5 / scale.powi(power);
                     sum.iter_mut().zip(forces.residual()).for_each(|(s, f)| *s += f * weight);
@@ -133,7 +133,7 @@ impl Expansion {
             report.factorizations += 1;
             let (problem, workspace) = (it.problem, &mut *it.workspace);
             let stable = timed(&mut it.timings.factorize, || {
-                problem.system().follow(probe, Kinematics::Corotated);
+                problem.system().update_rotations(probe, Kinematics::Corotated);
                 is_stable(problem, probe, ahead, forces, workspace)
             });
             workspace.tangent = None;

@@ -141,20 +141,20 @@ impl Compare {
     }
 
     /// Solves all panes, and waits for them.
-    pub(crate) fn settle(&mut self, scene: &Scene, system: &Arc<System>) {
-        self.trace.follow(scene);
+    pub(crate) fn solve_to_end(&mut self, scene: &Scene, system: &Arc<System>) {
+        self.trace.set_scene(scene);
         let mut equations = self.equations(scene, system);
         for pane in &mut self.panes.list {
-            pane.solve.settle(pane.setting.apply(scene), &equations);
+            pane.solve.solve_to_end(pane.setting.apply(scene), &equations);
             equations.extend(pane.equations());
             self.trace.record(scene, pane);
         }
-        self.trace.settle(scene);
+        self.trace.wait(scene);
     }
 
     fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
         let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
-        self.trace.follow(input.common.scene);
+        self.trace.set_scene(input.common.scene);
         let equations =
             if self.is_changed(input.common.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
         let mut is_new = false;
@@ -164,7 +164,7 @@ impl Compare {
             let frame = FrameConditions { moves, holds, runs: input.running, until };
             pane.solve.advance(pane.setting.apply(input.common.scene), &equations, frame);
             is_new |= self.trace.record(input.common.scene, pane);
-            pane.judge(input.reference);
+            pane.update_error(input.reference);
         }
         if !holds || !moves {
             self.trace.request_exact(input.common.scene, ctx);
@@ -272,7 +272,7 @@ impl Compare {
         let range = self.share_colors(input.common.view);
         let whole = ui.available_rect_before_wrap();
         let grid = self.panes.lay_out(ui);
-        self.look(ui, input);
+        self.fit_camera(ui, input);
         let reference = input.reference.filter(|_| input.common.view.exact);
         let exact: &[_] = reference.map_or(&[], |reference| &reference.outline);
         let interaction = self
@@ -306,7 +306,7 @@ impl Compare {
 
     /// Fits the camera to all bodies and the reference solution, unless the user has moved it. Panes that have not
     /// converged are ignored.
-    fn look(&mut self, ui: &Ui, input: &CompareInput<'_>) {
+    fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>) {
         let Some(size) = self.panes.common_size() else { return };
         let (low, high) = input.system.mesh().bounds();
         let rest = [low, high];
@@ -331,7 +331,7 @@ impl Compare {
             }
             if !iterates || controller.whole() == rest {
                 controller.set_body(rest);
-                controller.follow(bounds);
+                controller.set_whole(bounds);
             }
         }
         self.panes.aim(ui, |[low, high]| Camera::fit(low, high, size, margins), input.common.eases);

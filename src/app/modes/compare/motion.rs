@@ -168,7 +168,7 @@ impl MotionCompare {
     pub(crate) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
         let mut starts_over = false;
         for pane in &mut self.panes.list {
-            starts_over |= pane.motion.follow(pane.setting.apply(scene));
+            starts_over |= pane.motion.set_scene(pane.setting.apply(scene));
         }
         if starts_over {
             self.reset();
@@ -246,7 +246,7 @@ impl MotionCompare {
         let range = self.panes.share_colors(input.view, |pane| pane.motion.is_sound());
         let whole = ui.available_rect_before_wrap();
         let layout = self.panes.lay_out(ui);
-        self.look(ui, input);
+        self.fit_camera(ui, input);
         let interaction =
             self.panes.show(ui, &layout.cells, (input, &[]), |panes, ui, number| header(panes, ui, number, input));
         grid::color_key(ui, layout.key, layout.key.left(), input.view, range);
@@ -255,7 +255,7 @@ impl MotionCompare {
     }
 
     /// Fits the camera to all states of the bodies so far, unless the user has moved it.
-    fn look(&mut self, ui: &Ui, input: &PaneInput<'_>) {
+    fn fit_camera(&mut self, ui: &Ui, input: &PaneInput<'_>) {
         let Some(size) = self.panes.common_size() else { return };
         let Some(first) = self.panes().iter().find_map(MotionPane::simulation) else { return };
         let rest = first.system().mesh().bounds().into();
@@ -265,7 +265,7 @@ impl MotionCompare {
         let holds = self.panes.holds();
         let controller = self.panes.controller.get_or_insert_with(|| CameraController::new(rest));
         if !holds {
-            controller.follow(swept);
+            controller.set_whole(swept);
         }
         let margins = Margins { sides: 40.0, top: 40.0, bottom: 44.0 };
         self.panes.aim(ui, |[low, high]| Camera::fit(low, high, size, margins), input.eases);

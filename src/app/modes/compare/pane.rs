@@ -113,7 +113,7 @@ impl Pane {
     }
 
     /// Computes the error of the result, if the reference solution is known.
-    pub(super) fn judge(&mut self, reference: Option<&Reference>) {
+    pub(super) fn update_error(&mut self, reference: Option<&Reference>) {
         let probe = self.solve.answer().filter(|(_, good)| *good);
         self.error = reference.zip(probe).and_then(|(reference, (probe, _))| reference.first()?.error_percent(&probe));
     }

@@ -290,11 +290,11 @@ impl<P: ComparedPane> Panes<P> {
             scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-        let interaction = display.pointer.follow(ui, &response, &targets, Target::None);
+        let interaction = display.pointer.process(ui, &response, &targets, Target::None);
         match interaction.camera {
             CameraMove::None => {}
             CameraMove::To(camera) => {
-                controller.look(camera);
+                controller.set_camera(camera);
                 ui.ctx().request_repaint();
             }
             CameraMove::Fit => controller.fit(),

@@ -166,7 +166,7 @@ fn has_several_loads(scene: &Scene) -> bool {
 
 impl Trace {
     /// Updates the trace to a scene; another scene or another direction of its load starts a new curve.
-    pub(super) fn follow(&mut self, scene: &Scene) {
+    pub(super) fn set_scene(&mut self, scene: &Scene) {
         /// Largest difference between two unit vectors that count as the same direction.
         const SAME_DIRECTION: f64 = 1e-6;
         self.axis = Axis::of(scene);
@@ -190,7 +190,7 @@ impl Trace {
     }
 
     /// Computes the exact curve, and waits for it.
-    pub(super) fn settle(&mut self, scene: &Scene) {
+    pub(super) fn wait(&mut self, scene: &Scene) {
         self.exact.wait(scene);
     }
 
@@ -453,8 +453,8 @@ mod tests {
         };
         let scene = pushed(-30_000.0);
         let mut trace = Trace::default();
-        trace.follow(&scene);
-        trace.settle(&scene);
+        trace.set_scene(&scene);
+        trace.wait(&scene);
         let end = trace.line().last().map(|point| point.0);
         assert!(end.is_some_and(|end| end < 30_000.0), "{end:?}");
         assert!(!trace.exact.request(&scene));

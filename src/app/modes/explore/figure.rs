@@ -116,7 +116,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
             for (is_present, radius, step) in [(false, 3.8, 0.7), (true, 7.0, 1.4)] {
                 let mut own = places(Some(is_present));
                 own.retain(is_inside);
-                let (shape, filled) = look(series.mark);
+                let (shape, filled) = marker_shape(series.mark);
                 let points = Points::new(series.name.clone(), own).color(color).shape(shape).filled(filled);
                 // Marks at the same position get different sizes, so that all are visible.
                 plot.points(points.radius((radius - step * smaller as f32).max(2.4)));
@@ -178,7 +178,7 @@ fn color(palette: &Palette, ink: Ink) -> Color32 {
     }
 }
 
-fn look(mark: Mark) -> (MarkerShape, bool) {
+fn marker_shape(mark: Mark) -> (MarkerShape, bool) {
     match mark {
         Mark::Element(element) => (marker(element).0, true),
         Mark::Ring => (MarkerShape::Circle, false),

@@ -224,7 +224,7 @@ impl Learn {
     }
 
     /// Computes the results that the card shows, and waits for them.
-    pub(crate) fn settle(&mut self, scene: &Scene) {
+    pub(crate) fn wait(&mut self, scene: &Scene) {
         match self.card().needs {
             Needs::Nothing => {}
             Needs::Rho => self.rho.wait(scene),
