@@ -28,7 +28,7 @@ fn main() {
             simulation.solve();
         });
         let start = Instant::now();
-        let go_on = &mut |_: warpbeam::study::Progress<'_>| ControlFlow::Continue(());
+        let go_on = &|_: warpbeam::Progress<'_>| ControlFlow::Continue(());
         let (source, own_error) = match scene.analysis {
             Analysis::Dynamic => match MotionReference::new(&scene, Extent::Quick, go_on) {
                 Ok(found) => {

@@ -23,7 +23,7 @@ pub fn report(folder: &Path) -> Result<String, Box<dyn Error>> {
     }
     let stable = bracket.certify().stable;
     let largest = bracket.nodal_stress().largest_von_mises().map_or(0.0, |(_, largest)| largest);
-    let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
+    let study = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(()))?;
     Ok(format!(
         "{}: stable {stable:?}, largest von Mises (Cauchy) stress {largest:.0} Pa, end moved by {:.4} m\n\n{}",
         scene.name,

@@ -135,6 +135,7 @@ mod model;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod plot;
+mod progress;
 #[cfg(feature = "app")]
 #[doc(hidden)]
 pub mod render;
@@ -182,5 +183,6 @@ pub use stress::{NodalStress, PlaneTensor};
 pub use dynamics::{Counts, Ledger, Momentum, StopReason};
 pub use simulation::{Moment, Motion};
 // Measure errors and time.
+pub use progress::{Observer, Progress};
 pub use study::{Extent, Measurement, Reference, Study, StudyError};
 pub use timings::Timings;

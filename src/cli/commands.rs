@@ -1,6 +1,5 @@
 //! Commands without a window.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -56,12 +55,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let status = simulation.status().clone();
     let mut certify_path = Duration::ZERO;
     if status == Status::Converged && certifies && !simulation.is_linear() {
-        let observe = &mut |fraction| {
-            watch.show(fraction, || "following the load path".to_owned());
-            watch.flow()
-        };
         let certified = Instant::now();
-        path = LoadPath::to_result(&simulation, observe);
+        path = LoadPath::to_result(&simulation, &|progress| watch.observe(progress));
         certify_path = certified.elapsed();
     }
     let recovered = Instant::now();
@@ -74,7 +69,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let reference = effort
         .filter(|_| is_static && status.is_success() && !is_elsewhere)
         .filter(|_| !watch.is_cancelled() && !scene.probes.is_empty())
-        .map(|effort| Reference::find(&scene, Some(&simulation), effort, &mut |progress| watch.observe(&progress)));
+        .map(|effort| Reference::find(&scene, Some(&simulation), effort, &|progress| watch.observe(progress)));
     let reference_time = sought.elapsed();
     let interrupted = watch.is_cancelled();
     drop(watch);
@@ -189,10 +184,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let is_png = picture.as_deref().map(is_png).transpose()?;
     out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
     let watch = Watch::new();
-    let path = LoadPath::observed(&scene, &mut |fraction| {
-        watch.show(fraction, || "following the load path".to_owned());
-        watch.flow()
-    });
+    let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
     let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
     drop(watch);
     let (summary, table) = match (&beam, &path) {
@@ -243,12 +235,12 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     let watch = Watch::new();
     let (result, interrupted) = match scene.analysis {
         Analysis::Static => {
-            let study = Study::until_cancelled(&scene, extent(out), &mut |progress| watch.observe(&progress));
+            let study = Study::until_cancelled(&scene, extent(out), &|progress| watch.observe(progress));
             let interrupted = study.as_ref().is_ok_and(|(_, is_partial)| *is_partial);
             (study.map(|(study, _)| (study.table(), plot::study(&study), study.summary())), interrupted)
         }
         Analysis::Dynamic => {
-            let study = MotionStudy::new(&scene, extent(out), &mut |progress| watch.observe(&progress));
+            let study = MotionStudy::new(&scene, extent(out), &|progress| watch.observe(progress));
             let interrupted = study.as_ref().is_ok_and(|study| study.is_partial);
             (study.map(|study| (study.table(), plot::motion_study(&study), study.summary())), interrupted)
         }
@@ -268,7 +260,7 @@ pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCo
     let watch = Watch::new();
     let memory = PeakMemory::watch();
     let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
-    let study = Scaling::new(&scene, extent(out), meter, &mut |progress| watch.observe(&progress));
+    let study = Scaling::new(&scene, extent(out), meter, &|progress| watch.observe(progress));
     drop(watch);
     let study = match study {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
@@ -297,7 +289,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
     let demand = Demand { max_error_percent: error, max_time_ms: time };
     let watch = Watch::new();
-    let tuning = Tuning::of(&scene, demand, &mut |progress| watch.observe(&progress));
+    let tuning = Tuning::of(&scene, demand, &|progress| watch.observe(progress));
     drop(watch);
     let tuning = match tuning {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
@@ -343,7 +335,7 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let watch = Watch::new();
     let observe = |done: usize| {
         watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
-        if watch.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        watch.flow()
     };
     let entries = parallel::map(
         &cases,

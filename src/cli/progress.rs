@@ -1,15 +1,14 @@
 //! Progress of commands that take long, and their cancellation by Ctrl-C or SIGTERM.
 
-use std::cell::Cell;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
+use crate::progress::Progress;
 use crate::simulation::{Simulation, Status};
-use crate::study::Progress;
 
 /// Number of steps of a full bar.
 const FULL: u64 = 10_000;
@@ -28,7 +27,7 @@ const KILLED_BY_INTERRUPT: i32 = 130;
 pub(super) struct Watch {
     bar: ProgressBar,
     began: Instant,
-    drawn: Cell<Option<Instant>>,
+    drawn: Mutex<Option<Instant>>,
     cancelled: Arc<AtomicBool>,
 }
 
@@ -50,7 +49,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {prefix}") {
             bar.set_style(style);
         }
-        Self { bar, began: Instant::now(), drawn: Cell::new(None), cancelled }
+        Self { bar, began: Instant::now(), drawn: Mutex::new(None), cancelled }
     }
 
     /// Returns `true` if the command should end with its partial result.
@@ -67,11 +66,12 @@ impl Watch {
     pub(super) fn show(&self, fraction: f64, message: impl FnOnce() -> String) {
         let now = Instant::now();
         let spent = now.duration_since(self.began);
-        let fresh = self.drawn.get().is_some_and(|drawn| now.duration_since(drawn) < REDRAW);
+        let mut drawn = self.drawn.lock().unwrap_or_else(PoisonError::into_inner);
+        let fresh = drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW);
         if self.bar.is_hidden() || fresh || spent < LONG {
             return;
         }
-        self.drawn.set(Some(now));
+        *drawn = Some(now);
         let fraction = fraction.clamp(0.0, 1.0);
         self.bar.set_position((fraction * FULL as f64) as u64);
         self.bar.set_message(message());
@@ -105,9 +105,9 @@ impl Watch {
     }
 
     /// Shows the progress of a study; returns [`ControlFlow::Break`] if the command should end.
-    pub(super) fn observe(&self, progress: &Progress<'_>) -> ControlFlow<()> {
-        if !progress.now.is_empty() {
-            self.show(progress.fraction, || progress.now.to_string());
+    pub(super) fn observe(&self, progress: Progress<'_>) -> ControlFlow<()> {
+        if let Some(now) = progress.now {
+            self.show(progress.fraction, || now.to_string());
         }
         self.flow()
     }

@@ -1,13 +1,12 @@
 //! Command `record`.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
 use super::draw_args::RecordArgs;
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, text};
-use crate::app::{self, Phase, RecordOptions, RecordProgress, Recorded};
+use crate::app::{self, RecordOptions, Recorded};
 use crate::format::{count, number};
 use crate::scene;
 
@@ -17,11 +16,7 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     let scene = scene::open(&source)?;
     let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language };
     let watch = Watch::new();
-    let observe = &mut |progress: RecordProgress| {
-        watch.show(progress.fraction, || text(&progress));
-        if watch.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let recorded = app::record(&source, scene, &options, &output, observe);
+    let recorded = app::record(&source, scene, &options, &output, &|progress| watch.observe(progress));
     drop(watch);
     let recorded = recorded?;
     if recorded.pictures == 0 {
@@ -37,13 +32,6 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
         eprintln!("warpbeam: {}: {reason}", recorded.status.word());
     }
     Ok(exit_code(&recorded.status))
-}
-
-fn text(progress: &RecordProgress) -> String {
-    match (progress.phase, progress.pictures) {
-        (Phase::Looking, _) => format!("finding the view, {:.3} s", progress.time),
-        (Phase::Drawing, pictures) => format!("drawing, {} of {pictures} pictures", progress.drawn),
-    }
 }
 
 /// Describes the written file and its frame rate.

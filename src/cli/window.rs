@@ -31,7 +31,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         "it measures solves; for a motion, use `warpbeam study`",
     )?;
     let watch = Watch::new();
-    let shot = app::shot(source, scene, simulation, &options, &output, &mut |progress| watch.observe(&progress))?;
+    let shot = app::shot(source, scene, simulation, &options, &output, &|progress| watch.observe(progress))?;
     let interrupted = watch.is_cancelled();
     drop(watch);
     if interrupted {
@@ -79,9 +79,7 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 certificate: false,
                 no_certificate: false,
             })?;
-            app::shot(source, scene, simulation, &app::ShotOptions::default(), output, &mut |_| {
-                ControlFlow::Continue(())
-            })?;
+            app::shot(source, scene, simulation, &app::ShotOptions::default(), output, &|_| ControlFlow::Continue(()))?;
         }
     }
     Ok(ExitCode::SUCCESS)

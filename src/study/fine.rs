@@ -8,12 +8,13 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::convergence::remaining_error;
-use super::progress::{Observer, Progress, check};
+use super::progress::check;
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
 use crate::format::{engineering, engineering_pair};
 use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::method::{Workspace, is_stable};
+use crate::progress::{Observer, Progress};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Deformation, Simulation, SimulationError, Status};
@@ -256,7 +257,7 @@ impl Search<'_> {
         let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
         let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
         while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
-            check((self.observe)(Progress { fraction, now: &now }))?;
+            check((self.observe)(Progress { fraction, now: Some(&now) }))?;
             let before = simulation.iterations();
             simulation.step();
             self.work += f64::from(simulation.iterations() - before) * unknowns as f64;

@@ -8,9 +8,9 @@ use nalgebra::Vector2;
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
 use crate::method::METHODS;
+use crate::progress::{Observer, Progress};
 use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
-use crate::study::load_path::PathObserver;
 
 /// Load factor with its deflections.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -85,12 +85,12 @@ impl LoadCurve {
     /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip.
     #[must_use]
     pub fn new(scene: &Scene) -> Option<Self> {
-        Self::observed(scene, &mut |_| ControlFlow::Continue(()))
+        Self::observed(scene, &|_| ControlFlow::Continue(()))
     }
 
     /// Returns the curve as [`Self::new`], with progress reports; `None` also if it is cancelled.
     #[must_use]
-    pub fn observed(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
+    pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         // A scene that cannot be simulated has no curve.
         let system = Simulation::new(scene).ok()?.system().clone();
@@ -124,13 +124,10 @@ impl LoadCurve {
         let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
         let mut methods = Vec::new();
         for (i, entry) in METHODS.iter().enumerate() {
-            let mut flow = ControlFlow::Continue(());
-            methods.extend(method_point(scene, entry.kind, &system, &mut || {
-                flow = observe(i as f64 / METHODS.len() as f64);
-                flow
-            }));
-            if flow.is_break() {
-                return None;
+            let observe = |_: Progress<'_>| observe(Progress::at(i as f64 / METHODS.len() as f64));
+            match method_point(scene, entry.kind, &system, &observe) {
+                ControlFlow::Continue(point) => methods.extend(point),
+                ControlFlow::Break(()) => return None,
             }
         }
         Some(Self { samples, buckles_at, departures, methods })
@@ -155,22 +152,24 @@ fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Opti
     Some(Departure { percent, at })
 }
 
-/// Returns the result of a method; `None` if the scene cannot be simulated, or `watch` cancels.
+/// Returns the result of a method, `None` if the scene cannot be simulated; breaks if it is cancelled.
 fn method_point(
     scene: &Scene,
     method: MethodKind,
     system: &Arc<System>,
-    watch: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Option<MethodPoint> {
+    observe: Observer<'_>,
+) -> ControlFlow<(), Option<MethodPoint>> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.accept_after = 0;
-    let mut simulation = Simulation::with_system(&scene, system.clone()).ok()?;
-    if simulation.solve_watched(&mut |_| watch()).is_break() {
-        return None;
-    }
-    let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"))?;
+    let Ok(mut simulation) = Simulation::with_system(&scene, system.clone()) else {
+        return ControlFlow::Continue(None);
+    };
+    simulation.solve_watched(&mut |_| observe(Progress::at(0.0)))?;
+    let Some(probe) = simulation.problem().probes().iter().find(|p| p.place == Place::from("right")) else {
+        return ControlFlow::Continue(None);
+    };
     let tip = probe.mean(simulation.displacement());
     let stable = simulation.certify().stable;
-    Some(MethodPoint { method, tip, status: simulation.status().clone(), stable })
+    ControlFlow::Continue(Some(MethodPoint { method, tip, status: simulation.status().clone(), stable }))
 }

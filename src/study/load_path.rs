@@ -11,6 +11,7 @@ use crate::format::engineering;
 use crate::method::{
     Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathProgress, StaticEquations, Workspace, support_stiffness,
 };
+use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, Simulation, Status, SupportReaction, supports_power};
@@ -154,19 +155,16 @@ const MAX_UNKNOWNS: usize = 6000;
 /// Largest distance from the end of the path, relative to the largest displacement, at which a result is that end.
 const SAME: f64 = 0.02;
 
-/// Callback that receives the completed fraction, and cancels with [`ControlFlow::Break`].
-pub type PathObserver<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
-
 impl LoadPath {
     /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
-        Self::observed(scene, &mut |_| ControlFlow::Continue(()))
+        Self::observed(scene, &|_| ControlFlow::Continue(()))
     }
 
     /// Follows the path as [`Self::of`] with progress reports; a cancelled path ends early.
     #[must_use]
-    pub fn observed(scene: &Scene, observe: PathObserver<'_>) -> Option<Self> {
+    pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
         Tracer::new(&simulation)?.trace(DRAWN, observe)
     }
@@ -174,7 +172,7 @@ impl LoadPath {
     /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion, linear
     /// theory or a result that has not converged, if the model is too large, or if the path cannot be followed.
     #[must_use]
-    pub fn to_result(simulation: &Simulation, observe: PathObserver<'_>) -> Option<PathSummary> {
+    pub fn to_result(simulation: &Simulation, observe: Observer<'_>) -> Option<PathSummary> {
         let search = simulation.equilibrium()?;
         if !simulation.status().is_success() || simulation.is_linear() {
             return None;
@@ -194,14 +192,16 @@ impl LoadPath {
 
     /// Follows the load path of a simulation's scene on its mesh; returns its critical points and the displacement at
     /// its end, m; `None` if the path cannot be followed, or is cancelled.
-    fn end_of(simulation: &Simulation, observe: PathObserver<'_>) -> Option<PathFromRest> {
+    fn end_of(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
         let mut scene = simulation.scene().clone();
         scene.solver.method = MethodKind::Newton;
         scene.solver.accept_after = 0;
         scene.solver.max_iterations = MAX_SOLVES;
         let mut follower = Simulation::with_system(&scene, simulation.system().clone()).ok()?;
+        let now = sentence!("following the load path");
         let reached = |follower: &Simulation| follower.equilibrium().map_or(0.0, Equilibrium::load_factor);
-        let flow = follower.solve_watched(&mut |follower| observe(reached(follower)));
+        let flow =
+            follower.solve_watched(&mut |follower| observe(Progress { fraction: reached(follower), now: Some(&now) }));
         if flow.is_break() || *follower.status() != Status::Converged {
             return None;
         }
@@ -213,7 +213,7 @@ impl LoadPath {
     /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or is cancelled, or the model
     /// is too large.
     #[must_use]
-    pub fn end_of_scene(scene: &Scene, observe: PathObserver<'_>) -> Option<PathFromRest> {
+    pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
         (simulation.system().dofs() <= MAX_UNKNOWNS).then(|| Self::end_of(&simulation, observe))?
     }
@@ -279,7 +279,8 @@ impl Tracer {
         })
     }
 
-    fn trace(mut self, count: u32, observe: PathObserver<'_>) -> Option<LoadPath> {
+    fn trace(mut self, count: u32, observe: Observer<'_>) -> Option<LoadPath> {
+        let now = sentence!("following the load path");
         let mut follower = PathFollower::start(&mut self.equations())?.locating_all();
         self.record(follower.last().clone(), true);
         let (mut end, mut states_before_jump, mut bifurcations) = (None, None, 0);
@@ -288,7 +289,7 @@ impl Tracer {
         let mut goals = (1..=count).map(|i| f64::from(i) / f64::from(count));
         let mut goal = goals.next();
         while let Some(to) = goal {
-            if observe(follower.last().factor).is_break() {
+            if observe(Progress { fraction: follower.last().factor, now: Some(&now) }).is_break() {
                 end = Some(PathEndReason::Interrupted);
                 break;
             }

@@ -26,7 +26,7 @@ pub use fine::{Effort, MovedPoint, moved_points};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::MotionStudy;
-pub use progress::{Extent, Observer, PartialObserver, Progress, StudyError};
+pub use progress::{Extent, StudyError};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]

@@ -1,42 +1,39 @@
 //! Parallel execution of untimed work on all cores. Timed work must not run at the same time.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Cancellation flag, polled by long work.
-#[derive(Debug, Default)]
-pub struct CalledOff(AtomicBool);
-
-impl CalledOff {
-    /// Returns [`ControlFlow::Break`] once cancelled.
-    pub fn flow(&self) -> ControlFlow<()> {
-        if self.0.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}
+use crate::progress::Observer;
 
 /// Processes all items on all cores, and returns the results in order. `observe` is called on the calling thread with
-/// the number of finished items, and can cancel the rest: items not started then give `None`, and running ones see the
-/// flag.
+/// the number of finished items, and can cancel the rest: items not started then give `None`, and the observer of
+/// running ones breaks.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn map<T: Sync, R: Send>(
     items: &[T],
-    work: impl Fn(&T, &CalledOff) -> R + Sync,
+    work: impl Fn(&T, Observer<'_>) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::mpsc::{self, RecvTimeoutError};
     use std::time::Duration;
 
     use rayon::prelude::*;
 
+    use crate::progress::Progress;
+
     /// Interval of calls of an observer while no item is finished.
     const ASK: Duration = Duration::from_millis(50);
-    let cancelled = CalledOff::default();
+    let cancelled = AtomicBool::new(false);
+    let flow = |_: Progress<'_>| match cancelled.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
     let (sender, receiver) = mpsc::channel();
     let one = |sender: &mut mpsc::Sender<()>, item: &T| {
-        if cancelled.flow().is_break() {
+        if cancelled.load(Ordering::Relaxed) {
             return None;
         }
-        let result = work(item, &cancelled);
+        let result = work(item, &flow);
         // Sending fails only if the caller panics.
         let _ = sender.send(());
         Some(result)
@@ -47,7 +44,7 @@ pub fn map<T: Sync, R: Send>(
         let mut done = 0;
         loop {
             if observe(done).is_break() {
-                cancelled.0.store(true, Ordering::Relaxed);
+                cancelled.store(true, Ordering::Relaxed);
             }
             match receiver.recv_timeout(ASK) {
                 Ok(()) => done += 1,
@@ -64,11 +61,10 @@ pub fn map<T: Sync, R: Send>(
 #[cfg(target_arch = "wasm32")]
 pub fn map<T: Sync, R: Send>(
     items: &[T],
-    work: impl Fn(&T, &CalledOff) -> R + Sync,
+    work: impl Fn(&T, Observer<'_>) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
-    let cancelled = CalledOff::default();
-    let one = |(done, item)| observe(done).is_continue().then(|| work(item, &cancelled));
+    let one = |(done, item)| observe(done).is_continue().then(|| work(item, &|_| ControlFlow::Continue(())));
     items.iter().enumerate().map(one).collect()
 }
 
@@ -78,13 +74,14 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+    use crate::progress::Progress;
 
     #[test]
     fn results_come_in_order_and_work_is_cancelled() {
         let items: Vec<u32> = (0..1000).collect();
         let squares = map(&items, |n, _| n * n, |_| ControlFlow::Continue(()));
         assert!(squares.iter().zip(&items).all(|(square, n)| *square == Some(n * n)));
-        let slow = |n: &u32, _: &CalledOff| {
+        let slow = |n: &u32, _: Observer<'_>| {
             thread::sleep(Duration::from_millis(1));
             *n
         };
@@ -98,8 +95,8 @@ mod tests {
     #[test]
     fn running_work_is_notified_of_its_cancellation() {
         // Without the flag neither item would end.
-        let until_told = |_: &u32, cancelled: &CalledOff| {
-            while cancelled.flow().is_continue() {
+        let until_told = |_: &u32, observe: Observer<'_>| {
+            while observe(Progress::at(0.0)).is_continue() {
                 thread::yield_now();
             }
         };

@@ -1,4 +1,4 @@
-//! Progress, errors and extent of studies and searches.
+//! Errors and extent of studies and searches.
 
 use std::ops::ControlFlow;
 
@@ -97,21 +97,6 @@ impl StudyError {
         )
     }
 }
-
-/// Progress of a study.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress<'a> {
-    /// Completed fraction, 0 to 1, of the expected time, which is estimated from sizes and from times measured so far.
-    pub fraction: f64,
-    /// Current setting.
-    pub now: &'a Sentence,
-}
-
-/// Callback that receives the progress of a study, and cancels with [`ControlFlow::Break`].
-pub type Observer<'a> = &'a mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
-
-/// Callback as [`Observer`] that also receives the partial study `S` each time a part of it is done.
-pub type PartialObserver<'a, S> = &'a mut dyn FnMut(Progress<'_>, Option<&S>) -> ControlFlow<()>;
 
 /// Extent of a study.
 ///

@@ -8,11 +8,12 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::fine::{Effort, Fine, MovedPoint, fine};
-use super::progress::{Observer, check};
+use super::progress::check;
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{number, two_digits};
 use crate::method::Certificate;
+use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Place, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
@@ -158,7 +159,7 @@ impl Reference {
     /// # Errors
     /// Same errors as [`Self::find`].
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
-        Self::find(scene, None, Effort::Bounded, &mut |_| ControlFlow::Continue(()))
+        Self::find(scene, None, Effort::Bounded, &|_| ControlFlow::Continue(()))
     }
 
     /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
@@ -334,20 +335,19 @@ pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }
 
-/// Returns the final displacements of the probes by a method, with a sufficient number of iterations. `watch` cancels
-/// the computation by [`ControlFlow::Break`].
+/// Returns the final displacements of the probes by a method, with a sufficient number of iterations.
 pub(super) fn end(
     scene: &Scene,
     method: MethodKind,
     system: &Arc<System>,
-    watch: &mut dyn FnMut() -> ControlFlow<()>,
+    observe: Observer<'_>,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
     scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
     scene.solver.accept_after = 0;
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
-    check(simulation.solve_watched(&mut |_| watch()))?;
+    check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
     if *simulation.status() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoReference);
     }

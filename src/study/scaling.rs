@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use super::timing::{Runs, median_time};
-use super::{Extent, Observer, Progress, StudyError};
+use super::{Extent, StudyError};
+use crate::progress::{Observer, Progress};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::Simulation;
 
@@ -92,7 +93,7 @@ impl Scaling {
         for (&unknowns, element) in unknowns.iter().flat_map(|n| ElementKind::all().map(move |e| (n, e))) {
             let cells = cells(element, beam.length / beam.height, unknowns);
             let now = super::trade::mesh_text(element, Some(cells));
-            if observe(Progress { fraction: done / all, now: &now }).is_break() {
+            if observe(Progress { fraction: done / all, now: Some(&now) }).is_break() {
                 study.is_partial = true;
                 break;
             }

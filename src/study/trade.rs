@@ -3,7 +3,6 @@
 //! A solve starts from rest, which is the hardest case; data computed once per mesh (sparsity, ordering, the factor of
 //! the stiffness at rest that `auto` keeps) already exist.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -11,13 +10,14 @@ use web_time::{Duration, Instant};
 
 use super::bound::{at_most, undecided};
 use super::fine::{Effort, finest_element};
-use super::parallel::{self, CalledOff};
+use super::parallel;
 use super::pareto;
-use super::progress::{Extent, Observer, PartialObserver, Progress, StudyError, all_done, check};
+use super::progress::{Extent, StudyError, all_done, check};
 use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
 use crate::method::METHODS;
+use crate::progress::{Observer, Progress};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status};
@@ -180,7 +180,7 @@ impl Study {
     /// use warpbeam::{Extent, Scene, Study};
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
-    /// let study = Study::new(&scene, Extent::Quick, &mut |_| ControlFlow::Continue(()))?;
+    /// let study = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(()))?;
     /// println!("{}", study.summary());
     /// # Ok::<(), warpbeam::StudyError>(())
     /// ```
@@ -188,21 +188,26 @@ impl Study {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
-        Self::observed(scene, extent, &mut |progress, _| observe(progress))
+        Self::with_partial(scene, extent, observe, &mut |_| {})
     }
 
-    /// Measures as [`Self::new`]; the observer also receives the partial study each time a mesh is done.
+    /// Measures as [`Self::new`]; `partial` receives the study so far each time a mesh is done.
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn observed(scene: &Scene, extent: Extent, observe: PartialObserver<'_, Self>) -> Result<Self, StudyError> {
+    pub fn with_partial(
+        scene: &Scene,
+        extent: Extent,
+        observe: Observer<'_>,
+        partial: &mut dyn FnMut(&Self),
+    ) -> Result<Self, StudyError> {
         let meshes = meshes(scene, extent);
-        let mut study = Self::begin(scene, &mut |progress| observe(progress, None))?;
+        let mut study = Self::begin(scene, observe)?;
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let ends = |mesh: &MeshChoice, cancelled: &CalledOff| MeshEnds::find(scene, mesh, &mut || cancelled.flow());
+        let ends = |mesh: &MeshChoice, observe: Observer<'_>| MeshEnds::find(scene, mesh, observe);
         let ends = all_done(parallel::map(&meshes, ends, |done| {
             let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: &sentence!("end state of every method") }, None)
+            observe(Progress { fraction, now: Some(&sentence!("end state of every method")) })
         }))?;
         let all: f64 = ends.iter().map(MeshEnds::expected_time).sum();
         // Start with the element that converges fastest, which is likely to give the best results.
@@ -212,14 +217,14 @@ impl Study {
         for (mesh, ends) in order {
             let time = ends.expected_time();
             let fraction = |part: f64| ENDS_SHARE + (1.0 - ENDS_SHARE) * (done + part * time) / all;
-            study.measure(scene, mesh, ends, &mut |part, now| {
-                check(observe(Progress { fraction: fraction(part), now }, None))
-            })?;
+            study
+                .measure(scene, mesh, ends, &|part| observe(Progress { fraction: fraction(part.fraction), ..part }))?;
             study.measurements.sort_by_key(|m| {
                 let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
                 meshes.iter().position(of)
             });
-            check(observe(Progress { fraction: fraction(1.0), now: &Sentence::default() }, Some(&study)))?;
+            partial(&study);
+            check(observe(Progress::at(fraction(1.0))))?;
             done += time;
         }
         Ok(study)
@@ -231,10 +236,7 @@ impl Study {
     /// [`StudyError`]; [`StudyError::Cancelled`] if nothing has been measured.
     pub fn until_cancelled(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<(Self, bool), StudyError> {
         let mut partial = None;
-        let whole = Self::observed(scene, extent, &mut |progress, so_far| {
-            partial = so_far.filter(|study| !study.measurements.is_empty()).cloned().or(partial.take());
-            observe(progress)
-        });
+        let whole = Self::with_partial(scene, extent, observe, &mut |so_far| partial = Some(so_far.clone()));
         match (whole, partial) {
             (Err(StudyError::Cancelled), Some(partial)) => Ok((partial, true)),
             (whole, _) => whole.map(|study| (study, false)),
@@ -243,7 +245,7 @@ impl Study {
 
     /// Returns a study with its reference solution and no measurements.
     pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
-        let begin = &mut |progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
+        let begin = &|progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
         let reference = Reference::find(scene, None, Effort::Bounded, begin)?;
         let against = reference.first().ok_or(StudyError::NoBound)?;
         Ok(Self {
@@ -255,14 +257,14 @@ impl Study {
         })
     }
 
-    /// Measures every method on a mesh, and marks the Pareto front. `say` receives the completed fraction and the
-    /// current setting; its error ends the measurement, which then leaves the study unchanged.
+    /// Measures every method on a mesh, and marks the Pareto front. A cancelled measurement leaves the
+    /// study unchanged.
     pub(super) fn measure(
         &mut self,
         scene: &Scene,
         mesh: &MeshChoice,
         ends: &MeshEnds,
-        say: &mut dyn FnMut(f64, &Sentence) -> Result<(), StudyError>,
+        observe: Observer<'_>,
     ) -> Result<(), StudyError> {
         let MeshChoice { element, cells, .. } = *mesh;
         let text = mesh_text(element, cells);
@@ -271,10 +273,8 @@ impl Study {
         let MeshEnds { system, exact, linear, .. } = ends;
         let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
-            say(
-                number as f64 / METHODS.len() as f64,
-                &sentence!("%{mesh}, %{method}", mesh = &text, method = method.id()),
-            )?;
+            let now = sentence!("%{mesh}, %{method}", mesh = &text, method = method.id());
+            check(observe(Progress { fraction: number as f64 / METHODS.len() as f64, now: Some(&now) }))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MAX_ITERATIONS };
@@ -377,17 +377,13 @@ pub(super) struct MeshEnds {
 }
 
 impl MeshEnds {
-    /// Computes the results on a mesh. `watch` cancels the computation by [`ControlFlow::Break`].
-    pub fn find(
-        scene: &Scene,
-        mesh: &MeshChoice,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Self, StudyError> {
+    /// Computes the results on a mesh.
+    pub fn find(scene: &Scene, mesh: &MeshChoice, observe: Observer<'_>) -> Result<Self, StudyError> {
         let meshed = mesh.with(MethodKind::Newton).apply(scene);
         let system = system_of(&meshed)?;
         let start = Instant::now();
-        let mut first_end = |method| -> Result<_, StudyError> {
-            Ok(end(&meshed, method, &system, watch)?.first().copied().unwrap_or_default())
+        let first_end = |method| -> Result<_, StudyError> {
+            Ok(end(&meshed, method, &system, observe)?.first().copied().unwrap_or_default())
         };
         let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
         Ok(Self { system, exact, linear, time: start.elapsed() })

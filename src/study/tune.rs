@@ -1,7 +1,8 @@
 //! Tuning: choice of the cheapest element, mesh and method for a required accuracy and time.
 
-use super::progress::{Extent, Observer, Progress, StudyError, check};
+use super::progress::{Extent, StudyError};
 use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
+use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::sentence::sentence;
 
@@ -103,12 +104,12 @@ impl Tuning {
             }
             let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
-            let watch =
-                &mut || observe(Progress { fraction: done / all, now: &sentence!("end state of every method") });
-            let measured = MeshEnds::find(scene, mesh, watch).and_then(|ends| {
-                study.measure(scene, mesh, &ends, &mut |part, now| {
-                    let fraction = (done + part * weight) / all;
-                    check(observe(Progress { fraction, now }))
+            let ends = &|_: Progress<'_>| {
+                observe(Progress { fraction: done / all, now: Some(&sentence!("end state of every method")) })
+            };
+            let measured = MeshEnds::find(scene, mesh, ends).and_then(|ends| {
+                study.measure(scene, mesh, &ends, &|part| {
+                    observe(Progress { fraction: (done + part.fraction * weight) / all, ..part })
                 })
             });
             is_partial = measured == Err(StudyError::Cancelled);

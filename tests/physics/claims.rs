@@ -144,7 +144,7 @@ fn claims_about_random_scenes_are_true() {
                 continue;
             }
             let is_elsewhere = |simulation: &Simulation| {
-                LoadPath::to_result(simulation, &mut |_| std::ops::ControlFlow::Continue(()))
+                LoadPath::to_result(simulation, &|_| std::ops::ControlFlow::Continue(()))
                     .is_some_and(|path| path.elsewhere.is_some())
             };
             let off = distance(newton.displacement(), other.displacement());

@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common::{scene, scene_with, solve_json, solved, stdout, warpbeam};
 use warpbeam::study::{LoadPath, PathEndReason};
@@ -68,7 +69,7 @@ fn moved_supports_do_the_work_that_is_stored() {
     ];
     for (name, scene) in scenes {
         let simulation = solved(&scene);
-        let path = LoadPath::to_result(&simulation, &mut |_| ControlFlow::Continue(())).unwrap();
+        let path = LoadPath::to_result(&simulation, &|_| ControlFlow::Continue(())).unwrap();
         let (work, stored) = (path.supports_work.unwrap(), simulation.solution().energy.elastic);
         println!("{name}: work {work} J, stored {stored} J");
         assert!((work - stored).abs() < 0.005 * stored, "{name}: work {work} J, stored {stored} J");
@@ -80,10 +81,9 @@ fn moved_supports_do_the_work_that_is_stored() {
 
 #[test]
 fn a_cancelled_path_is_reported_as_interrupted() {
-    let mut asked = 0;
-    let path = LoadPath::observed(&scene("jump"), &mut |_| {
-        asked += 1;
-        if asked < 20 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    let asked = AtomicU32::new(0);
+    let path = LoadPath::observed(&scene("jump"), &|_| {
+        if asked.fetch_add(1, Ordering::Relaxed) < 19 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     let end = path.unwrap().end.unwrap();
     assert_eq!(end.reason, PathEndReason::Interrupted);

@@ -91,7 +91,7 @@ fn shortened_bodies_follow_their_path() {
         scene.solver.max_iterations = 1000;
         let simulation = solved(&scene);
         assert!((tip(&simulation).y - y).abs() < 0.01 * y.abs(), "{name}: {}", tip(&simulation));
-        let path = LoadPath::to_result(&simulation, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+        let path = LoadPath::to_result(&simulation, &|_| std::ops::ControlFlow::Continue(())).unwrap();
         let energy = simulation.solution().energy;
         let work = path.supports_work.unwrap() + 0.5 * energy.external;
         assert!(energy.external >= 0.0, "{name}: work of the loads {} J", energy.external);
@@ -301,7 +301,7 @@ fn a_result_beside_the_path_is_told() {
     arch.change_scene(&lighter).unwrap();
     assert_eq!(*arch.solve(), Status::Converged);
     assert!(tip(&arch).y < -0.01, "{}", tip(&arch));
-    let path = LoadPath::to_result(&arch, &mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+    let path = LoadPath::to_result(&arch, &|_| std::ops::ControlFlow::Continue(())).unwrap();
     assert!(path.elsewhere.is_some_and(|elsewhere| elsewhere.distance > 0.01), "{path:?}");
     assert_eq!(path.jump, None);
     // The reference is that of the path from rest.

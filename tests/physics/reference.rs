@@ -143,7 +143,7 @@ fn compare_scenes(seeds: impl Iterator<Item = u64>) -> Tally {
         let scene = random::scene(seed);
         let mut own = Simulation::new(&scene).unwrap();
         own.solve();
-        let reference = Reference::find(&scene, Some(&own), Effort::Bounded, &mut |_| ControlFlow::Continue(()));
+        let reference = Reference::find(&scene, Some(&own), Effort::Bounded, &|_| ControlFlow::Continue(()));
         let why = reference.as_ref().err().map(ToString::to_string);
         let Some(first) = reference.ok().and_then(|r| r.first()) else {
             println!("{seed}: {}, own result {:?}", why.unwrap_or_else(|| "no bound".to_owned()), own.status());

@@ -3,6 +3,8 @@
 
 use std::fs;
 use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::common::{scene, scene_with, stderr, stdout, warpbeam};
 use nalgebra::Vector2;
@@ -14,7 +16,7 @@ use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, Motion
 use warpbeam::study::{Demand, Extent, Measurement, MotionStudy, Study, StudyError, Tuning};
 use warpbeam::{ElementKind, IntegratorKind, MethodKind};
 
-fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
+fn go_on(_: warpbeam::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -23,7 +25,7 @@ fn go_on(_: warpbeam::study::Progress<'_>) -> ControlFlow<()> {
 #[test]
 fn single_rows_of_bending_elements_are_studied() {
     for id in ["cantilever", "elastica"] {
-        let study = Study::new(&scene(id), Extent::Quick, &mut go_on).unwrap();
+        let study = Study::new(&scene(id), Extent::Quick, &go_on).unwrap();
         let fewest = |element| {
             let close = study.measurements.iter().filter(|m| m.setting.element == element && m.error.bound() <= 1.0);
             close.min_by_key(|m| m.dofs).unwrap()
@@ -53,18 +55,20 @@ fn single_rows_of_bending_elements_are_studied() {
 /// and the measurements of each element are listed from coarse to fine.
 #[test]
 fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
-    let (mut last, mut elements) = (0.0, Vec::new());
-    let mut observe = |progress: warpbeam::study::Progress<'_>, so_far: Option<&Study>| {
-        assert!((last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
-        last = progress.fraction;
-        if let Some(study) = so_far {
-            let mut known: Vec<ElementKind> = study.measurements.iter().map(|m| m.setting.element).collect();
-            known.dedup();
-            elements.push(known);
-        }
+    let (last, mut elements) = (Mutex::new(0.0), Vec::new());
+    let observe = |progress: warpbeam::Progress<'_>| {
+        let mut last = last.lock().unwrap();
+        assert!((*last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+        *last = progress.fraction;
         ControlFlow::Continue(())
     };
-    let study = Study::observed(&scene("cantilever"), Extent::Quick, &mut observe).unwrap();
+    let partial = &mut |study: &Study| {
+        let mut known: Vec<ElementKind> = study.measurements.iter().map(|m| m.setting.element).collect();
+        known.dedup();
+        elements.push(known);
+    };
+    let study = Study::with_partial(&scene("cantilever"), Extent::Quick, &observe, partial).unwrap();
+    let last = last.into_inner().unwrap();
     assert!((last - 1.0).abs() < 1e-9, "it ends at {last}");
     assert_eq!(elements[0], [ElementKind::T6]);
     let all: Vec<ElementKind> = scene("cantilever").elements().collect();
@@ -80,7 +84,7 @@ fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
 /// setting on the front is dominated.
 #[test]
 fn a_swing_is_studied() {
-    let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &mut go_on).unwrap();
+    let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &go_on).unwrap();
     let own = study.reference.error_percent;
     assert!(own > 0.0 && own < 0.5, "{own}");
     assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 1.0);
@@ -149,21 +153,23 @@ fn a_swing_is_studied() {
 #[test]
 fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
-    let until = |is_enough: &dyn Fn(usize, usize) -> bool| {
-        let (mut last, mut timed, mut meshes) = (0.0, 0, Vec::new());
-        let mut observe = |progress: warpbeam::study::Progress<'_>| {
-            assert!((last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
-            last = progress.fraction;
-            let now = progress.now.to_string();
+    let until = |is_enough: &(dyn Fn(usize, usize) -> bool + Sync)| {
+        let seen = Mutex::new((0.0, 0, Vec::new()));
+        let observe = |progress: warpbeam::Progress<'_>| {
+            let mut seen = seen.lock().unwrap();
+            let (last, timed, meshes) = &mut *seen;
+            assert!((*last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
+            *last = progress.fraction;
+            let now = progress.now.map_or_else(String::new, ToString::to_string);
             if now.ends_with("paths of its settings") {
                 meshes.push(now);
                 meshes.dedup();
             } else {
-                timed += usize::from(!meshes.is_empty());
+                *timed += usize::from(!meshes.is_empty());
             }
-            if is_enough(meshes.len(), timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if is_enough(meshes.len(), *timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let study = MotionStudy::new(&scene, Extent::Quick, &mut observe).unwrap();
+        let study = MotionStudy::new(&scene, Extent::Quick, &observe).unwrap();
         assert!(!study.front().is_empty() && !study.summary().contains("NaN"));
         let mut meshes: Vec<_> = study.measurements.iter().map(|m| (m.setting.element, m.setting.cells)).collect();
         meshes.dedup();
@@ -183,7 +189,7 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
 fn the_reference_equals_an_independent_trajectory() {
     // The independent mesh has six-node triangles, twice as fine as these cells.
     let scene = scene_with("swing", &["beam.element=t3", "dynamics.duration=1"]);
-    let reference = MotionReference::new(&scene, Extent::Quick, &mut go_on).unwrap();
+    let reference = MotionReference::new(&scene, Extent::Quick, &go_on).unwrap();
     assert_eq!(reference.cells, Some([20, 1]));
     let rows = include_str!("../data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
     let independent: Vec<(f64, Vector2<f64>)> = rows
@@ -209,21 +215,24 @@ fn the_reference_equals_an_independent_trajectory() {
 
 #[test]
 fn scenes_that_cannot_be_studied_are_refused() {
-    let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &mut go_on).unwrap_err();
+    let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &go_on).unwrap_err();
     assert_eq!(refused(&scene("cantilever")), StudyError::AtRest);
     assert_eq!(refused(&scene_with("swing", &["probe=[]"])), StudyError::NoProbe);
     assert_eq!(refused(&scene_with("swing", &["load=[]", "beam.cells=[2,1]"])), StudyError::NoProbe);
     let moving = scene("swing");
-    assert_eq!(Study::new(&moving, Extent::Quick, &mut go_on), Err(StudyError::InMotion));
-    assert_eq!(Tuning::of(&moving, Demand::default(), &mut go_on).unwrap_err(), StudyError::InMotion);
+    assert_eq!(Study::new(&moving, Extent::Quick, &go_on), Err(StudyError::InMotion));
+    assert_eq!(Tuning::of(&moving, Demand::default(), &go_on).unwrap_err(), StudyError::InMotion);
     for after in [0, 3] {
-        let mut heard = 0;
-        let mut observe = |progress: warpbeam::study::Progress<'_>| {
+        let heard = AtomicU32::new(0);
+        let observe = |progress: warpbeam::Progress<'_>| {
             assert!((0.0..=1.0).contains(&progress.fraction));
-            heard += 1;
-            if heard > after { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if heard.fetch_add(1, Ordering::Relaxed) >= after {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
-        assert_eq!(MotionStudy::new(&moving, Extent::Quick, &mut observe).unwrap_err(), StudyError::Cancelled);
+        assert_eq!(MotionStudy::new(&moving, Extent::Quick, &observe).unwrap_err(), StudyError::Cancelled);
     }
 }
 
@@ -235,7 +244,7 @@ fn tuning_refuses_demands_below_the_known_error() {
     let point = Scene::beam(2.0, 1.0).clamp("left").force([2.0, 0.5], [0.0, -100.0]).probe("tip", [2.0, 0.5]);
     for (name, scene, asked) in [("block", block, 5.0), ("point", point, 1.0), ("shear", scene("shear"), 0.01)] {
         let demand = Demand { max_error_percent: Some(asked), max_time_ms: None };
-        let refused = Tuning::of(&scene, demand, &mut go_on);
+        let refused = Tuning::of(&scene, demand, &go_on);
         assert!(refused.as_ref().is_err_and(StudyError::is_unknown), "{name}: {:?}", refused.map(|t| t.chosen));
     }
     let output = warpbeam(&["tune", "shear", "--error", "0.01%"]);
@@ -248,14 +257,18 @@ fn tuning_refuses_demands_below_the_known_error() {
 fn a_cancelled_tuning_chooses_from_what_was_measured() {
     let demand = Demand { max_error_percent: Some(1e-3), max_time_ms: None };
     let scene = scene("elastica");
-    let mut measured = 0;
-    let mut observe = |progress: warpbeam::study::Progress<'_>| {
-        measured += u32::from(progress.now.to_string().contains("×"));
-        if measured < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    let measured = AtomicU32::new(0);
+    let observe = |progress: warpbeam::Progress<'_>| {
+        let is_setting = progress.now.is_some_and(|now| now.to_string().contains("×"));
+        if measured.fetch_add(u32::from(is_setting), Ordering::Relaxed) + u32::from(is_setting) < 12 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     };
     let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
     let demand = Demand { max_error_percent: Some(own * 1.001), ..demand };
-    let tuning = Tuning::of(&scene, demand, &mut observe).unwrap();
+    let tuning = Tuning::of(&scene, demand, &observe).unwrap();
     assert!(tuning.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
     assert!(tuning.study.measurements.len() < 60);
 }
@@ -364,7 +377,7 @@ fn scaling_is_measured() {
 fn slow_motions_are_studied_over_their_periods() {
     for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
         let slow = scene(&format!("tests/data/scenes/{name}.toml"));
-        let study = MotionStudy::new(&slow, Extent::Quick, &mut go_on).unwrap();
+        let study = MotionStudy::new(&slow, Extent::Quick, &go_on).unwrap();
         assert!(duration.contains(&study.duration), "{name}: {} s", study.duration);
         let linear = study.measurements.iter().filter(|m| m.setting.method == MethodKind::Linear);
         let model = linear.filter_map(|m| Some(m.error?.model)).fold(0.0, f64::max);
@@ -376,7 +389,7 @@ fn slow_motions_are_studied_over_their_periods() {
     }
     // A short scene with a short period, and a free body.
     for (id, set) in [("chime", "dynamics.duration=0.01"), ("spin", "dynamics.duration=0.2")] {
-        let reference = MotionReference::new(&scene_with(id, &[set]), Extent::Quick, &mut go_on).unwrap();
+        let reference = MotionReference::new(&scene_with(id, &[set]), Extent::Quick, &go_on).unwrap();
         let studied = reference.interval * reference.path.len() as f64;
         let whole: f64 = set.split('=').nth(1).unwrap().parse().unwrap();
         assert!(studied <= whole * (1.0 + 1e-9) && studied > 0.8 * whole, "{id}: {studied} s of {whole} s");
@@ -387,7 +400,7 @@ fn slow_motions_are_studied_over_their_periods() {
 /// ranks that the reference cannot tell apart are marked.
 #[test]
 fn bounds_of_a_study_include_the_error_of_the_reference() {
-    let study = Study::new(&scene("shear"), Extent::Quick, &mut go_on).unwrap();
+    let study = Study::new(&scene("shear"), Extent::Quick, &go_on).unwrap();
     let own = study.against.own_error_percent;
     assert!(own > 0.0);
     let (table, summary) = (study.table(), study.summary());
@@ -420,10 +433,10 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     assert_eq!(summary.contains("rank undecided: a faster setting"), marked, "{summary}");
     // `tune` states the same bound.
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
-    let tuning = Tuning::of(&scene("shear"), demand, &mut go_on).unwrap();
+    let tuning = Tuning::of(&scene("shear"), demand, &go_on).unwrap();
     let bound = format!("error at most {:.4} %", tuning.study.error_bound(&tuning.chosen));
     assert!(tuning.to_string().contains(&bound), "{tuning}");
-    let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &mut go_on).unwrap();
+    let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &go_on).unwrap();
     let own = moving.reference.error_percent;
     for m in moving.front() {
         let bound = moving.error_bound(m).unwrap();

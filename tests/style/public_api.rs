@@ -7,7 +7,7 @@ use crate::files::rust_files;
 
 const LIST: &str = "tests/data/public_api.txt";
 /// Largest number of public types.
-const MAX_TYPES: usize = 60;
+const MAX_TYPES: usize = 64;
 
 /// Public type: its documentation, its fields or variants, and its methods.
 #[derive(Default)]
@@ -45,7 +45,7 @@ fn faces(names: &BTreeSet<String>) -> BTreeMap<String, Face> {
         let text = std::fs::read_to_string(&file).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate() {
-            let is_type = line.starts_with("pub struct ") || line.starts_with("pub enum ");
+            let is_type = ["pub struct ", "pub enum ", "pub type "].iter().any(|start| line.starts_with(start));
             let name = if is_type { line.split(|c: char| !c.is_alphanumeric()).nth(2) } else { implemented(line) };
             let Some(face) = name.and_then(|name| faces.get_mut(name)) else { continue };
             if is_type {
@@ -53,7 +53,9 @@ fn faces(names: &BTreeSet<String>) -> BTreeMap<String, Face> {
                     lines[..number].iter().rev().take_while(|line| line.starts_with("///") || line.starts_with('#'));
                 face.doc = above.map(|line| format!("{line}\n")).collect();
             }
-            if line.ends_with('{') {
+            if let Some((_, alias)) = line.strip_prefix("pub type ").and_then(|line| line.split_once(" = ")) {
+                face.items.insert(format!("= {}", alias.trim_end_matches(';')));
+            } else if line.ends_with('{') {
                 let block: Vec<&str> = lines[number + 1..].iter().copied().take_while(|line| *line != "}").collect();
                 face.items.extend(items(&block, line.starts_with("pub enum ")));
             }
@@ -73,6 +75,13 @@ fn items(block: &[&str], is_enum: bool) -> Vec<String> {
             while item.matches('(').count() > item.matches(')').count() {
                 let Some(next) = lines.next() else { break };
                 item = format!("{item}{}{}", if item.ends_with('(') { "" } else { " " }, next.trim());
+            }
+            // A variant's fields end with its closing brace.
+            if is_enum && item.ends_with('{') {
+                let fields = lines.by_ref().take_while(|line| *line != "},").map(str::trim);
+                let fields: Vec<&str> =
+                    fields.filter(|line| !line.starts_with("///") && !line.starts_with('#')).collect();
+                item = format!("{item} {} }}", fields.join(" ").trim_end_matches(','));
             }
             if !hidden {
                 items.push(item.trim_end_matches([' ', '{', ';', ',', '=']).replace(", )", ")"));

@@ -506,7 +506,7 @@ fn the_budget_is_in_chinese() {
     harness.key_press(Key::B);
     harness.run();
     assert_chinese(&harness, "before");
-    let study = Study::new(&scene("article"), Extent::Quick, &mut |_| ControlFlow::Continue(())).unwrap();
+    let study = Study::new(&scene("article"), Extent::Quick, &|_| ControlFlow::Continue(())).unwrap();
     harness.state_mut().show_study(study);
     harness.run();
     assert_tips_are_chinese(&mut harness, "Budget");

@@ -2,21 +2,22 @@
 
 use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, count, fill, said, tr};
-use crate::app::offscreen::record::{Phase, RecordOptions, RecordProgress, record};
+use crate::app::offscreen::record::{RecordOptions, record};
 use crate::app::platform::new_file::NewFile;
 use crate::app::task::thread::{Reporter, Task, Update};
+use crate::progress::Progress;
 use crate::scene::{Scene, Source};
 
 /// Size of the recording, pixels.
 const SIZE: [u32; 2] = [640, 400];
 
-/// Progress report: the fraction done, and the current phase.
-type Progress = (f32, String);
+/// Progress report: the fraction done, and the current phase, if it is another one.
+type Report = (f32, Option<String>);
 
 /// Recording in a background thread. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Recorder {
-    task: Task<Progress, String>,
+    task: Task<Report, String>,
     /// Fraction that is done, 0 to 1.
     fraction: f32,
     /// Description of the current phase.
@@ -54,7 +55,10 @@ impl Recorder {
     pub(crate) fn ended(&mut self, waits: bool) -> Option<String> {
         loop {
             match self.task.next(waits) {
-                Update::Progress(said) => (self.fraction, self.text) = said,
+                Update::Progress((fraction, text)) => {
+                    self.fraction = fraction;
+                    self.text = text.unwrap_or(std::mem::take(&mut self.text));
+                }
                 Update::Done(text) => return Some(text),
                 Update::None => return None,
                 Update::Died => return Some(tr("The recording ended unexpectedly").to_owned()),
@@ -68,19 +72,13 @@ fn work(
     scene: Scene,
     (theme, language): (ThemeChoice, Language),
     file: &NewFile,
-    reporter: &Reporter<Progress, String>,
+    reporter: &Reporter<Report, String>,
 ) -> String {
     language::speak(language);
     let path = file.path();
-    let mut observe = |progress: RecordProgress| {
-        let text = match progress.phase {
-            Phase::Looking => tr("Preparing the recording").to_owned(),
-            Phase::Drawing => fill!("Recording %{file}", file = path.display()),
-        };
-        reporter.report((progress.fraction as f32, text))
-    };
+    let observe = &|progress: Progress<'_>| reporter.report((progress.fraction as f32, progress.now.map(said)));
     let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
-    match record(source, scene, &options, path, &mut observe) {
+    match record(source, scene, &options, path, observe) {
         Ok(recorded) if recorded.pictures == 0 => tr("Nothing was recorded").to_owned(),
         Ok(recorded) => {
             fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(recorded.pictures, "picture"))

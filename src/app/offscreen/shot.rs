@@ -11,10 +11,11 @@ use crate::app::offscreen::painter::Stage;
 use crate::app::shell::lab::Lab;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
+use crate::progress::Observer;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Simulation, Status};
-use crate::study::{Extent, Observer, Study, StudyError};
+use crate::study::{Extent, Study, StudyError};
 
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;

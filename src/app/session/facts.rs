@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::task::keyed::{Computed, Keyed, Watch, facts};
+use crate::app::task::keyed::{Computed, Keyed, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
+use crate::progress::Observer;
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
 use crate::simulation::Simulation;
 use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference};
@@ -25,19 +26,19 @@ facts! {
     /// Reference solution that errors are measured against.
     ReferenceFact by without_settings = "reference": Reference, find_reference;
     /// Load–displacement curve.
-    CurveFact = "curve": Curve, |scene, watch| Ok(curve(scene, watch));
+    CurveFact = "curve": Curve, |scene, observe| Ok(curve(scene, observe));
     /// End of the load path from rest, and the jumps on it.
-    PathFact = "path": PathFromRest, |scene, watch| Ok(LoadPath::end_of_scene(scene, watch));
+    PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, _| Ok(natural_frequency(scene));
 }
 
-fn curve(scene: &Scene, watch: Watch<'_>) -> Option<Curve> {
+fn curve(scene: &Scene, observe: Observer<'_>) -> Option<Curve> {
     let own = || SentScene(scene.clone());
-    if let Some(curve) = LoadCurve::observed(scene, watch) {
+    if let Some(curve) = LoadCurve::observed(scene, observe) {
         return Some(Curve::Beam(Box::new((curve, own()))));
     }
-    Some(Curve::Path(Box::new((LoadPath::observed(scene, watch)?, own()))))
+    Some(Curve::Path(Box::new((LoadPath::observed(scene, observe)?, own()))))
 }
 
 /// Results of the current scene; each is `None` until it has been computed.
@@ -95,8 +96,8 @@ pub(crate) fn without_settings(scene: &Scene) -> Scene {
     scene
 }
 
-fn find_reference(scene: &Scene, watch: Watch<'_>) -> Computed<Reference> {
-    let found = Reference::find(scene, None, Effort::Bounded, &mut |progress| watch(progress.fraction));
+fn find_reference(scene: &Scene, observe: Observer<'_>) -> Computed<Reference> {
+    let found = Reference::find(scene, None, Effort::Bounded, observe);
     found.map(Some).map_err(|error| (&error).into())
 }
 
@@ -111,6 +112,7 @@ fn natural_frequency(scene: &Scene) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
     use crate::app::task::keyed::Fact;
@@ -120,12 +122,12 @@ mod tests {
     #[test]
     fn results_are_cancelled() {
         fn asked<F: Fact>(scene: &Scene) -> u32 {
-            let mut asked = 0;
-            let _ = F::compute(scene, &mut |_| {
-                asked += 1;
+            let asked = AtomicU32::new(0);
+            let _ = F::compute(scene, &|_| {
+                asked.fetch_add(1, Ordering::Relaxed);
                 ControlFlow::Break(())
             });
-            asked
+            asked.into_inner()
         }
         for id in ["cantilever", "snap"] {
             let scene = open(&crate::scene::Source { name: id.into(), assignments: Vec::new() }).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::app::platform::IS_PAGE;
 use crate::app::task::remote_solve::RemoteSolve;
-use crate::app::task::solve::{Model, Outcome, Phase, Progress, Snapshot, SolveRequest, run};
+use crate::app::task::solve::{Model, Outcome, Phase, Snapshot, SolveProgress, SolveRequest, run};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
 
@@ -32,7 +32,7 @@ pub(crate) struct BackgroundSolve {
 
 #[derive(Debug)]
 enum Runner {
-    Thread(Task<Progress, Outcome>),
+    Thread(Task<SolveProgress, Outcome>),
     Worker(Box<RemoteSolve>),
 }
 
@@ -109,11 +109,11 @@ impl BackgroundSolve {
             };
             return match update {
                 Update::None => SolveUpdate::None,
-                Update::Progress(Progress::Phase(phase)) => {
+                Update::Progress(SolveProgress::Phase(phase)) => {
                     self.phase = phase;
                     continue;
                 }
-                Update::Progress(Progress::Snapshot(snapshot)) => SolveUpdate::Progress(snapshot),
+                Update::Progress(SolveProgress::Snapshot(snapshot)) => SolveUpdate::Progress(snapshot),
                 Update::Done(outcome) => SolveUpdate::Done(outcome),
                 Update::Died => match &self.runner {
                     Runner::Worker(solve) if solve.is_cancelled() => SolveUpdate::Cancelled,

@@ -8,11 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Data, Reporter, Task, Update, Work};
+use crate::progress::Observer;
 use crate::scene::Scene;
 use crate::sentence::{Sentence, sentence};
-
-/// Callback that receives the fraction done; it breaks to cancel.
-pub(crate) type Watch<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 /// Result of a computation: a value, or `None` if the scene has none, or the reason why the computation failed.
 pub(crate) type Computed<V> = Result<Option<V>, Sentence>;
@@ -29,7 +27,7 @@ pub(crate) trait Fact: Debug + 'static {
     }
 
     /// Computes the value of a scene.
-    fn compute(scene: &Scene, watch: Watch<'_>) -> Computed<Self::Value>;
+    fn compute(scene: &Scene, observe: Observer<'_>) -> Computed<Self::Value>;
 }
 
 /// Defines kinds of values, each by its name, its type, the function that computes it, and `by` its key where that is
@@ -50,13 +48,13 @@ macro_rules! facts {
 
             fn compute(
                 scene: &$crate::scene::Scene,
-                watch: $crate::app::task::keyed::Watch<'_>,
+                observe: $crate::progress::Observer<'_>,
             ) -> $crate::app::task::keyed::Computed<$value> {
                 let compute: fn(
                     &$crate::scene::Scene,
-                    $crate::app::task::keyed::Watch<'_>,
+                    $crate::progress::Observer<'_>,
                 ) -> $crate::app::task::keyed::Computed<$value> = $compute;
-                compute(scene, watch)
+                compute(scene, observe)
             }
         }
     )*};
@@ -74,7 +72,7 @@ impl<F: Fact> Work for FactWork<F> {
     type Output = Computed<F::Value>;
 
     fn run(self, reporter: &Reporter<f64, Self::Output>) -> Self::Output {
-        F::compute(&self.0.0, &mut |done| reporter.report(done))
+        F::compute(&self.0.0, &|progress| reporter.report(progress.fraction))
     }
 }
 
@@ -177,7 +175,7 @@ impl<F: Fact> Keyed<F> {
     pub(crate) fn wait(&mut self, scene: &Scene) {
         self.turn_to(scene);
         if self.computed.is_none() {
-            self.computed = Some(F::compute(scene, &mut |_| ControlFlow::Continue(())));
+            self.computed = Some(F::compute(scene, &|_| ControlFlow::Continue(())));
             self.running = None;
         }
     }

@@ -11,7 +11,7 @@ use web_time::{Duration, Instant};
 use crate::app::task::quality::Quality;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::solve::{
-    Bodies, Model, Outcome, Phase, Progress, Rejected, Snapshot, SolveRequest, Solved, Start, linear_scene, run,
+    Bodies, Model, Outcome, Phase, Rejected, Snapshot, SolveProgress, SolveRequest, Solved, Start, linear_scene, run,
 };
 use crate::app::task::thread::{Reporter, Task, Update, Work};
 use crate::assembly::System;
@@ -65,8 +65,8 @@ impl Work for SolveWork {
             Some(SentBodies { simulation: bodies.simulation.found()?, linear, residuals })
         };
         let solved = run(request, &|progress| match progress {
-            Progress::Phase(phase) => reporter.report(SentProgress::Phase(phase)),
-            Progress::Snapshot(snapshot) => match sent(*snapshot) {
+            SolveProgress::Phase(phase) => reporter.report(SentProgress::Phase(phase)),
+            SolveProgress::Snapshot(snapshot) => match sent(*snapshot) {
                 Some(found) => reporter.report(SentProgress::Found(Box::new(found))),
                 None => ControlFlow::Continue(()),
             },
@@ -153,14 +153,14 @@ impl RemoteSolve {
     }
 
     /// Returns the next update; waits for it if `waits` is `true`.
-    pub(crate) fn next(&mut self, waits: bool) -> Update<Progress, Outcome> {
+    pub(crate) fn next(&mut self, waits: bool) -> Update<SolveProgress, Outcome> {
         let may_end = self.has_found || matches!(self.model, Ok(Model::New));
         if may_end && self.cancelled.get().is_some_and(|since| since.elapsed() >= GRACE) {
             self.end();
         }
         match self.task.as_ref().map(|task| task.next(waits)) {
             Some(Update::None) => Update::None,
-            Some(Update::Progress(SentProgress::Phase(phase))) => Update::Progress(Progress::Phase(phase)),
+            Some(Update::Progress(SentProgress::Phase(phase))) => Update::Progress(SolveProgress::Phase(phase)),
             Some(Update::Progress(SentProgress::Found(sent))) => {
                 self.has_found = true;
                 match self.take_over(*sent) {
@@ -216,12 +216,12 @@ impl RemoteSolve {
     }
 
     /// Returns a copy to display, and keeps the model.
-    fn display(&mut self, snapshot: Snapshot) -> Update<Progress, Outcome> {
+    fn display(&mut self, snapshot: Snapshot) -> Update<SolveProgress, Outcome> {
         let Snapshot { bodies, geometry, residuals } = snapshot;
         let copy = bodies.snapshot();
         self.model = Ok(Model::Existing(Box::new((bodies, None))));
         copy.map_or(Update::None, |bodies| {
-            Update::Progress(Progress::Snapshot(Box::new(Snapshot { bodies, geometry, residuals })))
+            Update::Progress(SolveProgress::Snapshot(Box::new(Snapshot { bodies, geometry, residuals })))
         })
     }
 }
@@ -245,7 +245,7 @@ mod tests {
             match solve.next(true) {
                 Update::Done(outcome) => break (outcome, geometries),
                 Update::Died => panic!("no result"),
-                Update::Progress(Progress::Snapshot(shown)) => geometries += usize::from(shown.geometry.is_some()),
+                Update::Progress(SolveProgress::Snapshot(shown)) => geometries += usize::from(shown.geometry.is_some()),
                 Update::None | Update::Progress(_) => {}
             }
         }
@@ -318,9 +318,9 @@ mod tests {
         solve.cancelled.set(Instant::now().checked_sub(GRACE));
         let first = loop {
             match solve.next(true) {
-                Update::Progress(Progress::Snapshot(shown)) => break Some(shown.bodies.simulation.iterations()),
+                Update::Progress(SolveProgress::Snapshot(shown)) => break Some(shown.bodies.simulation.iterations()),
                 Update::Done(_) | Update::Died => break None,
-                Update::None | Update::Progress(Progress::Phase(_)) => {}
+                Update::None | Update::Progress(SolveProgress::Phase(_)) => {}
             }
         };
         assert_eq!(first, Some(1));

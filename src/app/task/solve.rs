@@ -112,9 +112,9 @@ pub(crate) enum Phase {
     Certifying,
 }
 
-/// Progress of a solve.
+/// SolveProgress of a solve.
 #[derive(Debug)]
-pub(crate) enum Progress {
+pub(crate) enum SolveProgress {
     Phase(Phase),
     Snapshot(Box<Snapshot>),
 }
@@ -190,7 +190,7 @@ impl Model {
 ///
 /// # Errors
 /// [`Rejected`].
-pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlow<()>) -> Outcome {
+pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> Outcome {
     let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
     let needs_geometry = is_displayed && matches!(model, Model::New);
     let (mut bodies, mut geometry) = model.set_up(&scene)?;
@@ -200,7 +200,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlo
     start.apply(&mut bodies.simulation);
     if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
         let known = bodies.linear.take();
-        if report(Progress::Phase(Phase::LinearSolve)).is_continue() {
+        if report(SolveProgress::Phase(Phase::LinearSolve)).is_continue() {
             bodies.linear = solve_linear(&scene, bodies.simulation.system(), known);
         }
     }
@@ -208,7 +208,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlo
     while bodies.simulation.motion().is_none()
         && *bodies.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
-        && report(Progress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
+        && report(SolveProgress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
     {
         bodies.simulation.step();
         note_residual(&bodies.simulation, &mut residuals);
@@ -218,13 +218,13 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(Progress) -> ControlFlo
             && let Some(bodies) = bodies.snapshot()
         {
             let snapshot = Snapshot { bodies, geometry: geometry.take(), residuals: residuals.clone() };
-            let _ = report(Progress::Snapshot(Box::new(snapshot)));
+            let _ = report(SolveProgress::Snapshot(Box::new(snapshot)));
             shown = Some(Instant::now());
         }
     }
     let mut quality = None;
     let has_ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
-    if is_displayed && has_ended && report(Progress::Phase(Phase::Certifying)).is_continue() {
+    if is_displayed && has_ended && report(SolveProgress::Phase(Phase::Certifying)).is_continue() {
         bodies.simulation.certify();
         let mut own = Quality::default();
         own.update(&bodies.simulation);

@@ -61,7 +61,7 @@ pub(crate) struct Task<P, T> {
 /// Interface of a task for its thread.
 pub(crate) struct Reporter<P, T> {
     /// Sends a message; returns `false` if there is no receiver.
-    send: Box<dyn Fn(Message<P, T>) -> bool + Send>,
+    send: Box<dyn Fn(Message<P, T>) -> bool + Send + Sync>,
     is_cancelled: Arc<AtomicBool>,
 }
 

@@ -1,7 +1,6 @@
 //! Speed–accuracy study of motions: error of the first probe's path against computing time, for every integrator, time
 //! step, number of solves, method, element and mesh, on this machine.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -12,14 +11,15 @@ pub use self::reference::MotionReference;
 use self::reference::fine_path;
 use super::bound::{at_most, undecided};
 use super::fine::finest_element;
-use super::parallel::{self, CalledOff};
+use super::parallel;
 use super::pareto;
-use super::progress::{Extent, Observer, PartialObserver, Progress, StudyError, all_done, check};
+use super::progress::{Extent, StudyError, all_done, check};
 use super::reference::{first_probe, system_of};
 use super::timing::{Runs, median_time};
 use super::trade::{Setting, mesh_text};
 use crate::assembly::{Mass, System};
 use crate::dynamics::{Counts, critical_step};
+use crate::progress::{Observer, Progress};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status};
@@ -271,26 +271,31 @@ impl MotionStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
-        Self::observed(scene, extent, &mut |progress, _| observe(progress))
+        Self::with_partial(scene, extent, observe, &mut |_| {})
     }
 
-    /// Measures as [`Self::new`]; the observer also receives the partial study each time a mesh is done.
+    /// Measures as [`Self::new`]; `partial` receives the study so far each time a mesh is done.
     ///
     /// # Errors
     /// [`StudyError`].
-    pub fn observed(scene: &Scene, extent: Extent, observe: PartialObserver<'_, Self>) -> Result<Self, StudyError> {
+    pub fn with_partial(
+        scene: &Scene,
+        extent: Extent,
+        observe: Observer<'_>,
+        partial: &mut dyn FnMut(&Self),
+    ) -> Result<Self, StudyError> {
         let plan = extent.plan();
         MotionReference::check(scene)?;
         let samples = Samples::of(scene, plan)?;
         let studied = Studied { scene, samples, plan };
-        let reference = MotionReference::new(scene, extent, &mut |progress| {
-            observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress }, None)
+        let reference = MotionReference::new(scene, extent, &|progress| {
+            observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
         })?;
         let meshes = MeshPlan::all(scene, extent);
-        let own = |mesh: &MeshPlan, cancelled: &CalledOff| Meshed::new(studied, mesh, cancelled);
+        let own = |mesh: &MeshPlan, observe: Observer<'_>| Meshed::new(studied, mesh, observe);
         let meshed = all_done(parallel::map(&meshes, own, |done| {
             let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-            observe(Progress { fraction, now: &sentence!("the motion on every mesh") }, None)
+            observe(Progress { fraction, now: Some(&sentence!("the motion on every mesh")) })
         }))?;
         let mut study = Self {
             scene: scene.name.clone(),
@@ -306,8 +311,8 @@ impl MotionStudy {
         let mut done = 0.0;
         for (mesh, meshed) in meshes.iter().zip(&meshed) {
             let fraction = |part: f64| before + (1.0 - before) * (done + part * mesh.weight()) / all;
-            let measured = study.measure(studied, mesh, meshed, &mut |part, now| {
-                observe(Progress { fraction: fraction(part), now }, None)
+            let measured = study.measure(studied, mesh, meshed, &|part| {
+                observe(Progress { fraction: fraction(part.fraction), ..part })
             });
             match measured {
                 // Keep the measurements made so far.
@@ -320,35 +325,37 @@ impl MotionStudy {
             let mut so_far = study.clone();
             so_far.is_partial = true;
             so_far.mark_pareto();
+            partial(&so_far);
             // A cancellation is seen by the next mesh.
-            let _ = observe(Progress { fraction: fraction(1.0), now: &Sentence::default() }, Some(&so_far));
+            let _ = observe(Progress::at(fraction(1.0)));
             done += mesh.weight();
         }
         study.mark_pareto();
         Ok(study)
     }
 
-    /// Measures every setting on a mesh. `say` receives the completed fraction and the current setting, and can cancel.
+    /// Measures every setting on a mesh. A cancelled measurement keeps its results.
     fn measure(
         &mut self,
         studied: Studied<'_>,
         mesh: &MeshPlan,
         meshed: &Meshed,
-        say: &mut dyn FnMut(f64, &Sentence) -> ControlFlow<()>,
+        observe: Observer<'_>,
     ) -> Result<(), StudyError> {
         // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let first = |job: &Job, cancelled: &CalledOff| {
+        let first = |job: &Job, observe: Observer<'_>| {
             let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
-            FirstRun::new(studied, meshed, setting, steps, cancelled)
+            FirstRun::new(studied, meshed, setting, steps, observe)
         };
         let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
         let first = all_done(parallel::map(&mesh.jobs, first, |done| {
-            say(FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, &now)
+            observe(Progress { fraction: FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, now: Some(&now) })
         }))?;
         let mut done = 0.0;
         for (job, first) in mesh.jobs.iter().zip(first) {
             let part = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * done / mesh.weight();
-            check(say(part, &(&first.setting).into()))?;
+            let now = (&first.setting).into();
+            check(observe(Progress { fraction: part, now: Some(&now) }))?;
             self.measurements.push(MotionMeasurement {
                 setting: first.setting,
                 dofs: meshed.system.dofs(),
@@ -456,7 +463,7 @@ struct Meshed {
 }
 
 impl Meshed {
-    fn new(studied: Studied<'_>, mesh: &MeshPlan, cancelled: &CalledOff) -> Result<Self, StudyError> {
+    fn new(studied: Studied<'_>, mesh: &MeshPlan, observe: Observer<'_>) -> Result<Self, StudyError> {
         let Studied { scene, samples, plan } = studied;
         let MeshPlan { element, cells, .. } = *mesh;
         let scene = Setting { element, cells, method: MethodKind::Newton, iterations: 0 }.apply(scene);
@@ -464,7 +471,7 @@ impl Meshed {
         let simulation = Simulation::with_system(&scene, system.clone())?;
         let mass = Mass::new(&system, scene.material.area_density());
         let critical = critical_step(simulation.problem(), &mass, scene.dynamics.damping);
-        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), cancelled);
+        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), observe);
         let (exact, linear) = (own(MethodKind::Newton)?, own(MethodKind::Linear)?);
         Ok(Self { system, exact, linear, critical })
     }
@@ -491,7 +498,7 @@ impl FirstRun {
         mesh: &Meshed,
         setting: MotionSetting,
         steps_of_sample: u32,
-        cancelled: &CalledOff,
+        observe: Observer<'_>,
     ) -> Result<Self, StudyError> {
         let Studied { scene, samples, plan } = studied;
         let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
@@ -500,7 +507,7 @@ impl FirstRun {
             run(&mut simulation, MIN_STEPS);
             (MIN_STEPS, Vec::new())
         } else {
-            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, cancelled)?)
+            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, observe)?)
         };
         let stopped = matches!(simulation.status(), Status::Stopped(_));
         let ending = match (stopped, cut) {
@@ -544,11 +551,11 @@ fn path(
     simulation: &mut Simulation,
     samples: Samples,
     steps: u32,
-    cancelled: &CalledOff,
+    observe: Observer<'_>,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut path = Vec::with_capacity(samples.count as usize);
     for _ in 0..samples.count {
-        check(cancelled.flow())?;
+        check(observe(Progress::at(0.0)))?;
         run(simulation, steps);
         if matches!(simulation.status(), Status::Stopped(_)) {
             break;

@@ -8,12 +8,13 @@ use super::plan::{Plan, Samples, cells};
 use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
 use crate::mesh::Mesh;
+use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::fine::finest_element;
-use crate::study::parallel::{self, CalledOff};
-use crate::study::progress::{Extent, Observer, Progress, StudyError, all_done};
+use crate::study::parallel;
+use crate::study::progress::{Extent, StudyError, all_done};
 use crate::study::reference::system_of;
 use crate::study::trade::mesh_text;
 
@@ -85,11 +86,14 @@ impl MotionReference {
         let [coarse, fine] = meshes(scene, plan)?;
         // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
-        let follow = |&(mesh, steps): &(&Reference, u32), cancelled: &CalledOff| {
-            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, cancelled)
+        let follow = |&(mesh, steps): &(&Reference, u32), observe: Observer<'_>| {
+            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, observe)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
-            observe(Progress { fraction: done as f64 / paths.len() as f64, now: &sentence!("the reference solution") })
+            observe(Progress {
+                fraction: done as f64 / paths.len() as f64,
+                now: Some(&sentence!("the reference solution")),
+            })
         }))?;
         let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);
@@ -130,7 +134,7 @@ pub(super) fn fine_path(
     system: &Arc<System>,
     samples: Samples,
     steps: u32,
-    cancelled: &CalledOff,
+    observe: Observer<'_>,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut scene = scene.clone();
     scene.solver.method = method;
@@ -139,7 +143,7 @@ pub(super) fn fine_path(
     dynamics.time_step = samples.interval / f64::from(steps);
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     simulation.keep_ledger(false);
-    let path = path(&mut simulation, samples, steps, cancelled)?;
+    let path = path(&mut simulation, samples, steps, observe)?;
     match simulation.status() {
         Status::Stopped(reason) => Err(StudyError::NoPath(*reason)),
         _ => Ok(path),

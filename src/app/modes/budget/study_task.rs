@@ -5,14 +5,16 @@ use serde::{Deserialize, Serialize};
 use crate::app::modes::budget::measured::Measured;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Reporter, Task, Update, Work};
+use crate::progress::Progress;
 use crate::scene::{Analysis, Scene};
 use crate::sentence::{Sentence, sentence};
-use crate::study::{Extent, MotionStudy, Progress, Study, StudyError};
+use crate::study::{Extent, MotionStudy, Study, StudyError};
 
 /// Progress report of a study.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum StudyProgress {
-    Now(f32, Sentence),
+    /// Fraction done, and the current measurement, if it is another one.
+    Now(f32, Option<Sentence>),
     SoFar(Measured),
 }
 
@@ -76,7 +78,10 @@ impl Background {
     pub(crate) fn poll(&mut self, study: &mut Option<Measured>) -> StudyState {
         loop {
             match self.task.poll() {
-                Update::Progress(StudyProgress::Now(fraction, now)) => (self.fraction, self.now) = (fraction, now),
+                Update::Progress(StudyProgress::Now(fraction, now)) => {
+                    self.fraction = fraction;
+                    self.now = now.unwrap_or(std::mem::take(&mut self.now));
+                }
                 Update::Progress(StudyProgress::SoFar(so_far)) => *study = Some(so_far),
                 Update::Done(Ok(done)) => {
                     *study = Some(done);
@@ -95,23 +100,20 @@ impl Background {
 }
 
 fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Result<Measured, StudyError> {
-    let report = |progress: Progress<'_>, so_far: Option<Measured>| {
-        reporter.report(match so_far {
-            Some(measured) => StudyProgress::SoFar(measured),
-            None => StudyProgress::Now(progress.fraction as f32, progress.now.clone()),
-        })
+    let observe =
+        &|progress: Progress<'_>| reporter.report(StudyProgress::Now(progress.fraction as f32, progress.now.cloned()));
+    // A cancellation is seen by the next report of progress.
+    let partial = |measured| {
+        let _ = reporter.report(StudyProgress::SoFar(measured));
     };
     match scene.analysis {
         Analysis::Static => {
-            let mut observe =
-                |progress: Progress<'_>, study: Option<&Study>| report(progress, study.cloned().map(Measured::Rest));
-            Study::observed(scene, extent, &mut observe).map(Measured::Rest)
+            let partial = &mut |study: &Study| partial(Measured::Rest(study.clone()));
+            Study::with_partial(scene, extent, observe, partial).map(Measured::Rest)
         }
         Analysis::Dynamic => {
-            let mut observe = |progress: Progress<'_>, study: Option<&MotionStudy>| {
-                report(progress, study.cloned().map(Measured::Motion))
-            };
-            MotionStudy::observed(scene, extent, &mut observe).map(Measured::Motion)
+            let partial = &mut |study: &MotionStudy| partial(Measured::Motion(study.clone()));
+            MotionStudy::with_partial(scene, extent, observe, partial).map(Measured::Motion)
         }
     }
 }

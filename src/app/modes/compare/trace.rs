@@ -12,11 +12,12 @@ use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
 use crate::app::session::compared_solve::Activity;
 use crate::app::session::facts::without_settings;
-use crate::app::task::keyed::{Keyed, Watch, facts};
+use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::CurvePlot;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, three_digits};
+use crate::progress::Observer;
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
 use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
@@ -129,7 +130,7 @@ impl Default for Trace {
 
 facts! {
     /// Curve of the exact beam.
-    ExactLine by with_round_load = "exact-line": Vec<Exact>, |scene, watch| Ok(exact_line(&with_round_load(scene), watch));
+    ExactLine by with_round_load = "exact-line": Vec<Exact>, |scene, observe| Ok(exact_line(&with_round_load(scene), observe));
 }
 
 /// Returns the scene without the panes' settings, and with its load raised to the next power of four: the exact curve up
@@ -146,13 +147,13 @@ fn with_round_load(scene: &Scene) -> Scene {
 }
 
 /// Returns the displacement of the first probe of the exact beam over the traced load.
-fn exact_line(scene: &Scene, watch: Watch<'_>) -> Option<Vec<Exact>> {
+fn exact_line(scene: &Scene, observe: Observer<'_>) -> Option<Vec<Exact>> {
     let axis = Axis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
     // The load curve scales all loads together, so it applies to a single load only.
     if has_several_loads(scene) || scene.probes.first()?.place != Place::from("right") {
         return None;
     }
-    let curve = LoadCurve::observed(scene, watch)?;
+    let curve = LoadCurve::observed(scene, observe)?;
     Some(curve.samples.iter().map(|s| (s.factor * axis.magnitude, s.exact)).collect())
 }
 

@@ -5,11 +5,11 @@ use egui::{Button, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
-use crate::app::task::keyed::Watch;
 use crate::app::widgets::palette::{Palette, SMALL};
+use crate::progress::{Observer, Progress};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::{Simulation, Status, probe_results};
-use crate::study::{Effort, Progress, Reference};
+use crate::study::{Effort, Reference};
 
 /// Error of an element on the scene's cells.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -22,15 +22,14 @@ pub(crate) struct ElementError {
 }
 
 /// Returns the errors of all elements that the scene's cells can have, each at its own equilibrium.
-pub(super) fn errors(scene: &Scene, watch: Watch<'_>) -> Option<Vec<ElementError>> {
-    let observe = &mut |progress: Progress<'_>| watch(progress.fraction);
+pub(super) fn errors(scene: &Scene, observe: Observer<'_>) -> Option<Vec<ElementError>> {
     let reference = Reference::find(scene, None, Effort::Bounded, observe).ok()?.first()?;
     let error = |element: ElementKind| {
         let mut scene = scene.clone();
         scene.set_element(element);
         scene.solver.method = MethodKind::Newton;
         let mut simulation = Simulation::new(&scene).ok()?;
-        let is_cancelled = simulation.solve_watched(&mut |_| watch(1.0)).is_break();
+        let is_cancelled = simulation.solve_watched(&mut |_| observe(Progress::at(1.0))).is_break();
         if is_cancelled || *simulation.status() != Status::Converged {
             return None;
         }

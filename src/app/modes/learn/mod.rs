@@ -7,11 +7,12 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::task::keyed::{Keyed, Watch, facts};
+use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
+use crate::progress::{Observer, Progress};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
@@ -65,9 +66,9 @@ pub(crate) enum Needs {
 
 facts! {
     /// Spectral radius ρ of the warped iteration at the equilibrium.
-    Rho by without_solver = "rho": f64, |scene, watch| Ok(fixed_point_rho(scene, watch));
+    Rho by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
     /// Errors of all elements.
-    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, watch| Ok(locking::errors(scene, watch));
+    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, observe| Ok(locking::errors(scene, observe));
 }
 
 fn without_solver(scene: &Scene) -> Scene {
@@ -484,14 +485,14 @@ pub(crate) fn article() -> Option<(Source, Scene)> {
 
 /// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
 /// warped iteration may diverge.
-fn fixed_point_rho(scene: &Scene, watch: Watch<'_>) -> Option<f64> {
+fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     if scene.analysis != Analysis::Static {
         return None;
     }
     let mut scene = scene.clone();
     scene.solver.method = MethodKind::Newton;
     let mut simulation = Simulation::new(&scene).ok()?;
-    if simulation.solve_watched(&mut |_| watch(0.0)).is_break() {
+    if simulation.solve_watched(&mut |_| observe(Progress::at(0.0))).is_break() {
         return None;
     }
     simulation.certify().fixed_point_rho

@@ -15,9 +15,10 @@ use crate::app::shell::lab::Lab;
 use crate::app::viewport::color_range::range_of;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
+use crate::progress::{Observer, Progress};
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Analysis, Scene, Source};
-use crate::sentence::Sentence;
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Field, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::stress::RecoveryScratch;
@@ -113,33 +114,6 @@ pub struct RecordOptions {
     pub language: Language,
 }
 
-/// Phase of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// The motion is simulated to find the ranges of the camera and of the colours.
-    Looking,
-    /// Frames are drawn.
-    Drawing,
-}
-
-/// Progress of a recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RecordProgress {
-    /// Current phase.
-    pub phase: Phase,
-    /// Fraction of the phase that is done, 0 to 1.
-    pub fraction: f64,
-    /// Current simulated time of the motion, s.
-    pub time: f64,
-    /// Number of frames drawn so far.
-    pub drawn: u64,
-    /// Total number of frames; 0 until it is known.
-    pub pictures: u64,
-}
-
-/// Callback that receives the progress of a recording, and can cancel it with [`ControlFlow::Break`].
-pub type RecordObserver<'a> = &'a mut dyn FnMut(RecordProgress) -> ControlFlow<()>;
-
 /// Result of a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -167,7 +141,7 @@ pub fn record(
     mut scene: Scene,
     options: &RecordOptions,
     output: &Path,
-    observe: RecordObserver<'_>,
+    observe: Observer<'_>,
 ) -> Result<Recorded, AppError> {
     let format = MovieFormat::of(output)?;
     if format == MovieFormat::Folder && !options.overwrite {
@@ -216,16 +190,11 @@ pub fn record(
     if format == MovieFormat::Folder {
         film::clear(output, options.overwrite)?;
     }
+    let now = sentence!("recording %{file}", file = output.display().to_string());
     let mut film = Film::create(output, format, delay, &samples, options.size)?;
     for k in 0..preview.pictures {
-        let told = |time: f64| RecordProgress {
-            phase: Phase::Drawing,
-            fraction: k as f64 / preview.pictures as f64,
-            time,
-            drawn: k,
-            pictures: preview.pictures,
-        };
-        let reached = reel.advance(k, &mut lab, &mut |time| observe(told(time)));
+        let fraction = k as f64 / preview.pictures as f64;
+        let reached = reel.advance(k, &mut lab, &mut |_| observe(Progress { fraction, now: Some(&now) }));
         // Even a cancelled recording has one frame, because a file without frames is invalid.
         if k > 0 && reached != Reached::Picture {
             break;
@@ -357,7 +326,8 @@ struct Preview {
 
 impl Preview {
     /// Simulates the whole recording; `None` if it was cancelled.
-    fn new(reel: &Reel, mut simulation: Simulation, observe: RecordObserver<'_>) -> Option<Self> {
+    fn new(reel: &Reel, mut simulation: Simulation, observe: Observer<'_>) -> Option<Self> {
+        let now = sentence!("preparing the recording");
         let moves = simulation.motion().is_some();
         let (low, high) = simulation.system().mesh().bounds();
         let largest = LARGEST_VIEW * (high - low).norm();
@@ -366,14 +336,9 @@ impl Preview {
         let mut range = Vec::new();
         let mut stride = 1;
         loop {
-            let told = |time| RecordProgress {
-                phase: Phase::Looking,
-                fraction: if moves { time / reel.duration } else { 0.0 },
-                time,
-                drawn: 0,
-                pictures: 0,
-            };
-            match reel.advance(preview.pictures, &mut simulation, &mut |time| observe(told(time))) {
+            let fraction = |time| if moves { time / reel.duration } else { 0.0 };
+            let observe = &mut |time| observe(Progress { fraction: fraction(time), now: Some(&now) });
+            match reel.advance(preview.pictures, &mut simulation, observe) {
                 Reached::CalledOff => return None,
                 Reached::End => break,
                 Reached::Picture => {}
@@ -483,7 +448,7 @@ mod tests {
         for id in ["swing", "jelly", "spin", "elastica"] {
             let again = || simulation(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
             let reel = reel(&again(), 0.04);
-            let preview = Preview::new(&reel, again(), &mut |_| ControlFlow::Continue(())).unwrap();
+            let preview = Preview::new(&reel, again(), &|_| ControlFlow::Continue(())).unwrap();
             assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
             let mut values = Vec::new();
             let moves = again().motion().is_some();
@@ -503,10 +468,9 @@ mod tests {
             });
             assert_eq!(seen, preview.pictures, "{id}");
         }
-        let cancelled =
-            Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &mut |progress| {
-                if progress.time > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            });
+        let cancelled = Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &|progress| {
+            if progress.fraction > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         assert!(cancelled.is_none());
     }
 
@@ -518,7 +482,7 @@ mod tests {
             let (low, high) = swing.system().mesh().bounds();
             (high - low).norm()
         };
-        let preview = Preview::new(&reel(&swing, 0.001), swing, &mut |_| ControlFlow::Continue(())).unwrap();
+        let preview = Preview::new(&reel(&swing, 0.001), swing, &|_| ControlFlow::Continue(())).unwrap();
         assert!((preview.high - preview.low).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
         assert!(preview.pictures > 1);
     }
