@@ -23,7 +23,7 @@ mod widgets;
 mod window;
 
 pub use language::Language;
-pub use modes::compare::{MotionPane, MotionPaneSetting, Pane, PaneSetting, PaneSettingError, parse_panes};
+pub use modes::compare::{MotionPane, Pane, PaneSetting, PaneSettingError, parse_panes};
 #[doc(hidden)]
 pub use modes::learn::card_count;
 pub use offscreen::record::{MovieFormat, RecordError, RecordOptions, Recorded, record};

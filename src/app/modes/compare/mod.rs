@@ -40,7 +40,7 @@ mod setting;
 pub(crate) mod trace;
 
 pub(crate) use motion::MotionCompare;
-pub use motion::{MotionPane, MotionPaneSetting};
+pub use motion::MotionPane;
 pub use pane::Pane;
 pub(crate) use panes::PaneInput;
 pub use setting::{PaneSetting, PaneSettingError, parse_panes};
@@ -353,7 +353,7 @@ impl Compare {
 }
 
 /// Shows the pickers of a pane, and its result.
-fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<'_>) -> PaneChange<PaneSetting> {
+fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<'_>) -> PaneChange {
     let (pane, scene) = (panes.list.get(number)?, input.common.scene);
     let palette = Palette::new(ui.visuals());
     let color = pane.setting.of(scene).method.map_or(palette.text, |method| palette.method(method));

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::grid::{self, Preset, grow};
 use super::panes::{self, ComparedPane, Condition, PaneChange, PaneDisplay, PaneInput, Panes};
+use super::setting::PaneSetting;
 use crate::app::language::{fill, joined, percent, said, sentence, tr};
 use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::compared_motion::ComparedMotion;
@@ -15,46 +16,13 @@ use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::format::{engineering, three_digits, two_digits};
 use crate::render::{Camera, Margins, View};
-use crate::scene::{ElementKind, IntegratorKind, Scene};
+use crate::scene::{ElementKind, Scene};
 use crate::simulation::{Motion, Simulation};
-
-/// Settings of a pane; `None` means the setting of the scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MotionPaneSetting {
-    /// Integrator.
-    pub integrator: Option<IntegratorKind>,
-    /// Element.
-    pub element: Option<ElementKind>,
-    /// Cells along and across.
-    pub cells: Option<[u32; 2]>,
-}
-
-impl MotionPaneSetting {
-    fn of_integrator(integrator: IntegratorKind) -> Self {
-        Self { integrator: Some(integrator), ..Self::default() }
-    }
-
-    fn of_element(element: ElementKind) -> Self {
-        Self { element: Some(element), ..Self::default() }
-    }
-
-    /// Returns the scene with these settings.
-    #[must_use]
-    pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut scene = scene.clone();
-        scene.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
-        scene.set_element(self.element.unwrap_or(scene.element()));
-        if let (Some(beam), Some(cells)) = (&mut scene.beam, self.cells) {
-            beam.cells = cells;
-        }
-        scene
-    }
-}
 
 /// Motion with settings of its own.
 #[derive(Debug)]
 pub struct MotionPane {
-    setting: MotionPaneSetting,
+    setting: PaneSetting,
     motion: ComparedMotion,
     display: PaneDisplay,
 }
@@ -62,7 +30,7 @@ pub struct MotionPane {
 impl MotionPane {
     /// Returns the settings of the pane.
     #[must_use]
-    pub fn setting(&self) -> &MotionPaneSetting {
+    pub fn setting(&self) -> &PaneSetting {
         &self.setting
     }
 
@@ -80,17 +48,15 @@ impl MotionPane {
 }
 
 impl ComparedPane for MotionPane {
-    type Setting = MotionPaneSetting;
-
-    fn new(setting: MotionPaneSetting) -> Self {
+    fn new(setting: PaneSetting) -> Self {
         Self { setting, motion: ComparedMotion::default(), display: PaneDisplay::default() }
     }
 
-    fn own_setting(&self) -> MotionPaneSetting {
+    fn own_setting(&self) -> PaneSetting {
         self.setting
     }
 
-    fn change_setting(&mut self, setting: MotionPaneSetting) {
+    fn change_setting(&mut self, setting: PaneSetting) {
         *self = Self::new(setting);
     }
 
@@ -126,8 +92,8 @@ impl Default for MotionCompare {
 }
 
 /// Returns settings with the first three implicit integrators of the registry.
-fn integrators() -> Vec<MotionPaneSetting> {
-    INTEGRATORS.iter().filter(|i| !i.is_explicit()).take(3).map(|i| MotionPaneSetting::of_integrator(i.kind)).collect()
+fn integrators() -> Vec<PaneSetting> {
+    INTEGRATORS.iter().filter(|i| !i.is_explicit()).take(3).map(|i| PaneSetting::of_integrator(i.kind)).collect()
 }
 
 impl MotionCompare {
@@ -209,7 +175,7 @@ impl MotionCompare {
             },
             Preset {
                 name: elements.iter().map(|element| element.id()).collect::<Vec<_>>().join(" | "),
-                settings: elements.iter().map(|&element| MotionPaneSetting::of_element(element)).collect(),
+                settings: elements.iter().map(|&element| PaneSetting::of_element(element)).collect(),
                 enabled: elements.len() > 1,
                 tip: "All elements that the mesh can have, with the panel's integrator",
                 unless: "The mesh of this file can have one element only",
@@ -227,7 +193,7 @@ impl MotionCompare {
                 if grid::add_button(ui, present.len()) {
                     let used = |kind| present.iter().any(|setting| setting.integrator == Some(kind));
                     let unused = INTEGRATORS.iter().map(|entry| entry.kind).find(|&kind| !used(kind));
-                    self.panes.add(unused.map(MotionPaneSetting::of_integrator).unwrap_or_default());
+                    self.panes.add(unused.map(PaneSetting::of_integrator).unwrap_or_default());
                 }
                 let time = self.panes().iter().find_map(|pane| Some(pane.simulation()?.state().time()));
                 ui.label(RichText::new(fill!("t = %{time}", time = format!("{:.2} s", time.unwrap_or(0.0)))));
@@ -273,12 +239,7 @@ impl MotionCompare {
 }
 
 /// Shows the pickers of a pane, and its result.
-fn header(
-    panes: &Panes<MotionPane>,
-    ui: &mut Ui,
-    number: usize,
-    input: &PaneInput<'_>,
-) -> PaneChange<MotionPaneSetting> {
+fn header(panes: &Panes<MotionPane>, ui: &mut Ui, number: usize, input: &PaneInput<'_>) -> PaneChange {
     let (pane, scene) = (panes.list.get(number)?, input.scene);
     let palette = Palette::new(ui.visuals());
     let color = palette.integrator(pane.setting.integrator.unwrap_or(scene.dynamics.integrator));

@@ -120,8 +120,6 @@ impl Pane {
 }
 
 impl ComparedPane for Pane {
-    type Setting = PaneSetting;
-
     fn new(setting: PaneSetting) -> Self {
         let solve = ComparedSolve::new(setting.iterations);
         Self { setting, solve, display: PaneDisplay::default(), error: None }

@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Rect, Sense, Ui, UiBuilder, vec2};
 use nalgebra::Vector2;
 
 use super::grid::{self, Grid};
-use super::setting::PANES;
+use super::setting::{PANES, PaneSetting};
 use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
 use crate::app::session::playback::Playback;
@@ -88,13 +88,10 @@ pub(super) enum Condition {
 
 /// Pane of a comparison.
 pub(super) trait ComparedPane {
-    /// Setting of a pane.
-    type Setting: Copy + PartialEq;
-
-    fn new(setting: Self::Setting) -> Self;
-    fn own_setting(&self) -> Self::Setting;
+    fn new(setting: PaneSetting) -> Self;
+    fn own_setting(&self) -> PaneSetting;
     /// Changes the setting, and restarts.
-    fn change_setting(&mut self, setting: Self::Setting);
+    fn change_setting(&mut self, setting: PaneSetting);
     fn display(&self) -> &PaneDisplay;
     fn condition(&self) -> Condition;
 
@@ -107,7 +104,7 @@ pub(super) trait ComparedPane {
 }
 
 /// Change of a pane by its header: its new setting; `None` closes the pane.
-pub(super) type PaneChange<S> = Option<Option<S>>;
+pub(super) type PaneChange = Option<Option<PaneSetting>>;
 
 /// Panes side by side.
 #[derive(Debug)]
@@ -121,25 +118,25 @@ pub(super) struct Panes<P> {
 
 impl<P: ComparedPane> Panes<P> {
     /// Creates panes with these settings, at most four.
-    pub(super) fn new(settings: &[P::Setting]) -> Self {
+    pub(super) fn new(settings: &[PaneSetting]) -> Self {
         let mut panes = Self { list: Vec::new(), controller: None, still: Playback::default() };
         panes.set(settings);
         panes
     }
 
     /// Replaces all panes by panes with these settings, at most four.
-    pub(super) fn set(&mut self, settings: &[P::Setting]) {
+    pub(super) fn set(&mut self, settings: &[PaneSetting]) {
         self.list = settings.iter().take(*PANES.end()).map(|&setting| P::new(setting)).collect();
         self.fit();
     }
 
     /// Adds a pane.
-    pub(super) fn add(&mut self, setting: P::Setting) {
+    pub(super) fn add(&mut self, setting: PaneSetting) {
         self.list.push(P::new(setting));
         self.fit();
     }
 
-    pub(super) fn settings(&self) -> Vec<P::Setting> {
+    pub(super) fn settings(&self) -> Vec<PaneSetting> {
         self.list.iter().map(P::own_setting).collect()
     }
 
@@ -208,7 +205,7 @@ impl<P: ComparedPane> Panes<P> {
         ui: &mut Ui,
         cells: &[Rect],
         (input, exact): (&PaneInput<'_>, &[Vec<Vector2<f64>>]),
-        show_header: impl Fn(&Self, &mut Ui, usize) -> PaneChange<P::Setting>,
+        show_header: impl Fn(&Self, &mut Ui, usize) -> PaneChange,
     ) -> Interaction {
         let (mut changes, mut interaction) = (Vec::new(), Interaction::default());
         for (number, cell) in cells.iter().enumerate() {
@@ -248,8 +245,8 @@ impl<P: ComparedPane> Panes<P> {
         (number, color): (usize, Color32),
         input: &PaneInput<'_>,
         (shares, widest): ([f32; 3], f32),
-        pick: impl FnOnce(&mut Ui, &str, [f32; 3], &mut P::Setting),
-    ) -> PaneChange<P::Setting> {
+        pick: impl FnOnce(&mut Ui, &str, [f32; 3], &mut PaneSetting),
+    ) -> PaneChange {
         let before = self.list.get(number)?.own_setting();
         let (mut setting, mut is_closed) = (before, false);
         ui.horizontal(|ui| {

@@ -1,4 +1,4 @@
-//! Settings of a pane: method, element, mesh, iterations; and their text form.
+//! Settings of a pane: method, element, mesh, iterations, integrator; and their text form.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use crate::app::language::{self, tr};
 use crate::element::ELEMENTS;
 use crate::format::count;
 use crate::method::METHODS;
-use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::Setting;
 
 /// Smallest and largest number of panes.
@@ -26,6 +26,8 @@ pub struct PaneSetting {
     pub cells: Option<[u32; 2]>,
     /// Number of iterations after which a solve is stopped.
     pub iterations: Option<u32>,
+    /// Integrator of a motion.
+    pub integrator: Option<IntegratorKind>,
 }
 
 /// Error in the text form of panes.
@@ -67,6 +69,11 @@ impl PaneSetting {
         Self { element: Some(element), ..Self::default() }
     }
 
+    /// Returns settings that change the integrator only.
+    pub(super) fn of_integrator(integrator: IntegratorKind) -> Self {
+        Self { integrator: Some(integrator), ..Self::default() }
+    }
+
     /// Returns the settings with the scene's own values filled in.
     #[must_use]
     pub fn of(&self, scene: &Scene) -> Self {
@@ -74,20 +81,22 @@ impl PaneSetting {
             method: Some(self.method.unwrap_or(scene.solver.method)),
             element: Some(self.element.unwrap_or(scene.element())),
             cells: scene.beam.as_ref().map(|beam| self.cells.unwrap_or(beam.cells)),
-            iterations: self.iterations,
+            ..*self
         }
     }
 
     /// Returns the scene with these settings.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
-        Setting {
+        let mut scene = Setting {
             method: self.method.unwrap_or(scene.solver.method),
             element: self.element.unwrap_or(scene.element()),
             cells: self.cells,
             iterations: 0,
         }
-        .apply(scene)
+        .apply(scene);
+        scene.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
+        scene
     }
 }
 
@@ -98,6 +107,7 @@ impl From<Setting> for PaneSetting {
             element: Some(setting.element),
             cells: setting.cells,
             iterations: Some(setting.iterations),
+            integrator: None,
         }
     }
 }
@@ -105,24 +115,24 @@ impl From<Setting> for PaneSetting {
 impl PaneSetting {
     /// Returns the name of the settings in the window.
     pub(super) fn text(&self) -> String {
+        self.named(tr, |n| language::count(n, "iteration"))
+    }
+
+    /// Joins the names of the given values.
+    fn named(&self, tr: fn(&'static str) -> &'static str, count: fn(u32) -> String) -> String {
         let method = self.method.map(|method| tr(method.id()).to_owned());
         let element = self.element.map(|element| element.id().to_owned());
         let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
-        let iterations = self.iterations.map(|n| language::count(n, "iteration"));
-        let parts: Vec<String> = [method, element, cells, iterations].into_iter().flatten().collect();
+        let integrator = self.integrator.map(|integrator| tr(integrator.id()).to_owned());
+        let parts: Vec<_> =
+            [method, element, cells, self.iterations.map(count), integrator].into_iter().flatten().collect();
         if parts.is_empty() { tr("the scene").to_owned() } else { parts.join(" ") }
     }
 }
 
 impl fmt::Display for PaneSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let method = self.method.map(|method| method.id().to_owned());
-        let element = self.element.map(|element| element.id().to_owned());
-        let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
-        let iterations = self.iterations.map(|n| count(n, "iteration"));
-        let parts: Vec<String> = [method, element, cells, iterations].into_iter().flatten().collect();
-        f.write_str(if parts.is_empty() { "the scene" } else { "" })?;
-        f.write_str(&parts.join(" "))
+        f.write_str(&self.named(|text| text, |n| count(n, "iteration")))
     }
 }
 
@@ -156,6 +166,7 @@ impl FromStr for PaneSetting {
                 element: element.or(setting.element),
                 cells: cells.or(setting.cells),
                 iterations: iterations.or(setting.iterations),
+                ..setting
             };
         }
         Ok(setting)
@@ -182,6 +193,7 @@ mod tests {
             element: Some(ElementKind::T6),
             cells: Some([10, 2]),
             iterations: Some(4),
+            integrator: None,
         };
         for text in ["warped:t6:10x2:4", "10×2:4:t6:warped", " warped : t6 : 10x2 : 4 "] {
             assert_eq!(text.parse(), Ok(all), "{text}");
