@@ -29,6 +29,8 @@ pub(crate) struct Readout<'a> {
     pub iterations: u32,
     /// Time of the iterations made for the last displayed frame.
     pub timings: &'a Timings,
+    /// Time of a solve from rest; `None` until it has been measured.
+    pub solve_time: Option<&'a Timings>,
     /// Residual after every iteration since the last change.
     pub residuals: &'a [f64],
     pub can_undo: bool,

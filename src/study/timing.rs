@@ -1,9 +1,12 @@
 //! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
 use std::ops::RangeInclusive;
+use std::sync::{Mutex, PoisonError};
 
 use web_time::{Duration, Instant};
 
+use crate::progress::{Observer, Progress};
+use crate::scene::Scene;
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
@@ -15,31 +18,56 @@ const REPETITIONS: usize = 9;
 const MIN_REPETITIONS: usize = 3;
 /// Time after which repetitions count as long.
 const LONG: Duration = Duration::from_millis(400);
+/// Time after which no further repetition is started, not even after a single one.
+const TOO_LONG: Duration = Duration::from_secs(2);
+/// Time of the repetitions in a web page, whose clock advances by steps of 0.1 ms: the mean over many repetitions is
+/// finer than a step.
+const COARSE_CLOCK: Option<Duration> =
+    if cfg!(target_arch = "wasm32") { Some(Duration::from_millis(100)) } else { None };
+/// Held while solves are timed: two timed at once would slow each other down.
+static TIMED: Mutex<()> = Mutex::new(());
 
-/// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before.
+/// Returns the time of a solve of a scene from rest, the median of repeated solves; `None` for a motion, and if the
+/// scene cannot be solved or the computation is cancelled.
 #[must_use]
-pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timings> {
+pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<Timings> {
+    let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
+    times_from_rest(&mut simulation, u32::MAX, observe).pop()
+}
+
+/// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,
+/// and none if the computation is cancelled. Only one thread of the process measures at a time.
+#[must_use]
+pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Observer<'_>) -> Vec<Timings> {
+    let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
     let mut runs: Vec<Vec<Timings>> = Vec::new();
     let start = Instant::now();
-    for repetition in 0..WARM_UP + REPETITIONS {
-        if runs.len() >= MIN_REPETITIONS && start.elapsed() > LONG {
-            break;
-        }
+    let is_enough = |runs: usize, spent: Duration| {
+        runs >= WARM_UP + REPETITIONS && COARSE_CLOCK.is_none_or(|time| spent > time)
+            || runs >= WARM_UP + MIN_REPETITIONS && spent > LONG
+            || runs > 0 && spent > TOO_LONG
+    };
+    while !is_enough(runs.len(), start.elapsed()) {
         simulation.reset();
         let mut run = Vec::new();
         while simulation.iterations() < iterations && *simulation.status() == Status::Running {
+            if observe(Progress::at(0.0)).is_break() {
+                return Vec::new();
+            }
             simulation.step();
             run.push(*simulation.timings());
         }
-        if repetition >= WARM_UP {
-            runs.push(run);
-        }
+        runs.push(run);
     }
+    runs.drain(..WARM_UP.min(runs.len() - 1));
     let count = runs.iter().map(Vec::len).min().unwrap_or(0);
     (0..count)
         .map(|i| {
             let median = |stage: fn(&Timings) -> Duration| {
                 let mut times: Vec<Duration> = runs.iter().map(|run| stage(&run[i])).collect();
+                if COARSE_CLOCK.is_some() {
+                    return times.iter().sum::<Duration>() / u32::try_from(times.len()).unwrap_or(u32::MAX);
+                }
                 times.sort_unstable();
                 times[times.len() / 2]
             };
@@ -58,7 +86,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32) -> Vec<Timi
 #[must_use]
 pub fn expected_time(run: Duration) -> Duration {
     let [all, fewest] = [REPETITIONS, MIN_REPETITIONS].map(|repetitions| run * (WARM_UP + repetitions) as u32);
-    all.min(fewest.max(LONG))
+    all.min(fewest.max(LONG)).min(run.max(TOO_LONG))
 }
 
 /// Number of timed runs.

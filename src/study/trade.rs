@@ -278,7 +278,7 @@ impl Study {
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MAX_ITERATIONS };
-            let times = times_from_rest(&mut simulation, most);
+            let times = times_from_rest(&mut simulation, most, observe);
             simulation.reset();
             for (iterations, time) in (1..).zip(times) {
                 simulation.step();

@@ -43,8 +43,6 @@ pub struct PaneEnd {
     pub status: Status,
     /// Iterations from rest.
     pub iterations: u32,
-    /// Computing time, s.
-    pub seconds: f64,
     /// Results at the probes.
     pub probes: Vec<ProbeResult>,
 }
@@ -350,12 +348,10 @@ impl ComparedSolve {
         if !self.from_rest || !has_ended(simulation, self.most_iterations) {
             return;
         }
-        let times = simulation.timings();
         self.measures = false;
         self.end = Some(PaneEnd {
             status: simulation.status().clone(),
             iterations: simulation.iterations(),
-            seconds: (times.total() - times.certify).as_secs_f64(),
             probes: probe_results(simulation.problem(), simulation.state()),
         });
     }

@@ -11,7 +11,8 @@ use crate::dynamics::lowest_frequency;
 use crate::progress::Observer;
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
 use crate::simulation::Simulation;
-use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference};
+use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference, time_from_rest};
+use crate::timings::Timings;
 
 /// Load–displacement curve of a scene.
 #[derive(Debug, Serialize, Deserialize)]
@@ -29,6 +30,8 @@ facts! {
     CurveFact = "curve": Curve, |scene, observe| Ok(curve(scene, observe));
     /// End of the load path from rest, and the jumps on it.
     PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
+    /// Time of a solve from rest.
+    TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, _| Ok(natural_frequency(scene));
 }
@@ -49,6 +52,8 @@ pub(crate) struct Facts {
     pub curve: Keyed<CurveFact>,
     /// End of the load path from rest, and the jumps on it.
     pub path: Keyed<PathFact>,
+    /// Time of a solve from rest.
+    pub time: Keyed<TimeFact>,
     /// Lowest natural frequency, Hz.
     pub frequency: Keyed<FrequencyFact>,
 }
@@ -60,6 +65,7 @@ impl Facts {
         self.reference.turn_to(scene);
         self.curve.turn_to(scene);
         self.path.turn_to(scene);
+        self.time.turn_to(scene);
     }
 
     /// Requests the results of a scene at rest; returns `true` while one of them is pending.
@@ -67,7 +73,8 @@ impl Facts {
         let reference = self.reference.request(scene);
         let path = self.path.request(scene);
         let curve = needs_curve && self.curve.request(scene);
-        reference || path || curve
+        // Solves are timed after the other computations, which would slow them down.
+        reference || path || curve || self.time.request(scene)
     }
 
     /// Computes the results of a scene at rest, and waits for them.
@@ -77,6 +84,7 @@ impl Facts {
         if needs_curve {
             self.curve.wait(scene);
         }
+        self.time.wait(scene);
     }
 }
 

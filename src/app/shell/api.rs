@@ -272,7 +272,8 @@ impl Lab {
             _ => false,
         };
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
-        let at_rest = !session.is_motion() && (facts.reference.is_pending(scene) || facts.path.is_pending(scene));
+        let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
+        let at_rest = !session.is_motion() && at_rest;
         session.is_working() || plots || learns || at_rest
     }
 

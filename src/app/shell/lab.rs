@@ -227,7 +227,7 @@ impl Lab {
             lesson.learn.wait(session.scene());
         }
         if view.mode == Mode::Compare {
-            compare.solve_to_end(session.scene(), session.simulation().system());
+            compare.solve_to_end(session.scene(), session.simulation().system(), view.bars);
         }
         if has_search {
             self.show_last_line();
@@ -273,6 +273,7 @@ impl Lab {
             frequency: facts.frequency.latest().copied(),
             iterations: session.iterations(),
             timings: session.timings(),
+            solve_time: facts.time.get(session.scene()),
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),

@@ -65,8 +65,8 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Number> {
     let simulation = input.simulation;
-    let times = simulation.timings();
-    let seconds = (times.total() - times.certify).as_secs_f64();
+    let time = input.solve_time.filter(|_| simulation.status().is_success());
+    let seconds = time.map_or(0.0, |time| (time.total() - time.certify).as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut entries = vec![
@@ -93,7 +93,10 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
-            tip: tr("Computing time of the one solve since the last change, without the check of stability; a repeated solve, as in Compare and Budget, is faster").to_owned(),
+            tip: tr(
+                "Computing time of a solve from rest, the median of repeated solves, without the check of stability",
+            )
+            .to_owned(),
             color: palette.text,
             ratio: None,
         },

@@ -4,7 +4,7 @@ use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::{ElementErrors, Rho};
 use crate::app::platform;
-use crate::app::session::facts::{CurveFact, FrequencyFact, PathFact, ReferenceFact};
+use crate::app::session::facts::{CurveFact, FrequencyFact, PathFact, ReferenceFact, TimeFact};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
@@ -17,10 +17,11 @@ const fn entry<W: Work>() -> Entry {
     (W::NAME, serve::<W>)
 }
 
-const ENTRIES: [Entry; 10] = [
+const ENTRIES: [Entry; 11] = [
     entry::<FactWork<ReferenceFact>>(),
     entry::<FactWork<CurveFact>>(),
     entry::<FactWork<PathFact>>(),
+    entry::<FactWork<TimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
     entry::<FactWork<ExactLine>>(),
     entry::<FactWork<Rho>>(),

@@ -7,6 +7,7 @@
 //! counts.
 
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -157,7 +158,10 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
             return Err(Error::NotConverged);
         }
         let own = problem.probes().first().ok_or(StudyError::NoProbe)?.mean(newton.displacement());
-        let ours = times_from_rest(&mut newton, u32::MAX).last().map(Timings::total).unwrap_or_default();
+        let ours = times_from_rest(&mut newton, u32::MAX, &|_| ControlFlow::Continue(()))
+            .last()
+            .map(Timings::total)
+            .unwrap_or_default();
         for solver in RapierSolver::ALL {
             let mut best: Option<Rival> = None;
             for swing in swings(solver) {

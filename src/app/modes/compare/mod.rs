@@ -140,14 +140,17 @@ impl Compare {
         own.chain(self.panes.list.iter().filter_map(Pane::equations)).collect()
     }
 
-    /// Solves all panes, and waits for them.
-    pub(crate) fn solve_to_end(&mut self, scene: &Scene, system: &Arc<System>) {
+    /// Solves all panes, and waits for them; `times` them, too.
+    pub(crate) fn solve_to_end(&mut self, scene: &Scene, system: &Arc<System>, times: bool) {
         self.trace.set_scene(scene);
         let mut equations = self.equations(scene, system);
         for pane in &mut self.panes.list {
             pane.solve.solve_to_end(pane.setting.apply(scene), &equations);
             equations.extend(pane.equations());
             self.trace.record(scene, pane);
+            if times {
+                pane.wait_for_time();
+            }
         }
         self.trace.wait(scene);
     }
@@ -175,6 +178,9 @@ impl Compare {
         if is_new || input.running && solves.clone().any(busy) {
             ctx.request_repaint();
         } else if solves.any(ComparedSolve::is_away) {
+            ctx.request_repaint_after(POLL);
+        } else if !holds && self.panes.list.iter_mut().any(Pane::request_time) {
+            // One pane after the other is timed.
             ctx.request_repaint_after(POLL);
         }
     }
@@ -379,9 +385,9 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
             Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
             None => {
                 let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
-                let time = engineering(two_digits(end.seconds), "s");
                 // Images without bars omit the time, which differs from run to run.
-                let time = if input.common.view.bars { format!("{time} · ") } else { String::new() };
+                let time = pane.seconds().filter(|_| input.common.view.bars);
+                let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
                 (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
             }
         },

@@ -6,6 +6,8 @@ use nalgebra::Vector2;
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
+use crate::app::session::facts::TimeFact;
+use crate::app::task::keyed::Keyed;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
@@ -21,6 +23,8 @@ pub struct Pane {
     pub(super) solve: ComparedSolve,
     pub(super) display: PaneDisplay,
     pub(super) error: Option<f64>,
+    /// Time of the solve from rest.
+    time: Keyed<TimeFact>,
 }
 
 impl Pane {
@@ -47,6 +51,33 @@ impl Pane {
     #[must_use]
     pub fn error_percent(&self) -> Option<f64> {
         self.error
+    }
+
+    /// Returns the time of the solve from rest, s; `None` until it has been measured.
+    #[must_use]
+    pub fn seconds(&self) -> Option<f64> {
+        let time = self.time.get(&self.timed_scene()?)?;
+        Some((time.total() - time.certify).as_secs_f64())
+    }
+
+    /// Returns the scene whose solve is timed: it ends after the setting's number of iterations.
+    fn timed_scene(&self) -> Option<Scene> {
+        let mut scene = self.scene()?.clone();
+        scene.solver.accept_after = self.setting.iterations.unwrap_or(scene.solver.accept_after);
+        Some(scene)
+    }
+
+    /// Requests the time of the solve from rest; returns `true` while it is pending.
+    pub(super) fn request_time(&mut self) -> bool {
+        let scene = self.timed_scene().filter(|_| self.end().is_some());
+        scene.is_some_and(|scene| self.time.request(&scene))
+    }
+
+    /// Measures the time of the solve from rest, and waits for it.
+    pub(super) fn wait_for_time(&mut self) {
+        if let Some(scene) = self.timed_scene().filter(|_| self.end().is_some()) {
+            self.time.wait(&scene);
+        }
     }
 
     /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
@@ -122,7 +153,7 @@ impl Pane {
 impl ComparedPane for Pane {
     fn new(setting: PaneSetting) -> Self {
         let solve = ComparedSolve::new(setting.iterations);
-        Self { setting, solve, display: PaneDisplay::default(), error: None }
+        Self { setting, solve, display: PaneDisplay::default(), error: None, time: Keyed::default() }
     }
 
     fn own_setting(&self) -> PaneSetting {
