@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "app")]
-use super::draw_args::{DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
+use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number};
 use crate::scene::limits::{BUDGET_MS, MAX_ERROR_PERCENT};
 use crate::study::Effort;
@@ -57,6 +57,8 @@ pub(super) enum Command {
         /// Image file written if there is no display.
         #[arg(short, long, value_name = "OUT.png", default_value = DEFAULT_PICTURE)]
         output: PathBuf,
+        #[command(flatten)]
+        adapter: AdapterArgs,
     },
     /// List the built-in scenes.
     Scenes,
@@ -104,6 +106,12 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
+    /// List the graphics adapters in the order in which they are tried, and draw a small frame with each: name, backend,
+    /// driver, whether the adapter is usable or why not, and which one is used. An adapter of hardware is preferred to
+    /// software, and Vulkan, Metal and DirectX 12 to OpenGL. In a window, the adapter must also be able to draw into it.
+    #[cfg(feature = "app")]
+    #[command(after_help = EXIT_CODES)]
+    Gpu(AdapterArgs),
     /// Print a scene as a Rust program that builds and solves it with the library.
     Rust(RequiredSceneArgs),
     /// Print shell completions.

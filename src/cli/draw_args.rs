@@ -15,6 +15,15 @@ use crate::scene::limits::{DURATION, PLAYBACK_SPEED};
 pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
 
 #[derive(Debug, Args)]
+pub(super) struct AdapterArgs {
+    /// Graphics adapter: a part of its name, in lower or upper case; `warpbeam gpu` lists the names. Default: the
+    /// environment variable WGPU_ADAPTER_NAME, or the best adapter that works. WGPU_BACKEND (vulkan, metal, dx12, gl)
+    /// restricts the choice.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct ShotArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
@@ -51,6 +60,8 @@ pub(super) struct ShotArgs {
     /// Language.
     #[arg(long, value_enum, default_value_t = app::Language::English)]
     pub language: app::Language,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
 }
 
 /// Panes of a comparison, as the option --compare lists them.
@@ -100,6 +111,8 @@ pub(super) struct RecordArgs {
     /// Language.
     #[arg(long, value_enum, default_value_t = app::Language::English)]
     pub language: app::Language,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
 }
 
 /// Error for an unknown integrator name.

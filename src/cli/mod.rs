@@ -1,5 +1,5 @@
-//! Commands `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `rust`, `completions` and
-//! `man`; without the feature `app`, those that need no window and no GPU.
+//! Commands `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `gpu`, `rust`,
+//! `completions` and `man`; without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator, 2
 //! bad input or usage, or a result that could not be written, 3 no graphics adapter.
@@ -97,7 +97,7 @@ pub fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
     let command = Cli::parse().command;
     #[cfg(feature = "app")]
-    if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_))) {
+    if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_) | Command::Gpu(_))) {
         driver::silence();
     }
     let result = match command {
@@ -107,7 +107,7 @@ pub fn main() -> ExitCode {
         #[cfg(not(feature = "app"))]
         None => Ok(ExitCode::from(BAD_INPUT)),
         #[cfg(feature = "app")]
-        Some(Command::Run { scene, output }) => window::run(scene.into(), &output),
+        Some(Command::Run { scene, output, adapter }) => window::run(scene.into(), &output, adapter.adapter),
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
         Some(Command::Curve(args)) => commands::curve(args),
@@ -119,6 +119,8 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(args)) => window::shot(args),
         #[cfg(feature = "app")]
         Some(Command::Record(args)) => record::record(args),
+        #[cfg(feature = "app")]
+        Some(Command::Gpu(args)) => window::gpu(args.adapter.as_deref()),
         Some(Command::Rust(args)) => commands::rust(&args.into()),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man) => manual::man(),

@@ -11,10 +11,10 @@ use crate::format::{count, number};
 use crate::scene;
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
-    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, theme, language } = args;
+    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, theme, language, adapter } = args;
     let source = scene::Source::from(scene);
     let scene = scene::open(&source)?;
-    let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language };
+    let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language, adapter: adapter.adapter };
     let watch = Watch::new();
     let recorded = app::record(&source, scene, &options, &output, &|progress| watch.observe(progress));
     drop(watch);

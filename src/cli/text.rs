@@ -12,6 +12,8 @@ use super::solved::Solved;
 use crate::export::csv_field;
 use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 use crate::method::{Certificate, floor_text, rho_text};
+#[cfg(feature = "app")]
+use crate::render::AdapterReport;
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{Drive, LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_text};
@@ -33,6 +35,24 @@ pub(super) fn scenes() -> String {
         let (name, about) = Scene::from_toml(built_in.toml)
             .map_or_else(|error| (error.to_string(), String::new()), |scene| (scene.name, scene.about));
         let _ = writeln!(text, "{:<12} {name}\n{:12} {about}", built_in.id, "");
+    }
+    text
+}
+
+/// Formats the list of graphics adapters.
+#[cfg(feature = "app")]
+pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
+    let mut text = String::new();
+    for adapter in adapters {
+        let AdapterReport { name, backend, driver, is_software, failure, is_used, .. } = adapter;
+        let kind = if *is_software { ", software" } else { "" };
+        let driver = if driver.is_empty() { "not stated" } else { driver };
+        let usable = match failure {
+            None if *is_used => "yes, and used".to_owned(),
+            None => "yes".to_owned(),
+            Some(reason) => format!("no: {}", reason.split_whitespace().collect::<Vec<_>>().join(" ")),
+        };
+        let _ = writeln!(text, "{name}\n  backend {backend}{kind}\n  driver  {driver}\n  usable  {usable}");
     }
     text
 }

@@ -1,4 +1,4 @@
-//! Commands `run` and `shot`.
+//! Commands `run`, `shot` and `gpu`.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -10,13 +10,16 @@ use super::progress::Watch;
 use super::scene_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, simulate, text};
 use crate::app;
+use crate::render;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme, language } = args;
+    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme, language, adapter } =
+        args;
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
-    let options = app::ShotOptions { size, panel: !no_panel, curve, study, learn, motion, compare, theme, language };
+    let (panel, adapter) = (!no_panel, adapter.adapter);
+    let options = app::ShotOptions { size, panel, curve, study, learn, motion, compare, theme, language, adapter };
     check_suffix(&output, &[".png"], ".png")?;
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
@@ -51,17 +54,17 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
 /// Runs `warpbeam` without a command.
 pub(super) fn run_default() -> Result<ExitCode, CliError> {
     let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-    run(source, Path::new(DEFAULT_PICTURE))
+    run(source, Path::new(DEFAULT_PICTURE), None)
 }
 
-pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliError> {
+pub(super) fn run(source: scene::Source, output: &Path, adapter: Option<String>) -> Result<ExitCode, CliError> {
     check_suffix(output, &[".png"], ".png")?;
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
     // A window opens without waiting for a large mesh; errors of a small one are reported before opening a window.
     let small = if app::opens_in_background(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
-        Ok(display) => app::run(display, source, scene, small)?,
+        Ok(display) => app::run(display, source, scene, small, adapter)?,
         Err(reason) => {
             let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();
@@ -79,8 +82,20 @@ pub(super) fn run(source: scene::Source, output: &Path) -> Result<ExitCode, CliE
                 certificate: false,
                 no_certificate: false,
             })?;
-            app::shot(source, scene, simulation, &app::ShotOptions::default(), output, &|_| ControlFlow::Continue(()))?;
+            let options = app::ShotOptions { adapter, ..Default::default() };
+            app::shot(source, scene, simulation, &options, output, &|_| ControlFlow::Continue(()))?;
         }
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+pub(super) fn gpu(name: Option<&str>) -> Result<ExitCode, CliError> {
+    let adapters = render::adapters(name);
+    text::print(&text::adapters(&adapters))?;
+    if adapters.iter().any(|adapter| adapter.is_used) {
+        return Ok(ExitCode::SUCCESS);
+    }
+    // The error has the reason for which none is used.
+    render::Gpu::headless_on(name).map_err(app::AppError::from)?;
     Ok(ExitCode::SUCCESS)
 }

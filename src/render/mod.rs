@@ -3,16 +3,21 @@
 //! The renderer borrows a [`Frame`] (positions, triangles, values), never the simulation. The window and offscreen
 //! images use the same calls.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use thiserror::Error;
 
 use crate::image::PictureError;
 
+mod adapter;
 mod body;
 mod camera;
 pub mod colormap;
 pub(crate) mod display_geometry;
 mod offscreen;
 
+pub use adapter::{AdapterReport, adapters};
+pub(crate) use adapter::{Candidate, NO_WINDOW, Search, wanted_name};
 pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
@@ -24,19 +29,23 @@ pub(crate) use offscreen::to_rgba;
 pub enum RenderError {
     /// No adapter is usable.
     #[error(
-        "no usable graphics adapter: {tried}.\nInstall a Vulkan driver: on Debian and Ubuntu `scripts/setup`, or \
-         `apt-get install mesa-vulkan-drivers`, gives one in software; elsewhere the driver of your GPU"
+        "no usable graphics adapter:{tried}\nInstall a Vulkan driver: on Debian and Ubuntu `scripts/setup`, or \
+         `apt-get install mesa-vulkan-drivers`, gives one in software; elsewhere the driver of your GPU. `warpbeam gpu` \
+         lists all adapters"
     )]
     NoAdapter {
-        /// Tried backends, and the error of each.
+        /// A line per adapter: name, backend, and the reason for which it is not usable.
         tried: String,
     },
-    /// The adapter returned no device.
-    #[error("the graphics adapter {adapter} gave no device: {reason}")]
-    NoDevice {
-        /// Name of the adapter.
-        adapter: String,
-        /// Reason of the failure.
+    /// Devices were lost one after the other.
+    #[error(
+        "the graphics device failed {times} times within a minute: {reason}.\nUpdate the driver of your GPU, or choose \
+         another adapter: `warpbeam gpu` lists them, --adapter NAME chooses one"
+    )]
+    Lost {
+        /// Number of failures.
+        times: usize,
+        /// Reason of the last failure.
         reason: String,
     },
     /// The image is larger than the adapter can draw.
@@ -56,10 +65,10 @@ pub enum RenderError {
 }
 
 impl RenderError {
-    /// Returns `true` if the machine has no usable graphics adapter or device.
+    /// Returns `true` if the machine has no usable graphics adapter, or its devices do not last.
     #[must_use]
     pub fn is_missing_adapter(&self) -> bool {
-        matches!(self, Self::NoAdapter { .. } | Self::NoDevice { .. })
+        matches!(self, Self::NoAdapter { .. } | Self::Lost { .. })
     }
 }
 
@@ -72,79 +81,51 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Command queue of the device.
     pub queue: wgpu::Queue,
+    /// First error of the device, or the reason of its loss.
+    failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
-    /// Creates a device without a window. Not for web pages, which cannot wait for a device.
+    /// Takes over a device. Its errors and its loss are kept as [`Self::failure`].
+    fn new(adapter: wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let failure = Arc::new(Mutex::new(None));
+        let keep = |reason: String, failure: &Mutex<Option<String>>| {
+            failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(reason);
+        };
+        let lost = failure.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            let message = if message.is_empty() { format!("{reason:?}") } else { message };
+            keep(format!("the device was lost ({message})"), &lost);
+        });
+        let errors = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| keep(error.to_string(), &errors)));
+        Self { adapter, device, queue, failure }
+    }
+
+    /// Creates a device without a window, on the best adapter that draws. Not for web pages, which cannot wait for a
+    /// device.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
+    /// [`RenderError::NoAdapter`].
     pub fn headless() -> Result<Self, RenderError> {
-        pollster::block_on(Self::first_of_backends(async |backends| {
-            let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-            descriptor.backends = backends;
-            Self::request(&wgpu::Instance::new(descriptor), None).await
-        }))
+        Self::headless_on(None)
     }
 
-    /// Tries the system's native graphics API first, and OpenGL only if that fails, because probing OpenGL takes time
-    /// and prints warnings. `WGPU_BACKEND` overrides both.
+    /// Creates a device without a window, on the best adapter that draws and whose name contains `name`; `None` stands
+    /// for `WGPU_ADAPTER_NAME`. Not for web pages, which cannot wait for a device.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`] with all backends tried, or any other error of `attempt`.
-    pub async fn first_of_backends<T>(
-        mut attempt: impl AsyncFnMut(wgpu::Backends) -> Result<T, RenderError>,
-    ) -> Result<T, RenderError> {
-        let wanted = match wgpu::Backends::from_env() {
-            Some(backends) => vec![backends],
-            None => Self::backends().await,
-        };
-        let mut tried = Vec::new();
-        for backends in wanted {
-            match attempt(backends).await {
-                Err(RenderError::NoAdapter { tried: reason }) => tried.push(reason),
-                other => return other,
-            }
-        }
-        Err(RenderError::NoAdapter { tried: tried.join("; then ") })
+    /// [`RenderError::NoAdapter`].
+    pub fn headless_on(name: Option<&str>) -> Result<Self, RenderError> {
+        let search = adapter::offscreen(name);
+        pollster::block_on(search.first_usable(async |candidate| Self::usable(candidate.adapter).await))
     }
 
-    /// Returns the backends of this system in the order in which they are tried.
-    #[cfg(not(target_arch = "wasm32"))]
-    async fn backends() -> Vec<wgpu::Backends> {
-        vec![wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12, wgpu::Backends::GL]
-    }
-
-    /// Returns the backend of this browser. There is only one, because a canvas keeps its first kind of context.
-    #[cfg(target_arch = "wasm32")]
-    async fn backends() -> Vec<wgpu::Backends> {
-        let has_webgpu = wgpu::util::is_browser_webgpu_supported().await;
-        vec![if has_webgpu { wgpu::Backends::BROWSER_WEBGPU } else { wgpu::Backends::GL }]
-    }
-
-    /// Creates a device on the best adapter for a surface: hardware is preferred to software.
-    ///
-    /// # Errors
-    /// [`RenderError::NoAdapter`], [`RenderError::NoDevice`].
-    pub async fn request(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, RenderError> {
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            compatible_surface: surface,
-            ..Default::default()
-        };
-        let adapter = instance.request_adapter(&options).await;
-        let adapter = adapter.map_err(|error| RenderError::NoAdapter { tried: error.to_string() })?;
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("warpbeam"),
-            // Limits that software OpenGL also supports, except for the texture size, which is the adapter's.
-            required_limits: wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits()),
-            ..Default::default()
-        };
-        let (device, queue) = adapter
-            .request_device(&descriptor)
-            .await
-            .map_err(|error| RenderError::NoDevice { adapter: adapter.get_info().name, reason: error.to_string() })?;
-        Ok(Self { adapter, device, queue })
+    /// Returns the first error of the device, or the reason of its loss. A device with a failure draws nothing, and
+    /// waiting for it panics.
+    #[must_use]
+    pub fn failure(&self) -> Option<String> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Returns the largest width or height of a texture that the GPU supports, pixels.
@@ -163,13 +144,7 @@ impl Gpu {
     /// Returns a description of the adapter, which marks software rendering.
     #[must_use]
     pub fn describe(&self) -> String {
-        let info = self.adapter.get_info();
-        match info.device_type {
-            wgpu::DeviceType::Cpu => {
-                format!("software rendering ({}, {})", info.name, info.backend)
-            }
-            _ => format!("{} ({})", info.name, info.backend),
-        }
+        adapter::describe(&self.adapter.get_info())
     }
 
     /// Creates a texture to draw into, which is sampled or copied from afterwards.

@@ -9,6 +9,8 @@ use crate::image::Picture;
 /// [`RenderError::ReadBack`].
 pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, RenderError> {
     const PIXEL: u32 = 4;
+    let failed = |reason: String| RenderError::ReadBack(reason);
+    gpu.failure().map_or(Ok(()), |reason| Err(failed(reason)))?;
     let (width, height) = (texture.width(), texture.height());
     let row = PIXEL * width;
     let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -38,7 +40,8 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, Rende
         // The receiver exists until the poll below returns.
         let _ = sender.send(result);
     });
-    let failed = |reason: String| RenderError::ReadBack(reason);
+    // Waiting for a lost device panics.
+    gpu.failure().map_or(Ok(()), |reason| Err(failed(reason)))?;
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
     receiver.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
     let mapped = slice.get_mapped_range().map_err(|e| failed(e.to_string()))?;

@@ -731,6 +731,38 @@ fn without_an_adapter_shot_names_the_package_to_install() {
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(3), "{text}");
     assert!(text.contains("no usable graphics adapter") && text.contains("mesa-vulkan-drivers"), "{text}");
+    assert!(text.contains("\n  vulkan: no adapter found\n"), "{text}");
+}
+
+#[test]
+fn gpu_lists_the_adapters_and_a_name_chooses_one() {
+    let text = stdout(&warpbeam(&["gpu"]));
+    assert_eq!(text.matches("usable  yes, and used").count(), 1, "{text}");
+    for word in ["  backend ", "  driver  "] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    // The used adapter is the first usable one.
+    let used = text.split_once("usable  yes, and used").unwrap().0;
+    assert!(!used.contains("usable  yes"), "{text}");
+    let name = used.lines().rfind(|line| !line.starts_with(' ')).unwrap().to_uppercase();
+    let chosen = warpbeam(&["gpu", "--adapter", &name]);
+    assert_eq!((chosen.status.code(), stdout(&chosen)), (Some(0), text.clone()));
+
+    let none = warpbeam(&["gpu", "--adapter", "abacus"]);
+    assert_eq!(none.status.code(), Some(3));
+    assert_eq!(stdout(&none), text.replace("yes, and used", "yes"));
+    let folder = tempfile::tempdir().unwrap();
+    for (command, file) in [("shot", "x.png"), ("record", "x.gif")] {
+        let output = warpbeam_in(folder.path(), &[command, "article", "-o", file, "--adapter", "abacus"]);
+        let message = stderr(&output);
+        assert!(message.contains("its name does not contain \"abacus\""), "{command}: {message}");
+        assert!(message.contains("`warpbeam gpu` lists all adapters"), "{command}: {message}");
+    }
+    let output = program(folder.path(), &["gpu"]).env("WGPU_BACKEND", "abacus").output().unwrap();
+    assert!(stderr(&output).contains("WGPU_BACKEND: expected vulkan, metal, dx12 or gl"), "{}", stderr(&output));
+    let shot = &["shot", "article", "-o", "x.png"];
+    let output = program(folder.path(), shot).env("WGPU_ADAPTER_NAME", "abacus").output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
 }
 
 #[test]

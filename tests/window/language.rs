@@ -248,8 +248,6 @@ const NOT_SHOWN: &[&str] = &[
     "WAYLAND_DISPLAY",
     "WAYLAND_SOCKET",
     "DISPLAY",
-    "{backends:?}: no surface for the window: {e}",
-    "{}: cannot show this window",
     "the scene to begin with is missing",
     "{} has {PLACES} copies of unsaved scenes",
     "the display did not answer in time",

@@ -1,7 +1,8 @@
 //! Painter of a frame into a texture: the render pass of the bodies, then egui over it. Window, shots and recordings
 //! all use it.
 
-use egui::{ClippedPrimitive, TexturesDelta};
+use egui::epaint::ImageDelta;
+use egui::{ClippedPrimitive, TextureId, TextureOptions, TexturesDelta};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
 use crate::render::{BodyRenderer, Gpu, View};
@@ -17,6 +18,14 @@ impl Stage {
         // Deterministic: the same image in the window, in a shot, and on another machine.
         let egui = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::PREDICTABLE);
         Self { egui, body: BodyRenderer::new(gpu, format) }
+    }
+
+    /// Uploads the whole texture of egui's fonts; to be called once if another stage has drawn this context before.
+    pub(crate) fn restore_font(&mut self, gpu: &Gpu, ctx: &egui::Context) {
+        if ctx.cumulative_pass_nr() > 0 {
+            let delta = ImageDelta::full(ctx.fonts(|fonts| fonts.image()), TextureOptions::LINEAR);
+            self.egui.update_texture(&gpu.device, &gpu.queue, TextureId::default(), &delta);
+        }
     }
 
     /// Uploads the changes of egui's textures.
@@ -35,7 +44,8 @@ impl Stage {
         }
     }
 
-    /// Draws the bodies in their views, and over them the user interface, tessellated into `primitives`.
+    /// Draws the bodies in their views, and over them the user interface, tessellated into `primitives`. Draws nothing
+    /// with a device that has failed.
     pub(crate) fn paint(
         &mut self,
         gpu: &Gpu,
@@ -47,6 +57,10 @@ impl Stage {
         let ScreenDescriptor { size_in_pixels, pixels_per_point } = *screen;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.body.draw(gpu, &mut encoder, (target, size_in_pixels), views, f64::from(pixels_per_point));
+        // egui panics if it cannot upload its vertices.
+        if gpu.failure().is_some() {
+            return;
+        }
         let callbacks = self.egui.update_buffers(&gpu.device, &gpu.queue, &mut encoder, primitives, screen);
         let mut pass = encoder
             .begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -32,11 +32,21 @@ impl Recorder {
     pub(crate) fn start(
         source: Source,
         scene: Scene,
-        theme: ThemeChoice,
-        language: Language,
+        (theme, language): (ThemeChoice, Language),
+        adapter: Option<String>,
         file: NewFile,
     ) -> std::io::Result<Self> {
-        let task = Task::start("record", move |reporter| work(&source, scene, (theme, language), &file, reporter))?;
+        let options = RecordOptions {
+            size: SIZE,
+            seconds: None,
+            speed: None,
+            fps: None,
+            overwrite: true,
+            theme,
+            language,
+            adapter,
+        };
+        let task = Task::start("record", move |reporter| work(&source, scene, &options, &file, reporter))?;
         Ok(Self { task, fraction: 0.0, text: String::new() })
     }
 
@@ -70,15 +80,14 @@ impl Recorder {
 fn work(
     source: &Source,
     scene: Scene,
-    (theme, language): (ThemeChoice, Language),
+    options: &RecordOptions,
     file: &NewFile,
     reporter: &Reporter<Report, String>,
 ) -> String {
-    language::speak(language);
+    language::speak(options.language);
     let path = file.path();
     let observe = &|progress: Progress<'_>| reporter.report((progress.fraction as f32, progress.now.map(said)));
-    let options = RecordOptions { size: SIZE, seconds: None, speed: None, fps: None, overwrite: true, theme, language };
-    match record(source, scene, &options, path, observe) {
+    match record(source, scene, options, path, observe) {
         Ok(recorded) if recorded.pictures == 0 => tr("Nothing was recorded").to_owned(),
         Ok(recorded) => {
             fill!("Saved %{file}, %{pictures}", file = path.display(), pictures = count(recorded.pictures, "picture"))

@@ -41,6 +41,8 @@ pub struct ShotOptions {
     pub theme: ThemeChoice,
     /// Language of the texts.
     pub language: Language,
+    /// Part of the name of the graphics adapter; `None` stands for `WGPU_ADAPTER_NAME`.
+    pub adapter: Option<String>,
 }
 
 impl Default for ShotOptions {
@@ -55,6 +57,7 @@ impl Default for ShotOptions {
             learn: None,
             theme: ThemeChoice::default(),
             language: Language::default(),
+            adapter: None,
         }
     }
 }
@@ -81,7 +84,7 @@ pub fn shot(
     output: &Path,
     observe: Observer<'_>,
 ) -> Result<Shot, AppError> {
-    let gpu = Gpu::headless()?;
+    let gpu = Gpu::headless_on(options.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_adapter(gpu.describe());
     lab.set_panel(options.panel);
@@ -193,8 +196,10 @@ impl<'a> Canvas<'a> {
     pub fn paint(&mut self, lab: &mut Lab) -> Result<FrameTimes, RenderError> {
         let times = self.submit(lab, &mut |_| {});
         let start = Instant::now();
+        let failed = |reason| RenderError::ReadBack(reason);
+        self.gpu.failure().map_or(Ok(()), |reason| Err(failed(reason)))?;
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        done.map_err(|error| RenderError::ReadBack(error.to_string()))?;
+        done.map_err(|error| failed(error.to_string()))?;
         Ok(FrameTimes { draw: start.elapsed(), ..times })
     }
 

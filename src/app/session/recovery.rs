@@ -178,6 +178,15 @@ impl Recovery {
         Ok(None)
     }
 
+    /// Writes the edits without a pause since the last write.
+    ///
+    /// # Errors
+    /// Error of the operating system.
+    pub(crate) fn keep_at_once(&mut self, edits: (&Document, &Scene)) -> io::Result<()> {
+        self.last = None;
+        self.keep(Some(edits)).map(drop)
+    }
+
     /// Lets the next [`Self::keep`] remove the copy left by a crashed window, once this window's own edits are written.
     pub fn discard_left(&mut self) {
         self.discards_left = true;

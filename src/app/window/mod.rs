@@ -1,6 +1,7 @@
 //! Window: receives winit events and draws frames. At rest no frames are drawn.
 
 mod clicks;
+mod open_window;
 #[cfg(target_arch = "wasm32")]
 pub(crate) mod page;
 mod report;
@@ -12,29 +13,26 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use egui::{ClippedPrimitive, ViewportId};
-use egui_wgpu::ScreenDescriptor;
+use egui::ViewportId;
 use thiserror::Error;
 use web_time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
-use crate::app::language::fill;
-use crate::app::offscreen::painter::Stage;
+use crate::app::language::{fill, tr};
 use crate::app::offscreen::record::{LiveRecording, pointer};
 use crate::app::offscreen::recorder::Recorder;
-use crate::app::platform::clipboard::Clipboard;
-use crate::app::platform::new_file::NewFile;
 use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::Recovery;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
 use crate::app::task::thread::POLL;
+use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError, new_file};
 use crate::app::{AppError, ThemeChoice};
-use crate::render::{Gpu, RenderError, View, read_texture};
+use crate::render::RenderError;
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
 
@@ -85,82 +83,22 @@ pub fn opens_in_background(scene: &Scene) -> bool {
 }
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed in the background while the
-/// window shows another one: see [`opens_in_background`].
+/// window shows another one: see [`opens_in_background`]. `adapter` is a part of the name of the graphics adapter;
+/// `None` stands for `WGPU_ADAPTER_NAME`.
 ///
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
-pub fn run(display: Display, source: Source, scene: Scene, simulation: Option<Simulation>) -> Result<(), AppError> {
-    let settings = Settings::file().as_deref().map(Settings::load).unwrap_or_default();
-    run_with(display, (source, scene, simulation), settings, None)
-}
-
-/// Opens the window with these settings, or a message that they could not be read, and with this card of Learn, from 1.
-fn run_with(
+pub fn run(
     display: Display,
-    (source, scene, simulation): (Source, Scene, Option<Simulation>),
-    (settings, unreadable): (Settings, Option<String>),
-    card: Option<usize>,
+    source: Source,
+    scene: Scene,
+    simulation: Option<Simulation>,
+    adapter: Option<String>,
 ) -> Result<(), AppError> {
-    let first_picture = source.name.to_str() == Some(registry::DEFAULT);
-    let file = Settings::file();
-    let ctx = egui::Context::default();
-    let lab = match simulation {
-        Some(simulation) => Some(Lab::new(source, scene, simulation)),
-        None => Lab::opening(source, scene),
-    };
-    let Some(mut lab) = lab else {
-        return Err(AppError::Window("the scene to begin with is missing".to_owned()));
-    };
-    lab.set_settings(&ctx, settings.clone());
-    lab.set_easing(true);
-    unreadable.into_iter().for_each(|message| _ = lab.warn(message));
-    let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
-    let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
-        Ok((recovery, left)) => {
-            left.into_iter().for_each(|left| lab.offer(left));
-            for (file, reason) in recovery.unreadable() {
-                let file = file.display();
-                lab.warn(fill!(
-                    "%{file} has unsaved changes, but cannot be read: %{reason}",
-                    file = file,
-                    reason = reason
-                ));
-            }
-            Some(recovery)
-        }
-        Err(error) => {
-            lab.warn(no_copy(format!("{}: {error}", folder.display())));
-            None
-        }
-    });
-    match card {
-        Some(card) => lab.show_card(card),
-        None if first_picture => lab.introduce(),
-        None => {}
-    }
-    let app = App {
-        lab,
-        ctx,
-        settings,
-        settings_file: file,
-        recovery,
-        open: None,
-        opening: Rc::default(),
-        recording: None,
-        scene_recording: None,
-        start: Instant::now(),
-        later: Vec::new(),
-        wake: None,
-        error: None,
-    };
-    let ended = platform::start::run(display.0, app).map_err(|e| AppError::Window(e.to_string()))?;
-    let Some(mut app) = ended else { return Ok(()) };
-    let ended = app.recording.as_ref().and_then(|recording| recording.ended(true));
-    let scene_ended = app.scene_recording.as_mut().and_then(|recorder| recorder.ended(true));
-    // The window that would show the messages is closed.
-    ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
-    app.keep_settings();
-    app.error.map_or(Ok(()), Err)
+    let settings = Settings::file().as_deref().map(Settings::load).unwrap_or_default();
+    let mut app = App::new((source, scene, simulation), settings, None)?;
+    app.adapter = adapter;
+    app.run(display)
 }
 
 /// Returns the warning for edits of which there is no copy.
@@ -189,128 +127,113 @@ struct App {
     later: Vec<egui::Event>,
     /// Time of the next frame that egui has requested without an event.
     wake: Option<Instant>,
+    /// Part of the name of the graphics adapter; `None` stands for that of the environment.
+    adapter: Option<String>,
+    /// Times at which the graphics device failed.
+    losses: Vec<Instant>,
+    /// Reason for which the graphics resources are being made again.
+    lost: Option<String>,
     error: Option<AppError>,
 }
 
-/// Window with its graphics resources. The order of the fields matters: the surface must be dropped before its window.
-struct OpenWindow {
-    surface: wgpu::Surface<'static>,
-    configuration: wgpu::SurfaceConfiguration,
-    stage: Stage,
-    input: egui_winit::State,
-    clipboard: Clipboard,
-    gpu: Gpu,
-    instance: wgpu::Instance,
-    window: Arc<Window>,
-    hidden: bool,
-    /// Number of consecutive frames for which the surface returned no texture.
-    failures: u32,
-}
-
-/// Number of frames without a texture after which the window closes with an error.
-const MAX_FAILURES: u32 = 10;
-
-impl OpenWindow {
-    async fn new(window: Arc<Window>, display: OwnedDisplayHandle, ctx: egui::Context) -> Result<Self, AppError> {
-        let (instance, surface, gpu) = Gpu::first_of_backends(async |backends| {
-            let display = Box::new(display.clone());
-            let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
-            descriptor.backends = backends;
-            let instance = wgpu::Instance::new(descriptor);
-            let surface = instance.create_surface(window.clone()).map_err(|e| RenderError::NoAdapter {
-                tried: format!("{backends:?}: no surface for the window: {e}"),
-            })?;
-            let gpu = Gpu::request(&instance, Some(&surface)).await?;
-            Ok((instance, surface, gpu))
-        })
-        .await?;
-        let capabilities = surface.get_capabilities(&gpu.adapter);
-        let format = egui_wgpu::preferred_framebuffer_format(&capabilities.formats)
-            .map_err(|e| RenderError::NoAdapter { tried: format!("{}: {e}", gpu.describe()) })?;
-        let size = window.inner_size();
-        let mut configuration = surface
-            .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
-            .ok_or_else(|| RenderError::NoAdapter { tried: format!("{}: cannot show this window", gpu.describe()) })?;
-        configuration.format = format;
-        configuration.present_mode = wgpu::PresentMode::AutoVsync;
-        surface.configure(&gpu.device, &configuration);
-        let input = egui_winit::State::new(
-            ctx,
-            ViewportId::ROOT,
-            &window,
-            Some(window.scale_factor() as f32),
-            window.theme(),
-            Some(gpu.max_side() as usize),
-        );
-        let stage = Stage::new(&gpu, format);
-        let clipboard = Clipboard::open();
-        Ok(Self { surface, configuration, stage, input, clipboard, gpu, instance, window, hidden: false, failures: 0 })
-    }
-
-    fn resize(&mut self, width: u32, height: u32) {
-        // On some systems a minimised window has size zero, with which a surface cannot be configured.
-        self.hidden = width == 0 || height == 0;
-        if !self.hidden {
-            self.configuration.width = width.min(self.gpu.max_side());
-            self.configuration.height = height.min(self.gpu.max_side());
-            self.surface.configure(&self.gpu.device, &self.configuration);
-        }
-    }
-
-    /// Returns the texture of the next frame; `None` if there is none this time.
-    fn acquire(&mut self) -> Result<Option<wgpu::SurfaceTexture>, AppError> {
-        use wgpu::CurrentSurfaceTexture as Current;
-        let reason = match self.surface.get_current_texture() {
-            Current::Success(texture) | Current::Suboptimal(texture) => {
-                self.failures = 0;
-                return Ok(Some(texture));
-            }
-            Current::Occluded => return Ok(None),
-            Current::Timeout => "the display did not answer in time",
-            Current::Outdated => {
-                self.surface.configure(&self.gpu.device, &self.configuration);
-                "the surface stays out of date"
-            }
-            Current::Lost => {
-                self.surface = self
-                    .instance
-                    .create_surface(self.window.clone())
-                    .map_err(|e| AppError::Window(format!("the surface was lost: {e}")))?;
-                self.surface.configure(&self.gpu.device, &self.configuration);
-                "the surface was lost"
-            }
-            Current::Validation => "the surface is not valid",
+impl App {
+    /// Prepares a window with these settings, or a message that they could not be read, and with this card of Learn,
+    /// from 1.
+    fn new(
+        (source, scene, simulation): (Source, Scene, Option<Simulation>),
+        (settings, unreadable): (Settings, Option<String>),
+        card: Option<usize>,
+    ) -> Result<Self, AppError> {
+        let first_picture = source.name.to_str() == Some(registry::DEFAULT);
+        let file = Settings::file();
+        let ctx = egui::Context::default();
+        let lab = match simulation {
+            Some(simulation) => Some(Lab::new(source, scene, simulation)),
+            None => Lab::opening(source, scene),
         };
-        self.failures += 1;
-        if self.failures >= MAX_FAILURES {
-            return Err(AppError::Window(reason.to_owned()));
+        let Some(mut lab) = lab else {
+            return Err(AppError::Window("the scene to begin with is missing".to_owned()));
+        };
+        lab.set_settings(&ctx, settings.clone());
+        lab.set_easing(true);
+        unreadable.into_iter().for_each(|message| _ = lab.warn(message));
+        let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
+        let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
+            Ok((recovery, left)) => {
+                left.into_iter().for_each(|left| lab.offer(left));
+                for (file, reason) in recovery.unreadable() {
+                    let file = file.display();
+                    lab.warn(fill!(
+                        "%{file} has unsaved changes, but cannot be read: %{reason}",
+                        file = file,
+                        reason = reason
+                    ));
+                }
+                Some(recovery)
+            }
+            Err(error) => {
+                lab.warn(no_copy(format!("{}: {error}", folder.display())));
+                None
+            }
+        });
+        match card {
+            Some(card) => lab.show_card(card),
+            None if first_picture => lab.introduce(),
+            None => {}
         }
-        self.window.request_redraw();
-        Ok(None)
+        Ok(Self {
+            lab,
+            ctx,
+            settings,
+            settings_file: file,
+            recovery,
+            open: None,
+            opening: Rc::default(),
+            recording: None,
+            scene_recording: None,
+            start: Instant::now(),
+            later: Vec::new(),
+            wake: None,
+            adapter: None,
+            losses: Vec::new(),
+            lost: None,
+            error: None,
+        })
     }
 
-    /// Draws the frame of the window again, into an image, and saves it under a new name.
-    fn screenshot(
-        &mut self,
-        screen: &ScreenDescriptor,
-        primitives: &[ClippedPrimitive],
-        views: &[View<'_>],
-    ) -> Result<PathBuf, ScreenshotError> {
-        let file = new_file("png")?;
-        let Self { gpu, stage, configuration, .. } = self;
-        let usage = wgpu::TextureUsages::COPY_SRC;
-        let target = gpu.target("screenshot", configuration.format, screen.size_in_pixels, 1, usage);
-        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, primitives, views);
-        read_texture(gpu, &target)?.write_png(file.path()).map_err(RenderError::from)?;
-        Ok(file.path().to_owned())
-    }
-
-    fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
-        ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
+    /// Opens the window and returns when it is closed.
+    fn run(self, display: Display) -> Result<(), AppError> {
+        let ended = platform::start::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
+        let Some(mut app) = ended else { return Ok(()) };
+        let ended = app.recording.as_ref().and_then(|recording| recording.ended(true));
+        let scene_ended = app.scene_recording.as_mut().and_then(|recorder| recorder.ended(true));
+        // The window that would show the messages is closed.
+        ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
+        app.keep_settings();
+        app.error.map_or(Ok(()), Err)
     }
 }
+
+/// Number of lost devices in [`LOSS_PERIOD`] after which the window closes with an error.
+const MAX_LOSSES: usize = 3;
+/// Time after which a lost device no longer counts.
+const LOSS_PERIOD: Duration = Duration::from_secs(60);
 
 impl App {
+    /// Draws a frame; after an error of the device, makes the graphics resources again.
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        let drawn = if self.device_failure().is_none() { self.frame(event_loop) } else { Ok(()) };
+        if let Some(reason) = self.device_failure() {
+            self.renew_graphics(event_loop, reason);
+        } else if let Err(error) = drawn {
+            self.quit(event_loop, Some(error));
+        }
+    }
+
+    fn device_failure(&self) -> Option<String> {
+        self.open.as_ref().and_then(|open| open.graphics.gpu.failure())
+    }
+
     /// Makes the iterations of one frame, draws it, and schedules the next frame that egui requests.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<(), AppError> {
         let Some(open) = &mut self.open else {
@@ -325,10 +248,10 @@ impl App {
         self.lab.advance(self.start.elapsed().as_secs_f64());
         self.follow_scene_recording();
         let Some(open) = &mut self.open else { return Ok(()) };
-        let mut input = open.input.take_egui_input(&open.window);
+        let mut input = open.bare.input.take_egui_input(&open.bare.window);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);
-        open.clipboard.paste(&mut events);
+        open.bare.clipboard.paste(&mut events);
         platform::page::join_touches(&mut events);
         self.later = clicks::after_first(&mut events);
         input.events = events;
@@ -343,17 +266,17 @@ impl App {
                 ui.ctx().request_repaint_after(POLL);
             }
         });
-        if let Some(reason) = open.clipboard.after(&output.platform_output) {
+        if let Some(reason) = open.bare.clipboard.after(&output.platform_output) {
             self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason = reason));
             self.ctx.request_repaint();
         }
-        open.input.handle_platform_output_with_event_loop(
-            &open.window,
+        open.bare.input.handle_platform_output_with_event_loop(
+            &open.bare.window,
             event_loop,
             std::mem::take(&mut output.platform_output),
         );
         let mut primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
-        open.stage.set_textures(&open.gpu, &mut output.textures_delta);
+        open.graphics.stage.set_textures(&open.graphics.gpu, &mut output.textures_delta);
         let whole = self.ctx.content_rect();
         let over = |shapes: Vec<egui::Shape>| {
             let clipped = shapes.into_iter().map(|shape| egui::epaint::ClippedShape {
@@ -363,28 +286,28 @@ impl App {
             });
             self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
         };
-        let screen = open.screen(output.pixels_per_point);
+        let screen = open.graphics.screen(output.pixels_per_point);
         let views = self.lab.views(screen.pixels_per_point);
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
-        let screenshot = takes_screenshot.then(|| open.screenshot(&screen, &primitives, &views));
+        let screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
         if let Some(recording) = &mut self.recording {
-            recording.pass_frames(&open.gpu);
+            recording.pass_frames(&open.graphics.gpu);
             if let Some(number) = recording.due(now) {
                 let own = primitives.len();
                 primitives.extend(over(cursor.into_iter().collect()));
                 let drawn = (views.as_slice(), primitives.as_slice());
-                recording.take(&open.gpu, &mut open.stage, drawn, &screen, (number, now));
+                recording.take(&open.graphics.gpu, &mut open.graphics.stage, drawn, &screen, (number, now));
                 primitives.truncate(own);
             }
             primitives.extend(over(mark));
         }
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        open.stage.paint(&open.gpu, &view, &screen, &primitives, &views);
-        open.window.pre_present_notify();
-        open.gpu.queue.present(texture);
-        open.stage.free_textures(&mut output.textures_delta);
-        platform::page::set_title(&open.window, &self.lab.title());
+        open.graphics.stage.paint(&open.graphics.gpu, &view, &screen, &primitives, &views);
+        open.bare.window.pre_present_notify();
+        open.graphics.gpu.queue.present(texture);
+        open.graphics.stage.free_textures(&mut output.textures_delta);
+        platform::page::set_title(&open.bare.window, &self.lab.title());
         platform::page::drawn(|frames| report::json(&self.lab, frames));
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
@@ -407,14 +330,54 @@ impl App {
         Ok(())
     }
 
+    /// Makes the graphics resources of a window.
+    fn open_graphics(&mut self, event_loop: &ActiveEventLoop, bare: BareWindow) {
+        let (opening, display, ctx) = (self.opening.clone(), event_loop.owned_display_handle(), self.ctx.clone());
+        let (window, adapter) = (bare.window.clone(), self.adapter.clone());
+        platform::graphics::open(async move {
+            let made = Graphics::new(&window, display, adapter.as_deref()).await;
+            *opening.borrow_mut() = Some(made.map(|graphics| OpenWindow::new(graphics, bare, &ctx)));
+            window.request_redraw();
+        });
+        self.take_window(event_loop);
+    }
+
+    /// Makes the graphics resources again after the device failed. Closes the window with an error if that happens too
+    /// often.
+    fn renew_graphics(&mut self, event_loop: &ActiveEventLoop, reason: String) {
+        // A window may have one surface at a time.
+        let Some(OpenWindow { graphics, bare, .. }) = self.open.take() else { return };
+        if let Some(recording) = &mut self.recording {
+            recording.stop(&graphics.gpu, self.start.elapsed().as_secs_f64());
+        }
+        drop(graphics);
+        let now = Instant::now();
+        self.losses.retain(|loss| now.saturating_duration_since(*loss) < LOSS_PERIOD);
+        self.losses.push(now);
+        if self.losses.len() >= MAX_LOSSES {
+            let error = RenderError::Lost { times: self.losses.len(), reason };
+            return self.quit(event_loop, Some(error.into()));
+        }
+        self.lost = Some(reason);
+        self.open_graphics(event_loop, bare);
+    }
+
     /// Takes over the window once its graphics device is there.
     fn take_window(&mut self, event_loop: &ActiveEventLoop) {
         let opened = self.opening.borrow_mut().take();
         match opened {
             Some(Ok(open)) => {
-                self.lab.set_adapter(open.gpu.describe());
-                open.window.request_redraw();
+                let adapter = open.graphics.gpu.describe();
+                self.lab.set_adapter(adapter.clone());
+                open.bare.window.request_redraw();
                 self.open = Some(open);
+                if let Some(reason) = self.lost.take() {
+                    self.say(fill!(
+                        "Graphics restarted with %{adapter}: %{reason}",
+                        adapter = adapter,
+                        reason = reason
+                    ));
+                }
             }
             Some(Err(error)) => self.quit(event_loop, Some(error)),
             None => {}
@@ -433,6 +396,15 @@ impl App {
         }
     }
 
+    /// Stores a copy of unsaved edits when the window closes with an error.
+    fn keep_at_end(&mut self) {
+        let (Some(recovery), Some(edits)) = (&mut self.recovery, self.lab.unsaved()) else { return };
+        match recovery.keep_at_once(edits) {
+            Ok(()) => self.warn(tr("Unsaved changes are kept; the next window offers to restore them").to_owned()),
+            Err(error) => self.warn(no_copy(error)),
+        }
+    }
+
     /// Closes the window. The user has decided to discard edits that are still unsaved.
     fn close(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(recovery) = &mut self.recovery
@@ -447,17 +419,17 @@ impl App {
     fn record(&mut self, now: f64) {
         let Some(open) = &self.open else { return };
         if let Some(recording) = &mut self.recording {
-            recording.stop(&open.gpu, now);
-            return open.window.request_redraw();
+            recording.stop(&open.graphics.gpu, now);
+            return open.bare.window.request_redraw();
         }
-        let size = [open.configuration.width, open.configuration.height];
-        let format = open.configuration.format;
-        let started =
-            new_file("gif").and_then(|file| LiveRecording::start(&open.gpu, format, size, file, self.lab.language()));
+        let size = [open.graphics.configuration.width, open.graphics.configuration.height];
+        let format = open.graphics.configuration.format;
+        let started = new_file("gif")
+            .and_then(|file| LiveRecording::start(&open.graphics.gpu, format, size, file, self.lab.language()));
         match started {
             Ok(recording) => {
                 self.recording = Some(recording);
-                open.window.request_redraw();
+                open.bare.window.request_redraw();
             }
             Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
         }
@@ -470,8 +442,8 @@ impl App {
         }
         let theme = if self.ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
         let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
-        let language = self.lab.language();
-        match new_file("gif").and_then(|file| Recorder::start(source, scene, theme, language, file)) {
+        let (language, adapter) = (self.lab.language(), self.adapter.clone());
+        match new_file("gif").and_then(|file| Recorder::start(source, scene, (theme, language), adapter, file)) {
             Ok(recorder) => self.scene_recording = Some(recorder),
             Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
         }
@@ -494,7 +466,7 @@ impl App {
     fn say(&mut self, message: String) {
         self.lab.say(&self.ctx, message);
         if let Some(open) = &self.open {
-            open.window.request_redraw();
+            open.bare.window.request_redraw();
         }
     }
 
@@ -503,7 +475,7 @@ impl App {
         if self.lab.warn(message)
             && let Some(open) = &self.open
         {
-            open.window.request_redraw();
+            open.bare.window.request_redraw();
         }
     }
 
@@ -511,7 +483,7 @@ impl App {
         self.wake = None;
         if delay.is_zero() {
             if let Some(open) = &self.open {
-                open.window.request_redraw();
+                open.bare.window.request_redraw();
             }
         } else {
             // A delay that overflows means never.
@@ -524,7 +496,7 @@ impl App {
         const NAME: &str = "warpbeam.png";
         let saved = match (screenshot, &self.open) {
             (Some(saved), _) => saved.as_ref().map(|path| path.display().to_string()).map_err(ToString::to_string),
-            (None, Some(open)) => platform::page::save_frame(&open.window, NAME).map(|()| NAME.to_owned()),
+            (None, Some(open)) => platform::page::save_frame(&open.bare.window, NAME).map(|()| NAME.to_owned()),
             (None, None) => return,
         };
         let message = match saved {
@@ -551,30 +523,17 @@ impl App {
     fn quit(&mut self, event_loop: &ActiveEventLoop, error: Option<AppError>) {
         if let Some(error) = &error {
             platform::page::fail(&error.to_string());
+            self.keep_at_end();
         }
         self.error = self.error.take().or(error);
         if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
-            recording.stop(&open.gpu, self.start.elapsed().as_secs_f64());
+            recording.stop(&open.graphics.gpu, self.start.elapsed().as_secs_f64());
         }
         self.scene_recording.iter().for_each(Recorder::stop);
         // The surface must be dropped before the display connection closes.
         self.open = None;
         event_loop.exit();
     }
-}
-
-/// Creates a file with a new name in the current folder.
-fn new_file(extension: &str) -> std::io::Result<NewFile> {
-    NewFile::create(Path::new(""), extension)
-}
-
-/// Reason for which there is no screenshot.
-#[derive(Debug, Error)]
-enum ScreenshotError {
-    #[error(transparent)]
-    NoFile(#[from] std::io::Error),
-    #[error(transparent)]
-    Render(#[from] RenderError),
 }
 
 impl ApplicationHandler for App {
@@ -588,67 +547,60 @@ impl ApplicationHandler for App {
             Ok(window) => Arc::new(window),
             Err(error) => return self.quit(event_loop, Some(AppError::Window(error.to_string()))),
         };
-        let (opening, display, ctx) = (self.opening.clone(), event_loop.owned_display_handle(), self.ctx.clone());
-        platform::graphics::open(async move {
-            let opened = OpenWindow::new(window.clone(), display, ctx).await;
-            *opening.borrow_mut() = Some(opened);
-            window.request_redraw();
-        });
-        self.take_window(event_loop);
+        self.open_graphics(event_loop, BareWindow::new(window, self.ctx.clone()));
     }
 
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
         if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
             self.wake = None;
-            open.window.request_redraw();
+            open.bare.window.request_redraw();
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         self.take_window(event_loop);
         let Some(open) = &mut self.open else { return };
-        open.clipboard.before(&event, &mut open.input);
-        let wants = open.input.on_window_event(&open.window, &event);
+        open.bare.clipboard.before(&event, &mut open.bare.input);
+        let wants = open.bare.input.on_window_event(&open.bare.window, &event);
         match event {
             WindowEvent::CloseRequested => {
                 if self.lab.request_close(&self.ctx) {
                     return self.close(event_loop);
                 }
                 // The question about unsaved edits must be visible.
-                open.window.set_minimized(false);
-                open.window.request_redraw();
+                open.bare.window.set_minimized(false);
+                open.bare.window.request_redraw();
             }
             WindowEvent::Destroyed => return self.quit(event_loop, None),
             WindowEvent::Resized(size) => {
                 open.resize(size.width, size.height);
-                let points = size.to_logical::<f32>(open.window.scale_factor());
+                let points = size.to_logical::<f32>(open.bare.window.scale_factor());
                 self.lab.set_window_size([points.width, points.height]);
-                open.window.request_redraw();
+                open.bare.window.request_redraw();
             }
             WindowEvent::Occluded(occluded) => {
                 open.hidden = occluded;
                 if !occluded {
-                    open.window.request_redraw();
+                    open.bare.window.request_redraw();
                 }
             }
-            WindowEvent::RedrawRequested => {
-                if let Err(error) = self.frame(event_loop) {
-                    self.quit(event_loop, Some(error));
-                }
-                return;
-            }
+            WindowEvent::RedrawRequested => return self.redraw(event_loop),
             _ => {}
         }
         if wants.repaint {
-            open.window.request_redraw();
+            open.bare.window.request_redraw();
         }
     }
 
     fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
-        self.open.iter().for_each(|open| open.window.request_redraw());
+        self.open.iter().for_each(|open| open.bare.window.request_redraw());
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         event_loop.set_control_flow(self.wake.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 }
+
+#[cfg(target_os = "linux")]
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ use crate::app::language::{self, Language, tr};
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
 use crate::app::shell::settings::Settings;
-use crate::app::window::{Display, opens_in_background, run_with, worker};
+use crate::app::window::{App, Display, opens_in_background, worker};
 use crate::scene::{Source, registry};
 use crate::simulation::Simulation;
 
@@ -45,5 +45,5 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let scene = files::open(&source)?;
     // A large model is meshed in the background.
     let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    Ok(run_with(Display::open()?, (source, scene, simulation), (settings, unreadable), address.card)?)
+    Ok(App::new((source, scene, simulation), (settings, unreadable), address.card)?.run(Display::open()?)?)
 }

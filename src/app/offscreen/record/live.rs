@@ -151,8 +151,12 @@ impl LiveRecording {
         Reading { number, buffer, mapped }
     }
 
-    /// Passes the frames that have arrived from the graphics device to the encoder, without waiting.
+    /// Passes the frames that have arrived from the graphics device to the encoder, without waiting. Those of a device
+    /// that has failed do not arrive.
     pub(crate) fn pass_frames(&mut self, gpu: &Gpu) {
+        if gpu.failure().is_some() {
+            return self.pending.clear();
+        }
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         while let Some(first) = self.pending.first() {
             match first.mapped.try_recv() {
@@ -185,8 +189,10 @@ impl LiveRecording {
         if !self.is_running() {
             return;
         }
-        // Waits for the frames that the device is still copying.
-        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        if gpu.failure().is_none() {
+            // Waits for the frames that the device is still copying.
+            let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        }
         self.pass_frames(gpu);
         self.end.store((self.seconds(now) * f64::from(RATE)).max(0.0) as u64, Ordering::Relaxed);
         self.sender = None;

@@ -96,7 +96,7 @@ impl From<&RecordError> for Sentence {
 }
 
 /// Options of a recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordOptions {
     /// Size, pixels.
     pub size: [u32; 2],
@@ -112,6 +112,8 @@ pub struct RecordOptions {
     pub theme: ThemeChoice,
     /// Language of the texts.
     pub language: Language,
+    /// Part of the name of the graphics adapter; `None` stands for `WGPU_ADAPTER_NAME`.
+    pub adapter: Option<String>,
 }
 
 /// Result of a recording.
@@ -158,7 +160,7 @@ pub fn record(
     let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
     let simulation = Simulation::new(&scene).map_err(failed)?;
     let again = || Simulation::with_system(&scene, simulation.system().clone()).map_err(failed);
-    let gpu = Gpu::headless()?;
+    let gpu = Gpu::headless_on(options.adapter.as_deref())?;
     let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.theme.into())?;
 
     let delay = format.delay(options.fps.unwrap_or(if moves { MOTION_RATE } else { SEARCH_RATE }));

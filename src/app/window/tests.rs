@@ -1,0 +1,175 @@
+//! Tests of a window whose graphics device is lost. They run on a virtual display, in a process of their own.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+
+use winit::platform::x11::EventLoopBuilderExtX11;
+
+use super::*;
+use crate::render::Camera;
+use crate::scene::{Load, open};
+
+/// Environment variable that is set in the process with the window.
+const CHILD: &str = "WARPBEAM_TEST_LOSS";
+/// Longest time of a step; a busy machine takes long to compile shaders for the first time.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// Process that ends when the value is dropped.
+struct Ended(Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Step of the test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// A screenshot is awaited, by this number of files.
+    Screenshot(usize),
+    /// A new device is awaited, after this number of losses.
+    Loss(usize),
+}
+
+/// Window that loses its graphics device three times, with a screenshot before each loss.
+struct Losing {
+    app: App,
+    step: Step,
+    since: Instant,
+    /// Camera at the first loss.
+    camera: Option<Camera>,
+}
+
+impl Losing {
+    fn go_to(&mut self, step: Step) {
+        (self.step, self.since) = (step, Instant::now());
+        match step {
+            Step::Screenshot(_) => self.app.later.push(egui::Event::Key {
+                key: egui::Key::S,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: egui::Modifiers::NONE,
+            }),
+            Step::Loss(_) => {
+                self.camera.get_or_insert(self.app.lab.camera());
+                let gpu = &self.app.open.as_ref().unwrap().graphics.gpu;
+                gpu.device.destroy();
+                // The device is lost once its work has ended.
+                gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+                assert!(gpu.failure().is_some());
+            }
+        }
+    }
+
+    /// Returns the number of complete screenshots.
+    fn screenshots() -> usize {
+        (1..).take_while(|number| screenshot(*number).is_some()).count()
+    }
+}
+
+/// Returns the pixels of a screenshot, and their number in a row; `None` if the file is not complete.
+fn screenshot(number: usize) -> Option<(Vec<u8>, usize)> {
+    let file = std::fs::File::open(format!("warpbeam-{number:03}.png")).ok()?;
+    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().ok()?;
+    let mut pixels = vec![0; reader.output_buffer_size()?];
+    let info = reader.next_frame(&mut pixels).ok()?;
+    Some((pixels, info.line_size))
+}
+
+impl ApplicationHandler for Losing {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        self.app.resumed(event_loop);
+        self.since = Instant::now();
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, id: WindowId, event: WindowEvent) {
+        self.app.window_event(event_loop, id, event);
+        let is_open = self.app.open.is_some() && self.app.device_failure().is_none();
+        match self.step {
+            Step::Screenshot(files) if is_open && Self::screenshots() == files => self.go_to(Step::Loss(files)),
+            Step::Loss(losses) if is_open && self.app.losses.len() == losses => {
+                self.go_to(Step::Screenshot(losses + 1));
+            }
+            step => assert!(self.since.elapsed() < PATIENCE, "{step:?}"),
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        self.app.about_to_wait(event_loop);
+        self.app.open.iter().for_each(|open| open.bare.window.request_redraw());
+    }
+}
+
+/// Opens the window, loses its device three times, and checks what is kept.
+fn lose() {
+    let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
+    let scene = open(&source).unwrap();
+    let simulation = Simulation::new(&scene).unwrap();
+    let settings = Settings::file().as_deref().map(Settings::load).unwrap();
+    let mut app = App::new((source, scene.clone(), Some(simulation)), settings, None).unwrap();
+    let mut edited = scene.clone();
+    let Load::Force { force, .. } = &mut edited.loads[0] else { unreachable!() };
+    force[1] *= 0.5;
+    app.lab.set_scene(edited.clone()).unwrap();
+    let event_loop = EventLoop::builder().with_any_thread(true).build().unwrap();
+    let mut losing = Losing { app, step: Step::Screenshot(1), since: Instant::now(), camera: None };
+    losing.go_to(Step::Screenshot(1));
+    event_loop.run_app(&mut losing).unwrap();
+
+    let Losing { app, step, camera, .. } = losing;
+    assert_eq!(step, Step::Loss(3));
+    let text = app.error.unwrap().to_string();
+    assert!(text.contains("failed 3 times within a minute: the device was lost"), "{text}");
+    assert!(text.contains("--adapter"), "{text}");
+    assert_eq!((app.lab.scene(), app.lab.camera()), (&edited, camera.unwrap()));
+    // The panel is drawn as before, with its fonts.
+    let view = app.lab.view_rect();
+    let (right, bottom) = (4 * (view.right() as usize + 1), view.bottom() as usize);
+    let panel = |number| {
+        let (pixels, row) = screenshot(number).unwrap();
+        pixels.chunks(row).take(bottom).flat_map(|line| line[right.min(line.len())..].to_vec()).collect::<Vec<u8>>()
+    };
+    let first = panel(1);
+    assert!(first.len() > 100_000, "{}", first.len());
+    for number in [2, 3] {
+        assert!(panel(number) == first, "screenshot {number}");
+    }
+}
+
+#[test]
+fn a_lost_device_is_replaced_until_it_is_lost_three_times() {
+    if std::env::var_os(CHILD).is_some() {
+        return lose();
+    }
+    let server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "1600x1100x24", "-nolisten", "tcp", "-noreset"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut server) = server.map(Ended) else {
+        assert!(std::env::var_os("WARPBEAM_REQUIRE_XVFB").is_none(), "Xvfb is missing");
+        let _ = writeln!(std::io::stderr(), "skipped: no Xvfb; `scripts/setup test` installs it");
+        return;
+    };
+    let mut number = String::new();
+    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut number).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "app::window::tests::a_lost_device_is_replaced_until_it_is_lost_three_times", "--nocapture"])
+        .current_dir(folder.path())
+        .env(CHILD, "1")
+        .env("DISPLAY", format!(":{}", number.trim()))
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("XDG_CONFIG_HOME", folder.path())
+        .output()
+        .unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    assert!(output.status.success() && out.contains("1 passed"), "{out}\n{err}");
+    assert!(err.contains("Unsaved changes are kept"), "{err}");
+    let copy = std::fs::read_to_string(folder.path().join("warpbeam/unsaved/0.toml")).unwrap();
+    assert!(copy.contains("-15000.0"), "{copy}");
+}
