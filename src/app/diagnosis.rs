@@ -4,9 +4,9 @@ use crate::app::action::Action;
 use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
-use crate::format::{self, engineering, number, two_digits};
+use crate::format::{self, engineering, number, three_digits, two_digits};
 use crate::method::{floor_text, rho_text};
-use crate::scene::{ElementKind, MethodKind, limits};
+use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
 use crate::study::Reference;
@@ -156,10 +156,37 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
     certificate.stable.filter(|_| *simulation.status() == Status::Converged)
 }
 
-/// Returns the spectral radius ρ of the warped iteration: at the equilibrium if that is known, else at the current
-/// state.
+/// Returns the spectral radius ρ of the warped iteration at the equilibrium; `None` if that is not known.
 pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
-    input.equilibrium_rho.or_else(|| input.simulation.equilibrium()?.certificate()?.fixed_point_rho)
+    let own = || input.simulation.equilibrium().filter(|_| input.simulation.status().is_success());
+    input.equilibrium_rho.or_else(|| own()?.certificate()?.fixed_point_rho)
+}
+
+/// Describes the last equilibrium that is drawn in place of a state that diverges: its load, and the load that was
+/// asked for; or its method, if the loads are equal.
+pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
+    match (load_text(drawn), load_text(wanted)) {
+        (Some(own), Some(asked)) if own != asked => {
+            fill!("equilibrium at %{load}; %{wanted} not reached", load = own, wanted = asked)
+        }
+        _ if drawn.solver.method != wanted.solver.method => {
+            fill!("equilibrium under %{method}", method = tr(drawn.solver.method.id()))
+        }
+        _ => tr("last equilibrium").to_owned(),
+    }
+}
+
+/// Returns the magnitude of a scene's only load; `None` if it has none or several, or moves a support.
+fn load_text(scene: &Scene) -> Option<String> {
+    let magnitude = |load: &Load| match *load {
+        Load::Force { force: [x, y], .. } => (x.hypot(y), "N"),
+        Load::Gravity { acceleration: [x, y], .. } => (x.hypot(y), "m/s²"),
+        Load::Moment { moment, .. } => (moment.abs(), "N m"),
+    };
+    let mut loads = scene.loads.iter().map(magnitude).filter(|(value, _)| *value > 0.0);
+    let (value, unit) = loads.next()?;
+    let is_only = loads.next().is_none() && !scene.supports.iter().any(Support::moves);
+    is_only.then(|| engineering(three_digits(value), unit))
 }
 
 /// Explains the status, one sentence per entry.

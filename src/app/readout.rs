@@ -17,6 +17,8 @@ pub(crate) struct Readout<'a> {
     pub original: &'a Scene,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
+    /// Drawn state: the last equilibrium in place of a state that diverges.
+    pub shown: &'a Simulation,
     /// Solution of the same scene with linear theory.
     pub linear: Option<&'a Simulation>,
     pub running: bool,

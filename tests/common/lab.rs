@@ -11,7 +11,7 @@ const FOLDS: [(&str, &[&str]); 6] = [
     ("Gravity, moment: ", &["Gravity", "Moment"]),
     ("Loads and supports: ", &["Add", "Force on", "Held at", "Moment on"]),
     ("Beam: ", &["Length", "Height"]),
-    ("Material: ", &["Young E", "Poisson ν", "Density ρ", "Thickness t", "strain"]),
+    ("Material: ", &["Young E", "Poisson ν", "Density", "Thickness t", "strain"]),
     ("Mesh: ", &["Cells along", "Cells across"]),
     ("Details: ", &["stable"]),
 ];

@@ -123,8 +123,10 @@ fn the_last_equilibrium_keeps_the_name_of_its_method() {
     assert_eq!(status, Status::Converged);
     let (status, last) = legend("warped", -1e6);
     assert!(matches!(status, Status::Diverged(_)), "{status:?}");
-    assert!(last == newton);
+    // The veil over a body that is not the state asked for shines through the box of the legend.
+    let far = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or_default();
+    assert!(far(&last, &newton) < 8, "{}", far(&last, &newton));
     let (status, warped) = legend("warped", -30_000.0);
     assert_eq!(status, Status::Converged);
-    assert!(warped != newton);
+    assert!(far(&warped, &newton) > 80, "{}", far(&warped, &newton));
 }

@@ -189,9 +189,40 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     }
     harness.run();
     harness.get_by_label_contains("ERROR \u{2013}");
+    harness.get_by_label_contains("TIME \u{2013}");
     harness.get_by_label("Use newton").click();
     harness.run();
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
+}
+
+/// In place of a state that diverges everything shown belongs to the last equilibrium: the label on the body names its
+/// load, and the details have its displacement and energy.
+#[test]
+fn numbers_beside_the_last_equilibrium_are_its_own() {
+    let mut harness = harness("article");
+    unfold(&mut harness, "stable");
+    let details = |harness: &Harness<'_, Lab>| {
+        let nodes = harness.get_all_by_role(Role::Label);
+        let values: Vec<String> = nodes.filter_map(|node| node.accesskit_node().value()).collect();
+        let after = |name: &str| {
+            let at = values.iter().position(|value| value == name).unwrap_or_else(|| panic!("{name} in {values:?}"));
+            values[at + 1].clone()
+        };
+        [after("tip x, y"), after("Energy"), after("Load steps")]
+    };
+    let before = details(&harness);
+    assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");
+    type_into(&mut harness, "Force", "176000");
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    harness.get_by_label("equilibrium at 30 kN; 176 kN not reached");
+    assert_eq!(details(&harness), before);
+    harness.get_by_label_contains("ERROR \u{2013}");
+    harness.get_by_label_contains("TIME \u{2013}");
+    harness.get_by_label_contains("ρ \u{2013}");
+    harness.get_by_label("Use newton").click();
+    harness.run();
+    assert!(harness.query_by_label_contains("not reached").is_none());
+    assert_ne!(details(&harness), before);
 }
 
 /// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.
@@ -386,7 +417,7 @@ fn double_click(harness: &mut Harness<'_, Lab>, at: Pos2) {
 fn values_go_back_to_those_of_the_scene() {
     let mut harness = harness("cantilever");
     for (label, text) in
-        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6"), ("Density ρ", "77"), ("Cells along", "40")]
+        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6"), ("Density", "77"), ("Cells along", "40")]
     {
         unfold(&mut harness, label);
         for by in ["slider", "number", "key"] {

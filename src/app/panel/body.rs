@@ -60,7 +60,7 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
         },
         NumberRow {
             field: NumberField {
-                label: "Density ρ",
+                label: "Density",
                 tooltip: "Density, kg/m³: sets the weight, and the inertia in motion.",
                 limit: limits::DENSITY,
                 slider: 0.0..=20_000.0,

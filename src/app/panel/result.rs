@@ -59,6 +59,8 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
         "Iterations since the last change; residual: out-of-balance force over the sum of the elements' absolute \
          forces",
     );
+    // The values are those of the drawn body.
+    let simulation = input.shown;
     probe_row(row, simulation);
     let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),

@@ -262,6 +262,7 @@ impl Lab {
             original: &session.document().original,
             scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
+            shown: session.converged().filter(|_| viewport.shows_converged()).unwrap_or(session.simulation()),
             linear: session.linear(),
             running: session.is_running(),
             ended: match view.mode {

@@ -1,6 +1,6 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
-use egui::{CentralPanel, Color32, Panel, Rect, Ui};
+use egui::{CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo};
 
 use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
@@ -287,6 +287,10 @@ impl Lab {
         // If there is a status bar, it shows the warning.
         let warning = (is_bad && !self.desk.view.bars).then_some(text.as_str());
         self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
+        if readout.shows_converged {
+            let text = diagnosis::equilibrium_text(readout.shown.scene(), readout.scene);
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+        }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
             let taken =
                 (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend_below(rect.size()));

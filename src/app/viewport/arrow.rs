@@ -175,12 +175,27 @@ impl Arrow {
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
-    /// Paints the arrow with its force next to it.
-    pub(crate) fn paint(&self, painter: &Painter, color: Color32, visuals: &Visuals, is_hot: bool) {
+    /// Paints the arrow of the force on a body that is not in the state that was asked for, without a handle.
+    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32) {
+        paint_arrow(painter, self.from, self.vector, color);
+    }
+
+    /// Paints the arrow with its force next to it, as an outline if the body does not have this load.
+    pub(crate) fn paint(
+        &self,
+        painter: &Painter,
+        color: Color32,
+        visuals: &Visuals,
+        (is_hot, is_outline): (bool, bool),
+    ) {
         let direction = self.vector.normalized();
         let is_stub = self.magnitude == 0.0;
         let faint = if is_stub && !is_hot { color.gamma_multiply(0.55) } else { color };
-        let tip = paint_arrow(painter, self.from, self.vector, faint);
+        let tip = if is_outline {
+            paint_outline(painter, self.from, self.vector, faint)
+        } else {
+            paint_arrow(painter, self.from, self.vector, faint)
+        };
         // A ring around the tip shows that it can be grabbed.
         let grip = tip - direction * 6.0;
         if is_hot {
@@ -220,16 +235,37 @@ fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
     (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
 }
 
+/// Length of the head of an arrow, and its half width, points.
+const HEAD: [f32; 2] = [12.0, 5.04];
+
 /// Paints an arrow with the vector `vector` at `from`, and returns its tip.
 pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    const HEAD: f32 = 12.0;
-    let direction = vector.normalized();
-    let tip = from + vector;
-    let side = vec2(-direction.y, direction.x) * (HEAD * 0.42);
-    let neck = tip - direction * HEAD;
+    let [tip, neck, side] = head(from, vector);
+    let side = side - neck;
     painter.line_segment([from, neck], Stroke::new(3.0, color));
     painter.add(Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
     tip
+}
+
+/// Paints the outline of an arrow with the vector `vector` at `from`, and returns its tip.
+fn paint_outline(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
+    /// Half width of the shaft as a fraction of that of the head.
+    const SHAFT: f32 = 0.45;
+    let [tip, neck, side] = head(from, vector);
+    let side = side - neck;
+    let shaft = SHAFT * side;
+    let line = [from + shaft, neck + shaft, neck + side, tip, neck - side, neck - shaft, from - shaft];
+    painter.add(Shape::closed_line(line.to_vec(), Stroke::new(1.5, color)));
+    tip
+}
+
+/// Returns the tip of an arrow, the middle of the head's base, and a corner of it.
+fn head(from: Pos2, vector: Vec2) -> [Pos2; 3] {
+    let direction = vector.normalized();
+    let [length, width] = HEAD;
+    let tip = from + vector;
+    let neck = tip - direction * length;
+    [tip, neck, neck + vec2(-direction.y, direction.x) * width]
 }
 
 #[cfg(test)]

@@ -111,16 +111,22 @@ impl MomentArrow {
         three_digits(nearest.copysign(moment))
     }
 
-    /// Paints the arrow with its moment below it.
-    pub(crate) fn paint(&self, painter: &Painter, color: Color32, visuals: &Visuals, is_hot: bool) {
-        const HEAD: f32 = 11.0;
+    /// Paints the arrow of the moment on a body that is not in the state that was asked for, without a handle.
+    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32) {
+        self.paint_arrow(painter, color, 3.0);
+    }
+
+    /// Paints the arrow with its moment below it, thin if the body does not have this load.
+    pub(crate) fn paint(
+        &self,
+        painter: &Painter,
+        color: Color32,
+        visuals: &Visuals,
+        (is_hot, is_outline): (bool, bool),
+    ) {
         let sweep = self.sweep();
         let faint = if self.moment == 0.0 && !is_hot { color.gamma_multiply(0.55) } else { color };
-        self.paint_arc(painter, sweep, Stroke::new(3.0, faint));
-        let (end, along) = self.at(sweep);
-        let along = along * sweep.signum() as f32;
-        let across = vec2(-along.y, along.x) * (HEAD * 0.5);
-        painter.add(Shape::convex_polygon(vec![end + along * HEAD, end + across, end - across], faint, Stroke::NONE));
+        let (end, along) = self.paint_arrow(painter, faint, if is_outline { 1.0 } else { 3.0 });
         // A ring around the end shows that it can be grabbed.
         let grip = end + along * 3.0;
         if is_hot {
@@ -131,6 +137,18 @@ impl MomentArrow {
         let below = (RADIUS + PITCH * (sweep.abs() / TAU).ceil() + 12.0) as f32;
         let label = engineering(self.moment, "N m");
         boxed_text(painter, self.center + vec2(0.0, below), Align2::CENTER_TOP, &label, visuals, faint, 200.0);
+    }
+
+    /// Paints the arc with a line of this width, points, and its head; returns the end of the arc and its direction.
+    fn paint_arrow(&self, painter: &Painter, color: Color32, width: f32) -> (Pos2, Vec2) {
+        const HEAD: f32 = 11.0;
+        let sweep = self.sweep();
+        self.paint_arc(painter, sweep, Stroke::new(width, color));
+        let (end, along) = self.at(sweep);
+        let along = along * sweep.signum() as f32;
+        let across = vec2(-along.y, along.x) * (HEAD * 0.5);
+        painter.add(Shape::convex_polygon(vec![end + along * HEAD, end + across, end - across], color, Stroke::NONE));
+        (end, along)
     }
 
     /// Paints the dragged arrow at the position where its end was grabbed.

@@ -5,7 +5,7 @@ use crate::app::widgets::text::boxed_text;
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
-use crate::app::diagnosis::Errors;
+use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{percent, tr};
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
@@ -24,11 +24,12 @@ use crate::simulation::SupportReaction;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
+    /// Scene of the drawn body.
     pub scene: &'a Scene,
+    /// Scene that was asked for and whose state diverges; the last equilibrium is drawn in its place.
+    pub wanted: Option<&'a Scene>,
     pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
-    /// Scene of the drawn body: that of the last equilibrium while it is drawn in place of a state that diverges.
-    pub drawn: &'a Scene,
     pub options: &'a ViewOptions,
     pub camera: Camera,
     /// Positions of the nodes, m.
@@ -67,6 +68,9 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
+    if overlay.wanted.is_some() {
+        dim(painter, rect, &palette);
+    }
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     let names = key(painter, rect, overlay, &palette, visuals);
     let legend = legend(painter, rect, names, overlay, &palette, visuals);
@@ -76,10 +80,18 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
     }
+    let at = rect.center_top() + vec2(0.0, 46.0);
     if let Some(warning) = overlay.warning {
-        let at = rect.center_top() + vec2(0.0, 46.0);
         boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
+    } else if let Some(wanted) = overlay.wanted {
+        let text = diagnosis::equilibrium_text(overlay.scene, wanted);
+        boxed_text(painter, at, Align2::CENTER_TOP, &text, visuals, palette.text, rect.width() - 48.0);
     }
+}
+
+/// Dims the body in `rect`, which is not the state that was asked for.
+pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
+    painter.rect_filled(rect, 0.0, palette.canvas.gamma_multiply(0.55));
 }
 
 /// Paints the overlays that belong to the body: outlines, supports, loads.
@@ -123,7 +135,7 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.drawn)));
+        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
     for line in overlay.exact {
         // A background stroke keeps the line visible over the body.
@@ -180,7 +192,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     let playback = overlay.playback;
     let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.drawn))).chain(others) {
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
         let end = playback.shown_time().unwrap_or(f64::INFINITY);
         let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
         let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
@@ -293,13 +305,24 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
 
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     let Overlay { scene, system, positions, time, .. } = *overlay;
-    let forces = Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
+    let of = |scene| Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
+    // The filled arrow belongs to the body, and the outline is the load that was asked for.
+    let forces = of(overlay.wanted.unwrap_or(scene));
+    let is_outline = overlay.wanted.is_some();
+    if is_outline {
+        for own in of(scene).arrows(projection) {
+            own.paint_body_load(painter, palette.load);
+        }
+        for own in of(scene).moment_arrows(projection) {
+            own.paint_body_load(painter, palette.load);
+        }
+    }
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     for arrow in forces.arrows(projection) {
-        arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
+        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline));
     }
     for arrow in forces.moment_arrows(projection) {
-        arrow.paint(painter, palette.load, visuals, is_hot(arrow.load));
+        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline));
     }
     if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);
@@ -445,11 +468,11 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Some(error) => format!("{word}  {}", percent(error)),
         None => word.to_owned(),
     };
-    let own = match overlay.drawn.analysis {
-        Analysis::Static => with_error(tr(overlay.drawn.solver.method.id()), overlay.errors.own),
-        Analysis::Dynamic => tr(overlay.drawn.dynamics.integrator.id()).to_owned(),
+    let own = match overlay.scene.analysis {
+        Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
+        Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
-    let mut lines = vec![(palette.solution(overlay.drawn), Mark::Line, own)];
+    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
     for companion in overlay.playback.companions() {
         lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
     }

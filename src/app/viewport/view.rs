@@ -276,8 +276,18 @@ impl Viewport {
         }
     }
 
+    /// Returns the outline of the reference solution, m; empty while the drawn body has another load.
+    fn exact<'a>(&self, content: &Content<'a>) -> &'a [Vec<Vector2<f64>>] {
+        if self.shows_converged { &[] } else { content.exact() }
+    }
+
+    /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
+    fn ghost<'a>(&self, content: &Content<'a>) -> Option<&'a [Vector2<f64>]> {
+        content.ghost().filter(|_| !self.shows_converged)
+    }
+
     /// Returns the drawn body; animations are ignored.
-    fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
+    pub(crate) fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
         content.session.converged().filter(|_| self.shows_converged).unwrap_or(content.simulation())
     }
 
@@ -388,7 +398,7 @@ impl Viewport {
                     include(&mut positions(body));
                 }
             }
-            include(&mut content.exact().iter().flatten().copied());
+            include(&mut self.exact(content).iter().flatten().copied());
             if let Some(reach) = content.reach() {
                 include(&mut positions(reach));
             }
@@ -428,7 +438,7 @@ impl Viewport {
         mut high: Vector2<f64>,
         view: [f64; 2],
     ) -> Camera {
-        if let Some(linear) = content.ghost() {
+        if let Some(linear) = self.ghost(content) {
             // Largest size that the box may grow to for the linear solution, relative to the body: under a large load
             // that solution is far too long.
             const LARGEST: f64 = 1.5;
@@ -492,20 +502,20 @@ impl Viewport {
     ) {
         let (session, is_animated) = (content.session, content.animation.is_some());
         let simulation = session.simulation();
-        let shown = content.animation.map_or(simulation, |(simulation, _)| simulation);
+        let shown = self.drawn(content);
         let moves_support = simulation.problem().supports().move_the_body();
         let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         let overlay = Overlay {
             scene: shown.scene(),
-            drawn: self.drawn(content).scene(),
+            wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,
             camera: self.camera(),
             positions: &self.body.nodes,
             apart: content.is_apart(),
-            ghost: content.ghost(),
-            exact: if is_animated { &[] } else { content.exact() },
+            ghost: self.ghost(content),
+            exact: if is_animated { &[] } else { self.exact(content) },
             errors: if is_animated { Errors::default() } else { errors },
             time: shown.state().time(),
             direction: content.direction,

@@ -302,7 +302,7 @@ impl<P: ComparedPane> Panes<P> {
             let overlay = Overlay {
                 apart: false,
                 scene,
-                drawn: scene,
+                wanted: None,
                 system,
                 geometry: &display.geometry,
                 options: input.view,
@@ -326,12 +326,11 @@ impl<P: ComparedPane> Panes<P> {
         if number == 0 {
             overlay::scale_bar(&painter, place, &camera, &palette);
         }
-        let dim = |share: f32| painter.rect_filled(place, 0.0, palette.canvas.gamma_multiply(share));
         match condition {
             Condition::Result | Condition::Unfinished => {}
-            Condition::Failed => _ = dim(0.55),
+            Condition::Failed => overlay::dim(&painter, place, &palette),
             Condition::Outdated => {
-                dim(0.6);
+                overlay::dim(&painter, place, &palette);
                 let font = FontId::proportional(BODY);
                 painter.text(place.center(), Align2::CENTER_CENTER, tr("solving…"), font, palette.text);
             }
