@@ -236,20 +236,13 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         }
     });
     lines.extend(stable.map(|text| tr(text).to_owned()));
-    if let Some(rho) = rho(input) {
+    if let Some(rho) = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped) {
         lines.push(sentence(&said(&rho_text(rho))));
         let converged = *simulation.status() == Status::Converged;
         if rho > 1.0 && converged {
-            lines.push(match input.scene.solver.method {
-                MethodKind::Warped => tr(
-                    "It still converged, because this load has no part in the direction that diverges: a bar pulled \
-                     along its axis stays straight. The iteration would not remove a small sideways deflection.",
-                )
-                .to_owned(),
-                other => {
-                    fill!("This result is not affected: it comes from %{method}.", method = tr(other.id()))
-                }
-            });
+            let text = "It still converged, because this load has no part in the direction that diverges: a bar pulled \
+                        along its axis stays straight. The iteration would not remove a small sideways deflection.";
+            lines.push(tr(text).to_owned());
         }
     }
     lines

@@ -52,7 +52,6 @@ pub(crate) struct Readout<'a> {
     pub shows_converged: bool,
     /// Measures of the reliability of the result.
     pub quality: &'a Quality,
-    pub adapter: &'a str,
     /// Language of the user interface.
     pub language: Language,
 }

@@ -42,7 +42,6 @@ const CHINESE: (Language, Theme, &str) = (Language::Chinese, Theme::Dark, "dark-
 /// the rectangles of measured numbers.
 fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured: &[[u32; 4]]) {
     let gpu = Gpu::headless().unwrap();
-    lab.set_adapter(gpu.describe());
     let folder = tempfile::tempdir().unwrap();
     let mut wrong = Vec::new();
     for (language, theme, mark) in looks {

@@ -208,7 +208,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
             let at = values.iter().position(|value| value == name).unwrap_or_else(|| panic!("{name} in {values:?}"));
             values[at + 1].clone()
         };
-        [after("tip x, y"), after("Energy"), after("Load steps")]
+        [after("tip x, y"), after("Energy"), after("Equilibrium")]
     };
     let before = details(&harness);
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");

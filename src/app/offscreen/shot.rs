@@ -86,7 +86,6 @@ pub fn shot(
 ) -> Result<Shot, AppError> {
     let gpu = Gpu::headless_on(options.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
-    lab.set_adapter(gpu.describe());
     lab.set_panel(options.panel);
     lab.set_language(options.language);
     if options.curve {

@@ -1,6 +1,6 @@
 //! Panel section of the result: status, iterations, errors, certificate, times.
 
-use egui::{Grid, RichText, Ui};
+use egui::{RichText, Ui};
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, error_tip, rho, stability};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
@@ -11,6 +11,7 @@ use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::method::rho_text;
+use crate::scene::MethodKind;
 use crate::simulation::{Motion, Simulation, Status, energy};
 use crate::study::Reference;
 
@@ -43,8 +44,6 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     } else {
         search_rows(&mut row, input, errors);
     }
-    stages(ui, input);
-    ui.add(egui::Label::new(RichText::new(input.adapter).small().color(secondary)).wrap());
 }
 
 fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
@@ -73,14 +72,18 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     quality_rows(row, input);
     let Some(search) = simulation.equilibrium() else { return };
     let (factor, steps) = (search.load_factor(), search.load_steps());
-    let part = format!("{:.3} %", 100.0 * factor);
-    let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
-    row("Load steps", text, "Number of steps in which the load is applied");
+    if steps > 1 || factor < 1.0 {
+        let part = format!("{:.3} %", 100.0 * factor);
+        let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
+        row("Load steps", text, "Number of steps in which the load is applied");
+    }
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
-    let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&said(&rho_text(rho))));
-    let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
-    row("ρ", text, tip);
+    if input.scene.solver.method == MethodKind::Warped {
+        let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&said(&rho_text(rho))));
+        let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
+        row("ρ", text, tip);
+    }
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
         let (problem, state) = (simulation.problem(), simulation.state());
@@ -176,33 +179,4 @@ fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: Motion<'_>) {
     if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }
-}
-
-/// Shows the computing time of a frame by stage.
-fn stages(ui: &mut Ui, input: &Readout<'_>) {
-    let times = input.timings;
-    let secondary = Palette::new(ui.visuals()).secondary;
-    let stages = [
-        ("rotate", times.rotate, "Rotations computed separately, at the end of time steps"),
-        (
-            "assemble",
-            times.assemble,
-            "One sweep: rotations, stiffness of the rotated elements, forces and the residual",
-        ),
-        ("factorize", times.factorize, "Sparse Cholesky factorization"),
-        ("solve", times.solve, "Forward and back substitution"),
-    ];
-    // The columns fit next to a scroll bar, too.
-    const GAP: f32 = 6.0;
-    let gaps = GAP * stages.len().saturating_sub(1) as f32;
-    let width = ((ui.available_width() - gaps) / stages.len() as f32).floor().max(0.0);
-    Grid::new("stages").num_columns(stages.len()).min_col_width(width).spacing([GAP, 0.0]).show(ui, |ui| {
-        for (name, _, tip) in stages {
-            ui.label(RichText::new(tr(name)).small().color(secondary)).on_hover_text(tr(tip));
-        }
-        ui.end_row();
-        for (_, duration, tip) in stages {
-            ui.label(RichText::new(time(duration)).small()).on_hover_text(tr(tip));
-        }
-    });
 }

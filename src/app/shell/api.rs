@@ -24,11 +24,6 @@ use crate::study::{MotionStudy, Study};
 use crate::app::shell::lab::{Desk, Lab};
 
 impl Lab {
-    /// Sets the name of the graphics adapter.
-    pub fn set_adapter(&mut self, adapter: String) {
-        self.adapter = adapter;
-    }
-
     /// Shows or hides the panel and the bars; without them the view fills the window or image.
     pub fn set_panel(&mut self, shown: bool) {
         self.desk.view.bars = shown;

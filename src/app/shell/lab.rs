@@ -121,8 +121,6 @@ pub struct Lab {
     /// `true` if the window is to close.
     pub(super) closes: bool,
     pub(super) settings: Settings,
-    /// Name of the graphics adapter.
-    pub(super) adapter: String,
     /// Message, and the time until which it is shown, s.
     pub(super) toast: Option<(String, f64)>,
     /// Warnings, and the number of them that the user has closed.
@@ -147,7 +145,6 @@ impl Lab {
             left: None,
             closes: false,
             settings: Settings::default(),
-            adapter: String::new(),
             toast: None,
             warnings: Vec::new(),
             closed_warnings: 0,
@@ -278,7 +275,6 @@ impl Lab {
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),
-            adapter: &self.adapter,
             language: self.settings.language,
         }
     }

@@ -16,6 +16,7 @@ use crate::app::view_options::{Drawer, Toggle, ViewOptions};
 use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::format::{engineering, grouped, two_digits};
+use crate::scene::MethodKind;
 use crate::scene::Scene;
 use crate::simulation::Motion;
 
@@ -101,8 +102,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             ratio: None,
         },
     ];
-    // Linear theory does not iterate.
-    if !simulation.is_linear() {
+    if input.scene.solver.method == MethodKind::Warped {
         entries.push(Number {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),

@@ -368,7 +368,6 @@ impl App {
         match opened {
             Some(Ok(open)) => {
                 let adapter = open.graphics.gpu.describe();
-                self.lab.set_adapter(adapter.clone());
                 open.bare.window.request_redraw();
                 self.open = Some(open);
                 if let Some(reason) = self.lost.take() {
