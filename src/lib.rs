@@ -163,26 +163,33 @@ pub mod timings;
 pub use nalgebra;
 
 // Describe a scene.
-pub use mesh::{Mesh, MeshError, Segment};
+pub use mesh::{GmshError, Mesh, MeshError, Segment};
 pub use scene::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SolverSettings, Start, Support,
+    MeshFile, MethodKind, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SolverSettings, Start, Support,
 };
 // Solve it.
-pub use method::Certificate;
-pub use simulation::{Equilibrium, Simulation, SimulationError, Solution, Status};
+pub use assembly::SystemError;
+pub use method::{AutoReport, Certificate, Decision, IterationError, Reason};
+pub use simulation::{Equilibrium, MotionResult, Simulation, SimulationError, Solution, Status};
+pub use solver::SolverError;
 // Edit and grab.
 pub use assembly::MouseSpring;
 pub use mesh::MaterialPoint;
+pub use rotation::Rotation;
 pub use scene::{LoadId, SupportId};
 pub use state::{State, StateError};
 // Read results.
+pub use sentence::Sentence;
 pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, Reaction, SupportReaction};
 pub use stress::{NodalStress, PlaneTensor};
 // Move in time.
-pub use dynamics::{Counts, Ledger, Momentum, StopReason};
+pub use dynamics::{Counts, Ledger, Momentum, MotionDecision, MotionReport, StepError, StopReason};
 pub use simulation::{Moment, Motion};
 // Measure errors and time.
 pub use progress::{Observer, Progress};
-pub use study::{Extent, Measurement, Reference, Study, StudyError};
+pub use study::{
+    Demand, Effort, ErrorSplit, Extent, Measurement, MovedPoint, ProbeReference, Reference, ReferenceSource, Setting,
+    Study, StudyError,
+};
 pub use timings::Timings;

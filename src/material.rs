@@ -47,6 +47,7 @@ impl Lame {
 
 impl Material {
     /// Returns the Lamé constants of this material under its plane assumption.
+    #[doc(hidden)]
     #[must_use]
     pub fn lame(&self) -> Lame {
         let (e, nu) = (self.young, self.poisson);
@@ -58,6 +59,7 @@ impl Material {
     }
 
     /// Returns the Lamé constants times the thickness, N/m, which elements integrate over their area.
+    #[doc(hidden)]
     #[must_use]
     pub fn membrane(&self) -> Lame {
         let Lame { lambda, mu } = self.lame();

@@ -18,6 +18,8 @@ use crate::state::{State, StateError};
 use crate::stress::Recovery;
 
 /// Reason why a scene has no equations.
+///
+/// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

@@ -61,8 +61,6 @@ enum CliError {
     NoPath(String),
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },
-    #[error("the chosen scene cannot be written as TOML: {0}")]
-    Toml(#[from] toml::ser::Error),
     #[error("standard output: {0}")]
     Output(std::io::Error),
     #[error(transparent)]

@@ -3,6 +3,8 @@
 use crate::sentence::{Sentence, displayed, sentence};
 
 /// Decisions of `auto` since the start of a motion.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MotionReport {
@@ -21,6 +23,8 @@ pub struct MotionReport {
 }
 
 /// Kind of a time step.
+///
+/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MotionDecision {

@@ -12,6 +12,8 @@ use crate::solver::SolverError;
 use crate::state::State;
 
 /// Reason why a step failed.
+///
+/// See [`StopReason`](crate::StopReason) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

@@ -17,6 +17,8 @@ use crate::model::ElementKind;
 use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 
 /// Reason why a mesh file cannot be used.
+///
+/// See [`Mesh`](crate::Mesh) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GmshError {

@@ -261,9 +261,10 @@ impl Scene {
     /// Serialises the scene as TOML.
     ///
     /// # Errors
-    /// The serializer's message; validated scenes have none.
-    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
-        toml::to_string(self)
+    /// [`SceneError::Syntax`] with the serializer's message; validated scenes have none.
+    pub fn to_toml(&self) -> Result<String, SceneError> {
+        let written = toml::to_string(self);
+        written.map_err(|error| SceneError::Syntax { file: None, line: None, message: error.to_string() })
     }
 
     /// Checks every number and every choice that can be checked without a mesh.
@@ -403,6 +404,7 @@ impl Beam {
 
 impl Plane {
     /// Returns the range of Poisson ratios for this plane assumption.
+    #[doc(hidden)]
     #[must_use]
     pub fn poisson_limit(self) -> limits::Limit {
         match self {

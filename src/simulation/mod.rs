@@ -111,6 +111,8 @@ pub struct Solution {
 }
 
 /// Results of a motion.
+///
+/// See [`Solution`](crate::Solution) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MotionResult {

@@ -20,6 +20,8 @@ use crate::sentence::{Sentence, sentence};
 pub(crate) mod lanczos;
 
 /// Reason why there is no factor.
+///
+/// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 pub enum SolverError {

@@ -21,6 +21,8 @@ use crate::simulation::{Deformation, Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
 /// Cost allowed for a reference solution.
+///
+/// See [`Reference`](crate::Reference) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
     /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves on them: a second or two.
@@ -57,6 +59,8 @@ impl Effort {
 }
 
 /// Point of a scene that is not at a node of the mesh.
+///
+/// See [`Reference`](crate::Reference) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MovedPoint {

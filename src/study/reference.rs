@@ -19,6 +19,8 @@ use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
 
 /// Origin of a reference solution.
+///
+/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum ReferenceSource {
@@ -53,6 +55,8 @@ impl From<&ReferenceSource> for Sentence {
 }
 
 /// Reference displacement of a probe.
+///
+/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct ProbeReference {

@@ -32,13 +32,13 @@ static TIMED: Mutex<()> = Mutex::new(());
 #[must_use]
 pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<Timings> {
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
-    times_from_rest(&mut simulation, u32::MAX, observe).pop()
+    times_from_rest(&mut simulation, u32::MAX, observe)?.pop()
 }
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,
-/// and none if the computation is cancelled. Only one thread of the process measures at a time.
+/// `None` if the computation is cancelled. Only one thread of the process measures at a time.
 #[must_use]
-pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Observer<'_>) -> Vec<Timings> {
+pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Observer<'_>) -> Option<Vec<Timings>> {
     let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
     let mut runs: Vec<Vec<Timings>> = Vec::new();
     let start = Instant::now();
@@ -52,7 +52,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Ob
         let mut run = Vec::new();
         while simulation.iterations() < iterations && *simulation.status() == Status::Running {
             if observe(Progress::at(0.0)).is_break() {
-                return Vec::new();
+                return None;
             }
             simulation.step();
             run.push(*simulation.timings());
@@ -61,7 +61,7 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Ob
     }
     runs.drain(..WARM_UP.min(runs.len() - 1));
     let count = runs.iter().map(Vec::len).min().unwrap_or(0);
-    (0..count)
+    let times = (0..count)
         .map(|i| {
             let median = |stage: fn(&Timings) -> Duration| {
                 let mut times: Vec<Duration> = runs.iter().map(|run| stage(&run[i])).collect();
@@ -79,7 +79,8 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Ob
                 certify: median(|p| p.certify),
             }
         })
-        .collect()
+        .collect();
+    Some(times)
 }
 
 /// Returns the approximate time that [`times_from_rest`] takes if a single run takes `run`.

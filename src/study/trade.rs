@@ -24,6 +24,8 @@ use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
 /// Parameters varied in the study.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Setting {
     /// Element.
@@ -80,6 +82,8 @@ pub(super) fn mesh_text(element: ElementKind, cells: Option<[u32; 2]>) -> Senten
 
 /// Error of a result and its parts, percent of the reference's displacement. The parts are lengths of displacements:
 /// their sum is an upper bound of the total.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ErrorSplit {
     /// Distance from the reference solution.
@@ -274,11 +278,13 @@ impl Study {
         let mut measurements = Vec::new();
         for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
             let now = sentence!("%{mesh}, %{method}", mesh = &text, method = method.id());
-            check(observe(Progress { fraction: number as f64 / METHODS.len() as f64, now: Some(&now) }))?;
+            let fraction = number as f64 / METHODS.len() as f64;
+            check(observe(Progress { fraction, now: Some(&now) }))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
             let most = if method == MethodKind::Auto { u32::MAX } else { MAX_ITERATIONS };
-            let times = times_from_rest(&mut simulation, most, observe);
+            let times = times_from_rest(&mut simulation, most, &|_| observe(Progress::at(fraction)));
+            let times = times.ok_or(StudyError::Cancelled)?;
             simulation.reset();
             for (iterations, time) in (1..).zip(times) {
                 simulation.step();

@@ -7,6 +7,8 @@ use crate::scene::Scene;
 use crate::sentence::sentence;
 
 /// Requirements for a solve; `None` for no requirement.
+///
+/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Largest error, percent of the exact displacement.

@@ -25,7 +25,7 @@ pub(crate) struct Document {
 #[derive(Debug, Error)]
 #[error("{}", Sentence::from(self))]
 pub(crate) enum SaveError {
-    Toml(#[from] toml::ser::Error),
+    Toml(#[from] SceneError),
     File { path: PathBuf, reason: std::io::Error },
 }
 

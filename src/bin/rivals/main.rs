@@ -159,6 +159,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
         }
         let own = problem.probes().first().ok_or(StudyError::NoProbe)?.mean(newton.displacement());
         let ours = times_from_rest(&mut newton, u32::MAX, &|_| ControlFlow::Continue(()))
+            .unwrap_or_default()
             .last()
             .map(Timings::total)
             .unwrap_or_default();

@@ -3,6 +3,8 @@
 use crate::sentence::{Sentence, displayed, sentence};
 
 /// Decisions of `auto` for the current result.
+///
+/// See [`Solution`](crate::Solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct AutoReport {
@@ -18,6 +20,8 @@ pub struct AutoReport {
 }
 
 /// Kind of solution that `auto` chose.
+///
+/// See [`Solution`](crate::Solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Decision {
