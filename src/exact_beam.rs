@@ -63,7 +63,7 @@ const STEPS: usize = 24;
 
 /// θ and M at a point, and the vector from the start of the segment to it.
 #[derive(Clone, Copy)]
-struct State {
+struct SectionState {
     theta: f64,
     moment: f64,
     x: Vector2<f64>,
@@ -71,21 +71,21 @@ struct State {
 
 impl ClampedBeam {
     /// Returns the derivatives with respect to s at a load factor.
-    fn derivative(&self, s: f64, state: &State, factor: f64) -> State {
+    fn derivative(&self, s: f64, state: &SectionState, factor: f64) -> SectionState {
         let n = (self.tip_force + self.weight * (self.length - s)) * factor;
         let (sin, cos) = state.theta.sin_cos();
         let (t, m) = (Vector2::new(cos, sin), Vector2::new(-sin, cos));
         let x = t * (1.0 + n.dot(&t) * self.stretch_compliance) + m * (n.dot(&m) * self.shear_compliance);
-        State { theta: state.moment / self.bending, moment: -x.perp(&n), x }
+        SectionState { theta: state.moment / self.bending, moment: -x.perp(&n), x }
     }
 
     /// Integrates over one segment from θ and M at its start; returns the state at its end.
-    fn shoot(&self, piece: usize, theta: f64, moment: f64, factor: f64) -> State {
+    fn shoot(&self, piece: usize, theta: f64, moment: f64, factor: f64) -> SectionState {
         let h = self.length / (SEGMENTS * STEPS) as f64;
-        let mut state = State { theta, moment, x: Vector2::zeros() };
+        let mut state = SectionState { theta, moment, x: Vector2::zeros() };
         for step in 0..STEPS {
             let s = (piece * STEPS + step) as f64 * h;
-            let at = |k: &State, step: f64| State {
+            let at = |k: &SectionState, step: f64| SectionState {
                 theta: state.theta + step * k.theta,
                 moment: state.moment + step * k.moment,
                 x: state.x + k.x * step,
@@ -95,7 +95,7 @@ impl ClampedBeam {
             let k3 = self.derivative(s + 0.5 * h, &at(&k2, 0.5 * h), factor);
             let k4 = self.derivative(s + h, &at(&k3, h), factor);
             let mean = |a: f64, b: f64, c: f64, d: f64| h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-            state = State {
+            state = SectionState {
                 theta: state.theta + mean(k1.theta, k2.theta, k3.theta, k4.theta),
                 moment: state.moment + mean(k1.moment, k2.moment, k3.moment, k4.moment),
                 x: state.x + (k1.x + k2.x * 2.0 + k3.x * 2.0 + k4.x) * (h / 6.0),

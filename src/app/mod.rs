@@ -31,7 +31,7 @@ pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, Shot, ShotOptions, 
 pub use panel::PANEL_WIDTH;
 #[doc(hidden)]
 pub use session::compared_solve::PaneEnd;
-pub use session::recovery::{Recovery, Unsaved};
+pub use session::recovery::{RecoveryCopies, Unsaved};
 #[doc(hidden)]
 pub use shell::help::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};

@@ -22,14 +22,14 @@ pub struct Loads {
     constant: Vec<Vector2<f64>>,
     /// Dead forces with pulses.
     pulses: Vec<(Pulse, NodalForces)>,
-    moments: Vec<Moment>,
+    moments: Vec<EdgeMoment>,
     /// All dead forces at the current time, N.
     dead: Vec<Vector2<f64>>,
 }
 
 /// A moment on a straight edge.
 #[derive(Clone, Debug, PartialEq)]
-struct Moment {
+struct EdgeMoment {
     /// Index of the edge.
     edge: usize,
     /// Full size, N m, positive counter-clockwise.
@@ -41,7 +41,7 @@ struct Moment {
     slots: Vec<u32>,
 }
 
-impl Moment {
+impl EdgeMoment {
     /// Adds M ∇θ at the current size times `factor`, N.
     fn add_force(
         &self,
@@ -94,7 +94,7 @@ impl Loads {
                     }
                     let nodes: Vec<u32> = straight.arms().iter().map(|&(node, _)| node).collect();
                     let slots = system.pattern().block_slots(&nodes);
-                    result.moments.push(Moment { edge, moment: *moment, pulse: *pulse, now: 0.0, slots });
+                    result.moments.push(EdgeMoment { edge, moment: *moment, pulse: *pulse, now: 0.0, slots });
                     continue;
                 }
             };
@@ -203,7 +203,7 @@ impl Loads {
         external: &[Vector2<f64>],
         bound: &mut [Vector2<f64>],
     ) {
-        for Moment { edge, .. } in &self.moments {
+        for EdgeMoment { edge, .. } in &self.moments {
             let edge = &system.edges()[*edge];
             let direction = edge.direction(u);
             let terms = edge.arms().iter().map(|&(node, c)| (u[node as usize] * c).abs()).sum::<Vector2<f64>>();
@@ -255,7 +255,7 @@ impl Loads {
 
     /// Adds the derivative of −f_ext at this load factor: the Hessian of the moments' potential, N/m.
     pub fn add_stiffness(&self, system: &System, u: &[Vector2<f64>], factor: f64, matrix: &mut Matrix) {
-        for Moment { edge, now, slots, .. } in &self.moments {
+        for EdgeMoment { edge, now, slots, .. } in &self.moments {
             let edge = &system.edges()[*edge];
             let d = edge.direction(u);
             let (p, q) = (2.0 * d.x * d.y, d.y * d.y - d.x * d.x);

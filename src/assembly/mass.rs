@@ -8,7 +8,7 @@ use super::{Matrix, System};
 #[derive(Clone, Debug)]
 pub struct Mass {
     /// Σ ∫ ρ t NₐN_b dA for nodes b ≤ a that share an element, sorted.
-    entries: Vec<Entry>,
+    entries: Vec<MassEntry>,
     /// Lumped mass of every node: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and
     /// Zienkiewicz 1976). Unlike row sums it is positive for every element.
     lumped: Vec<f64>,
@@ -16,7 +16,7 @@ pub struct Mass {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct MassEntry {
     nodes: [u32; 2],
     mass: f64,
     /// Indices of the pair's x and y entries in the stiffness matrix.
@@ -52,7 +52,7 @@ impl Mass {
                 lumped[node as usize] += own[a][a] * whole / diagonal;
                 for (b, &other) in nodes[..=a].iter().enumerate() {
                     let pair = [node.max(other), node.min(other)];
-                    entries.push(Entry { nodes: pair, mass: own[a][b], slots: [0; 2] });
+                    entries.push(MassEntry { nodes: pair, mass: own[a][b], slots: [0; 2] });
                 }
             }
             total += whole;
@@ -88,7 +88,7 @@ impl Mass {
     /// Computes result = M v over the nodes.
     pub fn multiply(&self, v: &[Vector2<f64>], result: &mut [Vector2<f64>]) {
         result.fill(Vector2::zeros());
-        for Entry { nodes: [a, b], mass, .. } in &self.entries {
+        for MassEntry { nodes: [a, b], mass, .. } in &self.entries {
             let (a, b) = (*a as usize, *b as usize);
             result[a] += v[b] * *mass;
             if a != b {
@@ -100,7 +100,7 @@ impl Mass {
     /// Returns v M v.
     #[must_use]
     pub fn energy_product(&self, v: &[Vector2<f64>]) -> f64 {
-        let term = |Entry { nodes: [a, b], mass, .. }: &Entry| {
+        let term = |MassEntry { nodes: [a, b], mass, .. }: &MassEntry| {
             let product = v[*a as usize].dot(&v[*b as usize]) * mass;
             if a == b { product } else { 2.0 * product }
         };
@@ -110,7 +110,7 @@ impl Mass {
     /// Adds `factor` times M to a matrix over the free unknowns.
     pub(crate) fn add_to(&self, factor: f64, matrix: &mut Matrix) {
         let values = matrix.slots();
-        for Entry { mass, slots, .. } in &self.entries {
+        for MassEntry { mass, slots, .. } in &self.entries {
             for &slot in slots {
                 values[slot as usize] += factor * mass;
             }

@@ -56,7 +56,7 @@ enum Origin {
 
 /// Mesh with derived data that does not depend on supports.
 #[derive(Debug)]
-struct Body {
+struct MeshData {
     origin: Origin,
     mesh: Mesh,
     elements: Box<dyn Elements>,
@@ -70,7 +70,7 @@ struct Body {
     size: f64,
 }
 
-impl Body {
+impl MeshData {
     fn new(origin: Origin, mesh: Mesh) -> Self {
         let entry = mesh.entry();
         let mut nodal_areas = vec![0.0; mesh.nodes().len()];
@@ -101,7 +101,7 @@ impl Body {
 /// order. Computed once, and shared.
 #[derive(Debug)]
 pub struct System {
-    body: Arc<Body>,
+    body: Arc<MeshData>,
     supports: Vec<Support>,
     /// Rigid motions that the supports leave.
     hold: Hold,
@@ -133,7 +133,7 @@ impl System {
             (None, Some(file)) => Origin::File(file.clone()),
             (None, None) => Origin::Given,
         };
-        Self::of_body(Arc::new(Body::new(origin, Self::mesh_of(scene)?)), scene)
+        Self::of_body(Arc::new(MeshData::new(origin, Self::mesh_of(scene)?)), scene)
     }
 
     /// Meshes a validated scene.
@@ -163,7 +163,7 @@ impl System {
     /// Same errors as [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
         scene.validate_all_but_geometry()?;
-        Self::of_body(Arc::new(Body::new(Origin::Given, mesh)), scene)?.analysed()
+        Self::of_body(Arc::new(MeshData::new(Origin::Given, mesh)), scene)?.analysed()
     }
 
     /// Returns the system of another scene: this one if it fits, one that shares its mesh if only supports differ or a
@@ -194,7 +194,7 @@ impl System {
         Ok(Arc::new(Self::of_body(self.body.clone(), scene)?.analysed()?))
     }
 
-    fn of_body(body: Arc<Body>, scene: &Scene) -> Result<Self, SystemError> {
+    fn of_body(body: Arc<MeshData>, scene: &Scene) -> Result<Self, SystemError> {
         let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
         let is_grid = matches!(body.origin, Origin::Beam(_));
         let hold = Hold::of(&body.mesh, &fixed, is_grid);

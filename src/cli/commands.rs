@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::memory::PeakMemory;
 use super::progress::Watch;
-use super::solved::{Solved, Spent};
+use super::solved::{SolvedScene, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
@@ -95,7 +95,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let reference = reference.and_then(Result::ok);
     warnings.extend(reference.as_ref().map(Reference::limits).unwrap_or_default());
     warnings.extend(limits_of_auto(&scene, &solution, reference.as_ref()));
-    let solved = Solved {
+    let solved = SolvedScene {
         scene: &scene,
         mesh: simulation.system().mesh(),
         solution: &solution,

@@ -1,6 +1,6 @@
 //! Magnitudes of the results of `solve` by kind: a result below the rounding error of its kind is 0 in the text.
 
-use super::solved::Solved;
+use super::solved::SolvedScene;
 use crate::format::Context;
 use crate::scene::Load;
 use crate::stress::PlaneTensor;
@@ -36,8 +36,8 @@ pub(super) struct Contexts {
 
 impl Contexts {
     /// Computes the contexts of a result.
-    pub(super) fn of(solved: &Solved<'_>) -> Self {
-        let Solved { scene, mesh, solution, stress, .. } = *solved;
+    pub(super) fn of(solved: &SolvedScene<'_>) -> Self {
+        let SolvedScene { scene, mesh, solution, stress, .. } = *solved;
         let (low, high) = mesh.bounds();
         let size = (high - low).norm();
         let deformation = &solution.deformation;

@@ -53,7 +53,7 @@ pub(super) struct ShotArgs {
     /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
     #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "study", "motion"])]
-    pub compare: Option<Panes>,
+    pub compare: Option<PaneSettings>,
     /// Colour theme.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
     pub theme: app::ThemeChoice,
@@ -66,10 +66,10 @@ pub(super) struct ShotArgs {
 
 /// Panes of a comparison, as the option --compare lists them.
 #[derive(Clone, Debug)]
-pub(super) struct Panes(pub Vec<app::PaneSetting>);
+pub(super) struct PaneSettings(pub Vec<app::PaneSetting>);
 
-fn parse_panes(text: &str) -> Result<Panes, app::PaneSettingError> {
-    app::parse_panes(text).map(Panes)
+fn parse_panes(text: &str) -> Result<PaneSettings, app::PaneSettingError> {
+    app::parse_panes(text).map(PaneSettings)
 }
 
 /// Notes about files in `record --help`.

@@ -5,15 +5,15 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
-use super::solved::Solved;
+use super::solved::SolvedScene;
 use crate::scene::{Analysis, Place, Scene, Support};
 use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
 
 /// Formats a result.
-pub(super) fn solution(solved: &Solved<'_>) -> String {
-    let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
+    let SolvedScene { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
     let known = |value: f64| if diverged { Value::Null } else { number(value) };

@@ -53,7 +53,7 @@ impl Spent {
 }
 
 /// Result of `solve` with all further information about it.
-pub(super) struct Solved<'a> {
+pub(super) struct SolvedScene<'a> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,
     pub solution: &'a Solution,

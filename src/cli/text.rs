@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::CliError;
 use super::contexts::Contexts;
-use super::solved::Solved;
+use super::solved::SolvedScene;
 use crate::export::csv_field;
 use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 use crate::method::{Certificate, floor_text, rho_text};
@@ -58,8 +58,8 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 }
 
 /// Formats a result.
-pub(super) fn solution(solved: &Solved<'_>) -> String {
-    let Solved { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
+    let SolvedScene { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
     let within = Contexts::of(solved);
     let mut text = format!(
         "{}: element {}, {}, {}\n",

@@ -42,12 +42,12 @@ pub(crate) struct LinearTheory {
     phase: f64,
     /// Steps since the last stability check, and the elastic energy at that check, J.
     checked: Option<(u32, f64)>,
-    scratch: Option<Box<Scratch>>,
+    scratch: Option<Box<StepScratch>>,
 }
 
 /// Work memory, allocated once per system.
 #[derive(Debug)]
-struct Scratch {
+struct StepScratch {
     /// Corotated state at the end of a step.
     seen: State,
     /// Displacement of the step, as a state of linear theory.
@@ -59,7 +59,7 @@ struct Scratch {
     factor: Factor,
 }
 
-impl Scratch {
+impl StepScratch {
     fn new(problem: &Problem) -> Result<Self, SolverError> {
         let system = problem.system();
         let rest = system.at_rest();
@@ -110,7 +110,7 @@ impl LinearTheory {
     ) -> Result<bool, SolverError> {
         let scratch = match &mut self.scratch {
             Some(scratch) => scratch,
-            None => self.scratch.insert(Box::new(Scratch::new(problem)?)),
+            None => self.scratch.insert(Box::new(StepScratch::new(problem)?)),
         };
         if !self.in_use {
             scratch.seen.copy_from(start);
@@ -118,7 +118,7 @@ impl LinearTheory {
             scratch.before.copy_from_slice(&scratch.forces.internal);
             self.checked = None;
         }
-        let Scratch { seen, increment, forces, before, .. } = &mut **scratch;
+        let StepScratch { seen, increment, forces, before, .. } = &mut **scratch;
         seen.copy_from(end);
         problem.update_and_linearize(seen, Kinematics::Corotated, forces, None);
         combine(increment.displacement.overwrite(), [(1.0, &end.displacement), (-1.0, &start.displacement)]);

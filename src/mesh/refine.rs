@@ -9,7 +9,7 @@ use crate::element::ElementType;
 
 /// Position of a child's node in its parent.
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum ChildNode {
     /// On a node of the parent.
     Node(usize),
     /// On a side of the parent: side number and distance from its first corner, as a fraction of the side.
@@ -18,7 +18,7 @@ enum Place {
     Interior,
 }
 
-impl Place {
+impl ChildNode {
     fn of(entry: &ElementType, at: [f64; 2]) -> Self {
         const ON: f64 = 1e-9;
         if let Some(node) = entry.node_at(at) {
@@ -87,8 +87,8 @@ impl Mesh {
             });
             children.push(own.collect());
         }
-        let places: Vec<(Place, Vec<f64>)> =
-            places.into_iter().map(|at| (Place::of(entry, at), (entry.shape)(at))).collect();
+        let places: Vec<(ChildNode, Vec<f64>)> =
+            places.into_iter().map(|at| (ChildNode::of(entry, at), (entry.shape)(at))).collect();
 
         let mut nodes = self.nodes.clone();
         let mut on_sides = OnSides::default();
@@ -101,13 +101,13 @@ impl Mesh {
             let numbers: Vec<u32> = places
                 .iter()
                 .map(|(place, shape)| match *place {
-                    Place::Node(i) => own[i],
-                    Place::Side(side, t) => {
+                    ChildNode::Node(i) => own[i],
+                    ChildNode::Side(side, t) => {
                         let side = entry.sides[side];
                         let ends = [own[side[0]], own[side[side.len() - 1]]];
                         *on_sides.0.entry(OnSides::key(ends, t)).or_insert_with(|| add(shape))
                     }
-                    Place::Interior => add(shape),
+                    ChildNode::Interior => add(shape),
                 })
                 .collect();
             connectivity.extend(children.iter().flatten().map(|&place| numbers[place]));

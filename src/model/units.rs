@@ -380,9 +380,9 @@ pub(crate) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Resul
     Ok(Cow::Owned(plain))
 }
 
-type Found = Vec<(std::ops::Range<usize>, f64)>;
+type FoundUnits = Vec<(std::ops::Range<usize>, f64)>;
 
-fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut Found) -> Result<(), Invalid> {
+fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut FoundUnits) -> Result<(), Invalid> {
     match value.get_ref() {
         DeValue::String(text) => {
             if let Some(number) = number_for(key, text) {

@@ -6,7 +6,7 @@ use crate::format::number;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::extremes::motion::{MotionEntry, MotionOutcome, variant_text, variants};
-use crate::study::extremes::{Body, Case, Entry, FILES, Outcome, Start, alphas};
+use crate::study::extremes::{Case, CaseBody, CaseStart, Entry, FILES, Outcome, alphas};
 
 /// Size of a cell.
 const CELL: [f64; 2] = [52.0, 20.0];
@@ -94,12 +94,14 @@ pub fn motion_atlas(entries: &[MotionEntry]) -> Drawing {
 /// Returns the label of a case's row, and its place among the rows; cases of one row differ in what the label does not name.
 fn row(case: &Case) -> (String, [f64; 2]) {
     match (case.body, case.start) {
-        (Body::File(id), _) => (id.to_owned(), [3.0, FILES.iter().position(|f| *f == id).unwrap_or_default() as f64]),
-        (Body::Beam, Start::Rest) if case.distortion > 0.0 => {
+        (CaseBody::File(id), _) => {
+            (id.to_owned(), [3.0, FILES.iter().position(|f| *f == id).unwrap_or_default() as f64])
+        }
+        (CaseBody::Beam, CaseStart::Rest) if case.distortion > 0.0 => {
             (format!("distorted {}", case.distortion), [2.0, case.distortion])
         }
-        (Body::Beam, Start::Rest) => (format!("L/H {}", case.slenderness), [0.0, case.slenderness]),
-        (Body::Beam, start) => (start.id().to_owned(), [1.0, f64::from(start as u8)]),
+        (CaseBody::Beam, CaseStart::Rest) => (format!("L/H {}", case.slenderness), [0.0, case.slenderness]),
+        (CaseBody::Beam, start) => (start.id().to_owned(), [1.0, f64::from(start as u8)]),
     }
 }
 

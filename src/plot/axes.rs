@@ -10,7 +10,7 @@ pub(super) const SIZE: [f64; 2] = [860.0, 560.0];
 pub(super) const ROW: f64 = 22.0;
 
 /// Place of the axes in a drawing: the space around them.
-pub(super) struct Margins {
+pub(super) struct PlotMargins {
     pub width: f64,
     pub left: f64,
     pub right: f64,
@@ -19,7 +19,8 @@ pub(super) struct Margins {
 }
 
 /// Room for a legend on the right.
-pub(super) const MARGINS: Margins = Margins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
+pub(super) const MARGINS: PlotMargins =
+    PlotMargins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
 
 /// A logarithmic axis.
 pub(super) struct Decades {
@@ -54,7 +55,7 @@ impl Decades {
     }
 }
 
-impl Margins {
+impl PlotMargins {
     /// Left and right ends of the horizontal axis.
     pub fn across(&self) -> [f64; 2] {
         [self.left, self.width - self.right]

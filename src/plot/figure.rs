@@ -1,6 +1,6 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
-use super::axes::{Margins, SIZE, mark as element_mark};
+use super::axes::{PlotMargins, SIZE, mark as element_mark};
 use super::drawing::{Anchor, Color, Drawing, Outline, Shape, Stroke, solid};
 use crate::format::{number, prefix, ticks};
 use crate::study::color;
@@ -8,7 +8,8 @@ use crate::study::figure::{Figure, Ink, Mark};
 
 /// Width of the table.
 const TABLE: f64 = 330.0;
-const MARGINS: Margins = Margins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
+const MARGINS: PlotMargins =
+    PlotMargins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
 
 /// Draws a figure with the table beside it.
 #[must_use]

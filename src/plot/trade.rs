@@ -67,7 +67,7 @@ pub fn motion_study(study: &MotionStudy) -> Drawing {
         points: points.collect(),
         legend: INTEGRATORS.iter().map(|i| (i.id, color(i.id, false))).collect(),
         faint_label: Some("linear theory"),
-        mark: Some(Mark { time: REAL_TIME, label: "real time" }),
+        mark: Some(TradeMark { time: REAL_TIME, label: "real time" }),
     };
     chart.draw()
 }
@@ -109,7 +109,7 @@ struct Point {
 }
 
 /// A time that stands out.
-struct Mark<'a> {
+struct TradeMark<'a> {
     time: f64,
     label: &'a str,
 }
@@ -124,7 +124,7 @@ struct Chart<'a> {
     legend: Vec<(&'a str, Color)>,
     /// Meaning of faint points, if the legend says.
     faint_label: Option<&'a str>,
-    mark: Option<Mark<'a>>,
+    mark: Option<TradeMark<'a>>,
 }
 
 const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };

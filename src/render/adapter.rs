@@ -74,7 +74,7 @@ impl Candidate {
 type FoundSurface = Result<Option<wgpu::Surface<'static>>, wgpu::CreateSurfaceError>;
 
 /// Source of the instances and surfaces with which adapters are searched.
-pub(crate) struct Search<I, S> {
+pub(crate) struct AdapterSearch<I, S> {
     /// Part of the name of the adapter to be used.
     pub name: Option<String>,
     /// Creates an instance with these backends.
@@ -94,7 +94,7 @@ impl Failures {
     }
 }
 
-impl<I, S> Search<I, S>
+impl<I, S> AdapterSearch<I, S>
 where
     I: Fn(wgpu::Backends) -> wgpu::Instance,
     S: Fn(&wgpu::Instance) -> FoundSurface,
@@ -210,13 +210,13 @@ pub(crate) fn wanted_name(name: Option<&str>) -> Option<String> {
 /// Returns a search without a window.
 pub(crate) fn offscreen(
     name: Option<&str>,
-) -> Search<impl Fn(wgpu::Backends) -> wgpu::Instance, impl Fn(&wgpu::Instance) -> FoundSurface> {
+) -> AdapterSearch<impl Fn(wgpu::Backends) -> wgpu::Instance, impl Fn(&wgpu::Instance) -> FoundSurface> {
     let instance = |backends| {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         descriptor.backends = backends;
         wgpu::Instance::new(descriptor)
     };
-    Search { name: wanted_name(name), instance, surface: |_: &wgpu::Instance| Ok(None) }
+    AdapterSearch { name: wanted_name(name), instance, surface: |_: &wgpu::Instance| Ok(None) }
 }
 
 /// Returns the adapters of this machine in the order in which they are tried for an image without a window. Each of

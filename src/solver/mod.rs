@@ -42,7 +42,7 @@ impl From<&SolverError> for Sentence {
 
 /// Type of the current factorization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum FactorKind {
     /// L Lᵀ.
     PositiveDefinite,
     /// L B Lᵀ with B of 1×1 and 2×2 blocks.
@@ -51,9 +51,9 @@ enum Kind {
 
 /// Elimination order and sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
 #[derive(Clone)]
-pub struct Symbolic(Arc<Analysis>);
+pub struct Symbolic(Arc<SymbolicAnalysis>);
 
-struct Analysis {
+struct SymbolicAnalysis {
     structure: SymbolicSparseColMat<usize>,
     /// Sparsity of L Lᵀ; simplicial if that is faster.
     definite: SymbolicCholesky<usize>,
@@ -62,11 +62,11 @@ struct Analysis {
     price: f64,
 }
 
-impl Analysis {
-    fn symbolic(&self, kind: Kind) -> &SymbolicCholesky<usize> {
+impl SymbolicAnalysis {
+    fn symbolic(&self, kind: FactorKind) -> &SymbolicCholesky<usize> {
         match kind {
-            Kind::PositiveDefinite => &self.definite,
-            Kind::Indefinite => self.indefinite.as_ref().unwrap_or(&self.definite),
+            FactorKind::PositiveDefinite => &self.definite,
+            FactorKind::Indefinite => self.indefinite.as_ref().unwrap_or(&self.definite),
         }
     }
 }
@@ -97,7 +97,7 @@ impl Symbolic {
             (supernodal, None)
         };
         let price = price(&definite);
-        Ok(Self(Arc::new(Analysis { structure, definite, indefinite, price })))
+        Ok(Self(Arc::new(SymbolicAnalysis { structure, definite, indefinite, price })))
     }
 
     /// Returns the number of rows of the matrix.
@@ -168,7 +168,7 @@ pub struct Factor {
     subdiagonal: Vec<f64>,
     pivots: Vec<usize>,
     inverse_pivots: Vec<usize>,
-    kind: Kind,
+    kind: FactorKind,
     memory: MemBuffer,
 }
 
@@ -185,7 +185,8 @@ impl Factor {
     /// [`SolverError::TooLarge`].
     pub fn new(symbolic: &Symbolic) -> Result<Self, SolverError> {
         let n = symbolic.size();
-        let [definite, indefinite] = [Kind::PositiveDefinite, Kind::Indefinite].map(|kind| symbolic.0.symbolic(kind));
+        let [definite, indefinite] =
+            [FactorKind::PositiveDefinite, FactorKind::Indefinite].map(|kind| symbolic.0.symbolic(kind));
         let scratch = StackReq::any_of(&[
             definite.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()),
             indefinite.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Spec::default()),
@@ -203,7 +204,7 @@ impl Factor {
             subdiagonal: vec![0.0; n],
             pivots: vec![0; n],
             inverse_pivots: vec![0; n],
-            kind: Kind::PositiveDefinite,
+            kind: FactorKind::PositiveDefinite,
             memory,
         })
     }
@@ -221,7 +222,7 @@ impl Factor {
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
-        self.kind = Kind::PositiveDefinite;
+        self.kind = FactorKind::PositiveDefinite;
         let symbolic = analysis.symbolic(self.kind);
         let factorized = symbolic.factorize_numeric_llt(
             &mut self.values[..symbolic.len_val()],
@@ -248,7 +249,7 @@ impl Factor {
     fn factorize_indefinite(&mut self, matrix: &[f64]) {
         let analysis = &*self.symbolic.0;
         let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
-        self.kind = Kind::Indefinite;
+        self.kind = FactorKind::Indefinite;
         let symbolic = analysis.symbolic(self.kind);
         symbolic.factorize_numeric_intranode_lblt(
             &mut self.values[..symbolic.len_val()],
@@ -269,7 +270,7 @@ impl Factor {
     pub fn negative_eigenvalues(&self) -> usize {
         let symbolic = self.symbolic.0.symbolic(self.kind);
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { return 0 };
-        if self.kind == Kind::PositiveDefinite {
+        if self.kind == FactorKind::PositiveDefinite {
             return 0;
         }
         let columns = supernodal.supernode_begin().iter().zip(supernodal.supernode_end());
@@ -306,10 +307,10 @@ impl Factor {
         let symbolic = self.symbolic.0.symbolic(self.kind);
         let values = &self.values[..symbolic.len_val()];
         match self.kind {
-            Kind::PositiveDefinite => {
+            FactorKind::PositiveDefinite => {
                 LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
             }
-            Kind::Indefinite => {
+            FactorKind::Indefinite => {
                 let pivots = PermRef::new_checked(&self.pivots, &self.inverse_pivots, rows);
                 IntranodeLbltRef::new(symbolic, values, &self.subdiagonal, pivots).solve_in_place_with_conj(
                     Conj::No,

@@ -34,7 +34,7 @@ impl std::fmt::Display for Singularity {
 
 /// Support of a side of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Hold {
+enum SideSupport {
     Free,
     /// Fixed in one direction.
     Roller,
@@ -59,21 +59,21 @@ impl Singularity {
         if problem.scene_loads().iter().any(acts) {
             return Some(Self::PointForce);
         }
-        let holds: Vec<Hold> = mesh
+        let holds: Vec<SideSupport> = mesh
             .outline()
             .iter()
             .filter(|side| side.ends().contains(&node))
-            .map(|side| Hold::of(problem, side))
+            .map(|side| SideSupport::of(problem, side))
             .collect();
         let [a, b] = *holds.as_slice() else { return None };
         let angle = interior_angle(mesh, node);
         let straight = std::f64::consts::PI;
         match (a, b) {
-            (Hold::Clamped, Hold::Free) | (Hold::Free, Hold::Clamped) => {
+            (SideSupport::Clamped, SideSupport::Free) | (SideSupport::Free, SideSupport::Clamped) => {
                 is_singular_clamp(angle, problem.material()).then_some(Self::SupportEnd)
             }
             // A roller is a symmetry condition: the mirror image continues the body.
-            (Hold::Roller, Hold::Free) | (Hold::Free, Hold::Roller) => {
+            (SideSupport::Roller, SideSupport::Free) | (SideSupport::Free, SideSupport::Roller) => {
                 (2.0 * angle > straight + CORNER).then_some(Self::SupportEnd)
             }
             _ => (angle > straight + CORNER).then_some(Self::ReentrantCorner),
@@ -81,7 +81,7 @@ impl Singularity {
     }
 }
 
-impl Hold {
+impl SideSupport {
     fn of(problem: &Problem, side: &Segment) -> Self {
         let fixed = [0, 1].map(|axis| {
             side.nodes().iter().all(|node| {

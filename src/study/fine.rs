@@ -136,7 +136,7 @@ pub(super) fn fine(
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = has_point(&scene);
-    let mut search = Search { effort, work: 0.0, observe };
+    let mut search = FineSearch { effort, work: 0.0, observe };
     let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
     let mut start: Option<Vec<Vector2<f64>>> = None;
     let mut finest = None;
@@ -247,14 +247,14 @@ fn has_point(scene: &Scene) -> bool {
 }
 
 /// Solver with a budget and progress reports.
-struct Search<'a> {
+struct FineSearch<'a> {
     effort: Effort,
     /// Unknowns, summed over all solves.
     work: f64,
     observe: Observer<'a>,
 }
 
-impl Search<'_> {
+impl FineSearch<'_> {
     /// Iterates until the status is final or the budget is spent; returns the status.
     fn solve(&mut self, simulation: &mut Simulation) -> Result<Status, StudyError> {
         let unknowns = simulation.system().dofs();

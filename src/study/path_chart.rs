@@ -135,7 +135,7 @@ impl Abscissa {
 
 /// Kind of a line of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Piece {
+enum PathLine {
     /// Equilibria that are stable under force control too.
     Stable,
     /// Equilibria that are stable only as supports hold them.
@@ -144,7 +144,7 @@ enum Piece {
     Jump,
 }
 
-impl Piece {
+impl PathLine {
     fn series(self, path: &LoadPath, points: Vec<FigurePoint>, render: Render<'_>) -> FigureSeries {
         let (name, ink, mark) = match self {
             Self::Stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
@@ -156,7 +156,7 @@ impl Piece {
 }
 
 /// The lines of a path.
-fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Piece)> {
+fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, PathLine)> {
     let stable: Vec<bool> = path.states.iter().map(|s| s.stable != Some(false)).collect();
     let Some(cut) = path.states_before_jump.filter(|cut| (1..points.len()).contains(cut)) else {
         return branches(points, &stable);
@@ -165,17 +165,17 @@ fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Pie
     let mut pieces = branches(before, stable_before);
     pieces.extend(branches(after, stable_after));
     if let (Some(from), Some(to)) = (before.last(), after.first()) {
-        pieces.push((vec![from.clone(), to.clone()], Piece::Jump));
+        pieces.push((vec![from.clone(), to.clone()], PathLine::Jump));
     }
     pieces
 }
 
 /// Lines of neighbouring points that are of one kind; they share their ends.
-fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, Piece)> {
-    let mut branches: Vec<(Vec<FigurePoint>, Piece)> = Vec::new();
+fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, PathLine)> {
+    let mut branches: Vec<(Vec<FigurePoint>, PathLine)> = Vec::new();
     for (pair, stable) in points.windows(2).zip(stable.windows(2)) {
         // A piece is stable where both of its ends are.
-        let kind = if stable[0] && stable[1] { Piece::Stable } else { Piece::Unstable };
+        let kind = if stable[0] && stable[1] { PathLine::Stable } else { PathLine::Unstable };
         match branches.last_mut().filter(|branch| branch.1 == kind) {
             Some((points, _)) => points.push(pair[1].clone()),
             None => branches.push((pair.to_vec(), kind)),

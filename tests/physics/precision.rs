@@ -12,16 +12,16 @@ use warpbeam::mesh::Mesh;
 use warpbeam::method::Reason;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;
-use warpbeam::study::extremes::{Body, Case, Outcome, Start};
+use warpbeam::study::extremes::{Case, CaseBody, CaseStart, Outcome};
 use warpbeam::{ElementKind, MethodKind, Simulation, State, Status};
 
 /// Returns a cantilever with L/H = 1000 under α = 1e-6.
 fn slender(element: ElementKind, method: MethodKind) -> Case {
     Case {
-        body: Body::Beam,
+        body: CaseBody::Beam,
         element,
         method,
-        start: Start::Rest,
+        start: CaseStart::Rest,
         alpha: 1e-6,
         young: 1e6,
         poisson: 0.3,

@@ -14,7 +14,7 @@ use crate::common::{scene, solve_json, warpbeam};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use warpbeam::app::{Lab, Recovery};
+use warpbeam::app::{Lab, RecoveryCopies};
 use warpbeam::scene::{Load, Source};
 use warpbeam::simulation::Simulation;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
@@ -528,7 +528,7 @@ fn edits_survive_a_killed_window() {
     window.process.kill().unwrap();
     window.process.wait().unwrap();
     let restore = {
-        let (_place, left) = Recovery::open(&copies).unwrap();
+        let (_place, left) = RecoveryCopies::open(&copies).unwrap();
         let mut harness = laid_out();
         harness.state_mut().offer(left.unwrap());
         // Learn shows a scene of its own, to which the edits do not belong.

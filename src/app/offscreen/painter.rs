@@ -8,12 +8,12 @@ use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use crate::render::{BodyRenderer, Gpu, View};
 
 /// Draws frames with one device into targets of one format.
-pub(crate) struct Stage {
+pub(crate) struct PaintStage {
     egui: egui_wgpu::Renderer,
     body: BodyRenderer,
 }
 
-impl Stage {
+impl PaintStage {
     pub(crate) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         // Deterministic: the same image in the window, in a shot, and on another machine.
         let egui = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::PREDICTABLE);

@@ -7,7 +7,7 @@ use web_time::{Duration, Instant};
 
 use crate::app::language::Language;
 use crate::app::modes::compare::PaneSetting;
-use crate::app::offscreen::painter::Stage;
+use crate::app::offscreen::painter::PaintStage;
 use crate::app::shell::lab::Lab;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
@@ -154,7 +154,7 @@ impl FrameTimes {
 pub struct Canvas<'a> {
     gpu: &'a Gpu,
     ctx: egui::Context,
-    stage: Stage,
+    stage: PaintStage,
     target: wgpu::Texture,
     screen: ScreenDescriptor,
     /// Number of egui's passes so far.
@@ -172,7 +172,7 @@ impl<'a> Canvas<'a> {
         }
         let ctx = egui::Context::default();
         ctx.set_theme(theme);
-        let stage = Stage::new(gpu, FORMAT);
+        let stage = PaintStage::new(gpu, FORMAT);
         let target = gpu.target("shot", FORMAT, size, 1, wgpu::TextureUsages::COPY_SRC);
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
         Ok(Self { gpu, ctx, stage, target, screen, passes: 0 })

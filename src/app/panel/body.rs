@@ -13,7 +13,7 @@ use crate::format::{engineering, number, three_digits};
 use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
 
 /// Named material.
-struct Preset {
+struct MaterialPreset {
     name: &'static str,
     /// Young's modulus, Pa, and the `range` of moduli that are still given this name.
     young: f64,
@@ -23,11 +23,11 @@ struct Preset {
     density: f64,
 }
 
-const PRESETS: [Preset; 4] = [
-    Preset { name: "Rubber", young: 1e6, range: 1e5..=5e7, poisson: 0.49, density: 1100.0 },
-    Preset { name: "Wood", young: 1.1e10, range: 8e9..=1.5e10, poisson: 0.35, density: 600.0 },
-    Preset { name: "Aluminium", young: 7e10, range: 6.5e10..=7.5e10, poisson: 0.33, density: 2700.0 },
-    Preset { name: "Steel", young: 2.1e11, range: 1.9e11..=2.2e11, poisson: 0.3, density: 7850.0 },
+const PRESETS: [MaterialPreset; 4] = [
+    MaterialPreset { name: "Rubber", young: 1e6, range: 1e5..=5e7, poisson: 0.49, density: 1100.0 },
+    MaterialPreset { name: "Wood", young: 1.1e10, range: 8e9..=1.5e10, poisson: 0.35, density: 600.0 },
+    MaterialPreset { name: "Aluminium", young: 7e10, range: 6.5e10..=7.5e10, poisson: 0.33, density: 2700.0 },
+    MaterialPreset { name: "Steel", young: 2.1e11, range: 1.9e11..=2.2e11, poisson: 0.3, density: 7850.0 },
 ];
 
 /// Returns the rows of the material. The limit of Poisson's ratio differs between plane stress and plane strain.
@@ -177,7 +177,7 @@ pub(super) fn material(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState,
     let scene = input.scene;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for Preset { name, young, poisson, density, .. } in PRESETS {
+        for MaterialPreset { name, young, poisson, density, .. } in PRESETS {
             let preset = Material { young, poisson, density, ..scene.material };
             let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
             let chosen = preset == scene.material;

@@ -89,7 +89,7 @@ fn place_of(load: &Load) -> Option<Place> {
 }
 
 /// Change of a load or support by its row.
-enum Change {
+enum EdgeChange {
     Move(Place),
     Remove,
 }
@@ -103,7 +103,7 @@ fn row(
     places: impl Iterator<Item = (&'static str, Place)>,
     view: &mut ViewOptions,
     more: impl FnOnce(&mut Ui),
-) -> Option<Change> {
+) -> Option<EdgeChange> {
     let mut change = None;
     ui.horizontal(|ui| {
         let name = ui.label(tr(label));
@@ -111,7 +111,7 @@ fn row(
             let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
             if response.clicked() {
-                change = Some(Change::Remove);
+                change = Some(EdgeChange::Remove);
             }
             more(ui);
             let picker = ComboBox::from_id_salt((label, id)).selected_text(text(scene, present));
@@ -122,7 +122,7 @@ fn row(
                         view.edge = Some(name.clone());
                     }
                     if entry.clicked() && *present != place {
-                        change = Some(Change::Move(place));
+                        change = Some(EdgeChange::Move(place));
                     }
                 }
             });
@@ -166,12 +166,12 @@ pub(super) fn show(
         let Some(change) = change else { continue };
         let mut scene = Box::new(scene.clone());
         match (change, &mut scene.loads[i]) {
-            (Change::Remove, _) => {
+            (EdgeChange::Remove, _) => {
                 scene.loads.remove(i);
                 state.discard_force(i);
             }
-            (Change::Move(to), Load::Force { place, .. }) => *place = to,
-            (Change::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
+            (EdgeChange::Move(to), Load::Force { place, .. }) => *place = to,
+            (EdgeChange::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
             _ => {}
         }
         edited = Some(scene);
@@ -206,8 +206,8 @@ pub(super) fn show(
         match (change, &mut scene.supports[i]) {
             // A support that fixes no direction is removed.
             _ if fix.is_empty() => _ = scene.supports.remove(i),
-            (Some(Change::Remove), _) => _ = scene.supports.remove(i),
-            (Some(Change::Move(to)), support) => support.place = to,
+            (Some(EdgeChange::Remove), _) => _ = scene.supports.remove(i),
+            (Some(EdgeChange::Move(to)), support) => support.place = to,
             (None, support) => *support = refixed(support, &fix),
         }
         edited = Some(scene);

@@ -8,7 +8,9 @@ use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{Bodies, MAX_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, Solved, Start};
+use crate::app::task::solve::{
+    Bodies, MAX_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, SolveStart, Solved,
+};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Equilibrium, Simulation, Status};
@@ -20,17 +22,17 @@ pub(super) struct Background {
     most_unknowns: u64,
     /// `true` if the wanted scene is larger: counting the unknowns of a mesh file takes too long for every frame.
     is_large: bool,
-    work: Work,
+    work: SolveState,
     /// Model of a cancelled or rejected solve that is not displayed: the next solve continues with it.
     returned: Option<(Bodies, Option<DisplayGeometry>)>,
     /// Initial state of the next solve.
-    start: Start,
+    start: SolveStart,
     iterations: Option<u32>,
 }
 
 /// State of the background solve.
 #[derive(Debug, Default)]
-enum Work {
+enum SolveState {
     /// The simulation is displayed and complete.
     #[default]
     Idle,
@@ -61,15 +63,15 @@ impl Default for Background {
         Self {
             most_unknowns: MAX_UNKNOWNS,
             is_large: false,
-            work: Work::Idle,
+            work: SolveState::Idle,
             returned: None,
-            start: Start::Present,
+            start: SolveStart::Present,
             iterations: None,
         }
     }
 }
 
-impl Work {
+impl SolveState {
     fn solve(&self) -> Option<&BackgroundSolve> {
         match self {
             Self::Running { solve, .. } => Some(solve),
@@ -139,7 +141,7 @@ impl Session {
     /// Returns the scene of the background solve, its current phase, and the time since the edit, s.
     pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
         match &self.background.work {
-            Work::Running { solve, rollback: Some(rollback) } => {
+            SolveState::Running { solve, rollback: Some(rollback) } => {
                 Some((solve.scene(), solve.phase(), rollback.since.elapsed().as_secs()))
             }
             _ => None,
@@ -189,7 +191,7 @@ impl Session {
     pub(super) fn request_document(&mut self, document: Document) {
         self.document = document;
         self.check_file();
-        self.background.start = Start::Rest;
+        self.background.start = SolveStart::Rest;
         if let Some(rollback) = self.background.work.rollback() {
             rollback.is_another_document = true;
         }
@@ -204,7 +206,7 @@ impl Session {
     }
 
     /// Restarts the background solve from another state, without limit or for a number of iterations.
-    pub(super) fn restart_in_background(&mut self, start: Start, iterations: Option<u32>) {
+    pub(super) fn restart_in_background(&mut self, start: SolveStart, iterations: Option<u32>) {
         self.keep_rollback();
         (self.background.start, self.background.iterations) = (start, iterations);
         self.stop_solve();
@@ -228,8 +230,8 @@ impl Session {
             quality: Quality::default(),
         });
         match &mut self.background.work {
-            Work::Running { rollback: own, .. } => *own = Some(rollback),
-            work => *work = Work::Waiting { rollback },
+            SolveState::Running { rollback: own, .. } => *own = Some(rollback),
+            work => *work = SolveState::Waiting { rollback },
         }
     }
 
@@ -281,7 +283,7 @@ impl Session {
             SolveUpdate::Cancelled => _ = self.background.work.take_solve(),
             SolveUpdate::Died => {
                 self.roll_back();
-                self.background.work = Work::Idle;
+                self.background.work = SolveState::Idle;
                 // Repeating the same solve would fail in the same way.
                 self.running = false;
                 self.notices.push(Notice::SolveDied);
@@ -297,13 +299,13 @@ impl Session {
                 background.returned = Some((snapshot.bodies, None));
             }
             // The displayed model is a copy of the returned one.
-            if background.returned.is_some() && matches!(background.start, Start::Present) {
-                background.start = Start::State(self.simulation.state().clone());
+            if background.returned.is_some() && matches!(background.start, SolveStart::Present) {
+                background.start = SolveStart::State(self.simulation.state().clone());
             }
             return;
         }
         let is_wanted = *solve.scene() == self.scene
-            && matches!(background.start, Start::Present)
+            && matches!(background.start, SolveStart::Present)
             && background.iterations.is_none();
         if !is_wanted {
             if has_mesh_of(&self.scene, snapshot.bodies.simulation.scene()) {
@@ -315,7 +317,7 @@ impl Session {
         if let Some(quality) = quality {
             self.quality = quality;
         }
-        (self.background.work, self.background.returned) = (Work::Idle, None);
+        (self.background.work, self.background.returned) = (SolveState::Idle, None);
     }
 
     fn receive_rejection(&mut self, solve: &BackgroundSolve, is_cancelled: bool, rejected: Rejected) {
@@ -359,12 +361,12 @@ impl Session {
         let own = background.returned.as_ref().map_or(&self.simulation, |(bodies, _)| &bodies.simulation);
         let is_new = !has_mesh_of(&self.scene, own.scene());
         let is_needed = own.scene() != &self.scene
-            || !matches!(background.start, Start::Present)
+            || !matches!(background.start, SolveStart::Present)
             || background.iterations.is_some()
             || background.returned.is_some()
             || self.running && *own.status() == Status::Running;
         if !is_new && (!is_needed || own.motion().is_some()) {
-            self.background.work = Work::Idle;
+            self.background.work = SolveState::Idle;
             return;
         }
         self.keep_rollback();
@@ -380,8 +382,8 @@ impl Session {
         };
         match BackgroundSolve::start(request) {
             Ok(solve) => {
-                if let Work::Waiting { rollback } = std::mem::take(&mut self.background.work) {
-                    self.background.work = Work::Running { solve: Box::new(solve), rollback: Some(rollback) };
+                if let SolveState::Waiting { rollback } = std::mem::take(&mut self.background.work) {
+                    self.background.work = SolveState::Running { solve: Box::new(solve), rollback: Some(rollback) };
                 }
             }
             Err(error) => {
@@ -413,7 +415,7 @@ impl Session {
     }
 
     fn roll_back(&mut self) {
-        (self.background.start, self.background.iterations) = (Start::Present, None);
+        (self.background.start, self.background.iterations) = (SolveStart::Present, None);
         let Some(rollback) = self.background.work.take_rollback() else { return };
         let Rollback { version, depth, snapshot, quality, .. } = *rollback;
         self.undo.take_back(depth);

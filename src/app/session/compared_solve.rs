@@ -7,7 +7,7 @@ use web_time::{Duration, Instant};
 
 use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
-use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, Start};
+use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveStart};
 use crate::assembly::System;
 use crate::scene::{Beam, MeshFile, Scene};
 use crate::sentence::{Sentence, sentence};
@@ -27,7 +27,7 @@ pub(crate) struct ComparedSolve {
     given: Option<Scene>,
     /// `true` if `given` is too large to be solved between two frames.
     is_large: bool,
-    body: Body,
+    body: ComparedBody,
     /// `true` if the solve started from rest, so that its cost does not depend on earlier states.
     from_rest: bool,
     /// `true` while a solve from rest only measures the cost; the equilibrium found before stays on display.
@@ -48,7 +48,7 @@ pub struct PaneEnd {
 }
 
 #[derive(Debug, Default)]
-enum Body {
+enum ComparedBody {
     /// No body yet.
     #[default]
     None,
@@ -75,10 +75,10 @@ fn model(simulation: Option<Box<Simulation>>, system: Option<Arc<System>>) -> Mo
 }
 
 /// Sets up a model on the current thread.
-fn set_up(model: Model, scene: &Scene) -> Body {
+fn set_up(model: Model, scene: &Scene) -> ComparedBody {
     match model.set_up(scene) {
-        Ok((bodies, _)) => Body::Here(Box::new(bodies.simulation)),
-        Err(rejected) => Body::Refused((&rejected.error).into()),
+        Ok((bodies, _)) => ComparedBody::Here(Box::new(bodies.simulation)),
+        Err(rejected) => ComparedBody::Refused((&rejected.error).into()),
     }
 }
 
@@ -130,7 +130,7 @@ impl ComparedSolve {
     /// Returns the simulation; `None` while it is solved in the background.
     pub(crate) fn simulation(&self) -> Option<&Simulation> {
         match &self.body {
-            Body::Here(simulation) => Some(simulation),
+            ComparedBody::Here(simulation) => Some(simulation),
             _ => None,
         }
     }
@@ -143,24 +143,24 @@ impl ComparedSolve {
     pub(crate) fn activity(&self) -> Activity<'_> {
         match (&self.end, &self.body) {
             (Some(end), _) => Activity::Rests(end),
-            (None, Body::Refused(reason)) => Activity::Refused(reason),
-            (None, Body::Away(away)) => Activity::Works(match away.solve.phase() {
+            (None, ComparedBody::Refused(reason)) => Activity::Refused(reason),
+            (None, ComparedBody::Away(away)) => Activity::Works(match away.solve.phase() {
                 Phase::Iterating(iterations) => iterations,
                 _ => 0,
             }),
-            (None, Body::Here(simulation)) => Activity::Iterates(simulation.iterations()),
-            (None, Body::None) => Activity::Iterates(0),
+            (None, ComparedBody::Here(simulation)) => Activity::Iterates(simulation.iterations()),
+            (None, ComparedBody::None) => Activity::Iterates(0),
         }
     }
 
     /// Returns `true` if no work is left.
     pub(crate) fn is_settled(&self) -> bool {
-        self.wanted == self.given && (self.end.is_some() || matches!(self.body, Body::Refused(_)))
+        self.wanted == self.given && (self.end.is_some() || matches!(self.body, ComparedBody::Refused(_)))
     }
 
     /// Returns `true` if the scene is solved in the background.
     pub(crate) fn is_away(&self) -> bool {
-        matches!(self.body, Body::Away(_))
+        matches!(self.body, ComparedBody::Away(_))
     }
 
     /// Returns `true` if the solve from rest found no equilibrium.
@@ -186,7 +186,7 @@ impl ComparedSolve {
     /// Returns the result at the first probe, and `true` if it is an equilibrium; `None` while the load is being
     /// solved.
     pub(crate) fn answer(&self) -> Option<(ProbeResult, bool)> {
-        let Body::Here(simulation) = &self.body else { return None };
+        let ComparedBody::Here(simulation) = &self.body else { return None };
         let ended = self.given == self.wanted && has_ended(simulation, self.most_iterations);
         if !ended || self.measures {
             return None;
@@ -201,7 +201,7 @@ impl ComparedSolve {
     pub(crate) fn restart(&mut self, most_iterations: Option<u32>) {
         self.most_iterations = most_iterations;
         if self.is_away() {
-            (self.body, self.given) = (Body::None, None);
+            (self.body, self.given) = (ComparedBody::None, None);
         }
         self.reset();
     }
@@ -209,19 +209,19 @@ impl ComparedSolve {
     /// Restarts from rest.
     pub(crate) fn reset(&mut self) {
         match &mut self.body {
-            Body::Here(simulation) => {
+            ComparedBody::Here(simulation) => {
                 simulation.reset();
                 (self.from_rest, self.measures, self.end) = (true, false, None);
             }
-            Body::Away(_) => {}
-            Body::None | Body::Refused(_) => self.given = None,
+            ComparedBody::Away(_) => {}
+            ComparedBody::None | ComparedBody::Refused(_) => self.given = None,
         }
     }
 
     /// Makes one iteration.
     pub(crate) fn step(&mut self) {
         let most = self.most_iterations;
-        if let Body::Here(simulation) = &mut self.body
+        if let ComparedBody::Here(simulation) = &mut self.body
             && !has_ended(simulation, most)
         {
             simulation.step();
@@ -246,7 +246,7 @@ impl ComparedSolve {
 
     /// Takes back a simulation that was solved in the background; returns `false` while it is still being solved.
     fn take_solved(&mut self) -> bool {
-        let Body::Away(away) = &mut self.body else { return true };
+        let ComparedBody::Away(away) = &mut self.body else { return true };
         if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
             away.solve.cancel();
         }
@@ -254,14 +254,16 @@ impl ComparedSolve {
             match away.solve.poll() {
                 SolveUpdate::Progress(_) => {}
                 SolveUpdate::None => return false,
-                SolveUpdate::Done(Ok(solved)) => break Body::Here(Box::new(solved.snapshot.bodies.simulation)),
-                SolveUpdate::Done(Err(rejected)) => break Body::Refused((&rejected.error).into()),
+                SolveUpdate::Done(Ok(solved)) => break ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation)),
+                SolveUpdate::Done(Err(rejected)) => break ComparedBody::Refused((&rejected.error).into()),
                 SolveUpdate::Cancelled => {
                     self.given = None;
-                    break Body::None;
+                    break ComparedBody::None;
                 }
                 SolveUpdate::Died => {
-                    break Body::Refused(sentence!("the solve ended unexpectedly: change a value to solve again"));
+                    break ComparedBody::Refused(sentence!(
+                        "the solve ended unexpectedly: change a value to solve again"
+                    ));
                 }
             }
         };
@@ -277,7 +279,7 @@ impl ComparedSolve {
         self.given = Some(scene.clone());
         self.measures = false;
         let simulation = match std::mem::take(&mut self.body) {
-            Body::Here(simulation) => Some(simulation),
+            ComparedBody::Here(simulation) => Some(simulation),
             _ => None,
         };
         // A state cannot be transferred to another mesh.
@@ -287,17 +289,17 @@ impl ComparedSolve {
         let model = model(simulation, system);
         self.is_large = scene.unknowns() > MAX_PANE_UNKNOWNS;
         if self.is_large {
-            self.send(scene, model, Start::Present);
+            self.send(scene, model, SolveStart::Present);
         } else {
             self.body = set_up(model, &scene);
         }
     }
 
     /// Starts a solve in the background.
-    fn send(&mut self, scene: Scene, model: Model, start: Start) {
+    fn send(&mut self, scene: Scene, model: Model, start: SolveStart) {
         // A search that continues has made a part of its iterations.
         let made = match (&model, &start) {
-            (Model::Existing(own), Start::Present) if *own.0.simulation.scene() == scene => {
+            (Model::Existing(own), SolveStart::Present) if *own.0.simulation.scene() == scene => {
                 own.0.simulation.iterations()
             }
             _ => 0,
@@ -305,14 +307,16 @@ impl ComparedSolve {
         let iterations = self.most_iterations.map(|most| most.saturating_sub(made));
         let request = SolveRequest { scene, model, start, iterations, residuals: Vec::new(), is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
-            Ok(solve) => Body::Away(Box::new(Away { solve, since: Instant::now() })),
-            Err(error) => Body::Refused(sentence!("no thread for the solve: %{error}", error = error.to_string())),
+            Ok(solve) => ComparedBody::Away(Box::new(Away { solve, since: Instant::now() })),
+            Err(error) => {
+                ComparedBody::Refused(sentence!("no thread for the solve: %{error}", error = error.to_string()))
+            }
         };
     }
 
     fn iterate(&mut self, frame: FrameConditions) {
         let most = self.most_iterations;
-        let Body::Here(simulation) = &mut self.body else { return };
+        let ComparedBody::Here(simulation) = &mut self.body else { return };
         if self.end.is_some() || !frame.runs {
             return;
         }
@@ -336,15 +340,15 @@ impl ComparedSolve {
         if !self.is_large {
             return simulation.reset();
         }
-        if let (Body::Here(simulation), Some(scene)) = (std::mem::take(&mut self.body), self.given.clone()) {
-            let start = if ended { Start::Rest } else { Start::Present };
+        if let (ComparedBody::Here(simulation), Some(scene)) = (std::mem::take(&mut self.body), self.given.clone()) {
+            let start = if ended { SolveStart::Rest } else { SolveStart::Present };
             self.send(scene, model(Some(simulation), None), start);
         }
     }
 
     /// Records the result of a solve from rest.
     fn conclude(&mut self) {
-        let Body::Here(simulation) = &self.body else { return };
+        let ComparedBody::Here(simulation) = &self.body else { return };
         if !self.from_rest || !has_ended(simulation, self.most_iterations) {
             return;
         }
@@ -360,7 +364,7 @@ impl ComparedSolve {
     pub(crate) fn solve_to_end(&mut self, wanted: Scene, equations: &[Equations]) {
         let system = Equations::of(equations, &wanted);
         self.body = set_up(model(None, system), &wanted);
-        if let Body::Here(simulation) = &mut self.body {
+        if let ComparedBody::Here(simulation) = &mut self.body {
             while !has_ended(simulation, self.most_iterations) {
                 simulation.step();
             }

@@ -12,7 +12,7 @@ const MAX_SAMPLES: usize = 8192;
 
 /// Recorded time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sample {
+pub(crate) struct MotionSample {
     /// Simulated time, s.
     pub time: f64,
     /// Energy ledger.
@@ -28,7 +28,7 @@ pub(crate) struct Sample {
 /// Samples ordered by time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct History {
-    samples: VecDeque<Sample>,
+    samples: VecDeque<MotionSample>,
     /// Name of the probe.
     probe: String,
 }
@@ -57,7 +57,7 @@ impl History {
             self.samples.pop_front();
         }
         let displacement = see(state.displacement());
-        self.samples.push_back(Sample {
+        self.samples.push_back(MotionSample {
             time: state.time(),
             ledger: *motion.ledger(),
             position: see(simulation.system().mesh().nodes()) + displacement,
@@ -67,7 +67,7 @@ impl History {
     }
 
     /// Returns all samples, the oldest first.
-    pub(crate) fn samples(&self) -> &VecDeque<Sample> {
+    pub(crate) fn samples(&self) -> &VecDeque<MotionSample> {
         &self.samples
     }
 
@@ -77,14 +77,14 @@ impl History {
     }
 
     /// Returns the samples of the last `duration` seconds, the oldest first.
-    pub(crate) fn last(&self, duration: f64) -> impl Iterator<Item = &Sample> {
+    pub(crate) fn last(&self, duration: f64) -> impl Iterator<Item = &MotionSample> {
         let end = self.samples.back().map_or(0.0, |s| s.time);
         let first = self.samples.partition_point(|s| s.time < end - duration);
         self.samples.range(first..)
     }
 
     /// Returns the samples of the `duration` seconds before `time`, s, the oldest first.
-    pub(crate) fn before(&self, time: f64, duration: f64) -> impl Iterator<Item = &Sample> {
+    pub(crate) fn before(&self, time: f64, duration: f64) -> impl Iterator<Item = &MotionSample> {
         let [first, end] = [
             self.samples.partition_point(|s| s.time < time - duration),
             self.samples.partition_point(|s| s.time <= time),
@@ -93,7 +93,7 @@ impl History {
     }
 
     /// Returns the last sample that is not after `time`, s.
-    pub(crate) fn at(&self, time: f64) -> Option<&Sample> {
+    pub(crate) fn at(&self, time: f64) -> Option<&MotionSample> {
         self.samples.get(self.samples.partition_point(|s| s.time <= time).checked_sub(1)?)
     }
 

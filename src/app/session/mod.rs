@@ -28,7 +28,7 @@ use crate::app::session::facts::Facts;
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{Start, note_residual, solve_linear};
+use crate::app::task::solve::{SolveStart, note_residual, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
@@ -537,7 +537,7 @@ impl Session {
         self.running = false;
         let is_at_rest = self.simulation.is_at_rest();
         if self.is_in_background() {
-            let start = if is_at_rest { Start::Rest } else { Start::Present };
+            let start = if is_at_rest { SolveStart::Rest } else { SolveStart::Present };
             return self.restart_in_background(start, Some(1));
         }
         if !self.is_motion() && is_at_rest {
@@ -549,7 +549,7 @@ impl Session {
     /// Returns to rest, or to the start of the motion.
     pub(crate) fn reset(&mut self) {
         if self.is_in_background() {
-            return self.restart_in_background(Start::Rest, None);
+            return self.restart_in_background(SolveStart::Rest, None);
         }
         self.playback.reset(&mut self.simulation);
         self.residuals.clear();

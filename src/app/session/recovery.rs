@@ -87,13 +87,13 @@ impl Unsaved {
 
 /// File for this window's copy, and the copy left by a crashed window.
 #[derive(Debug)]
-pub struct Recovery {
-    place: Place,
+pub struct RecoveryCopies {
+    place: LockedFile,
     /// Edits that the file contains.
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
-    left: Option<Place>,
+    left: Option<LockedFile>,
     /// Copies that cannot be read, and the reasons. They are kept: the user may repair them by hand.
     unreadable: Vec<(PathBuf, String)>,
     /// `true` if the copy of the crashed window is no longer needed.
@@ -102,12 +102,12 @@ pub struct Recovery {
 
 /// Numbered file, locked during the lifetime of this value.
 #[derive(Debug)]
-struct Place {
+struct LockedFile {
     file: PathBuf,
     _lock: File,
 }
 
-impl Place {
+impl LockedFile {
     /// Locks the file with this number; `None` if another window has locked it.
     fn lock(folder: &Path, number: usize) -> io::Result<Option<Self>> {
         let lock = folder.join(format!("{number}.lock"));
@@ -120,7 +120,7 @@ impl Place {
     }
 }
 
-impl Recovery {
+impl RecoveryCopies {
     /// Locks a free file in `folder`, which is created if it does not exist, and reads the edits that a crashed window
     /// has left there.
     ///
@@ -130,7 +130,7 @@ impl Recovery {
         std::fs::create_dir_all(folder)?;
         let (mut left, mut unreadable) = (None, Vec::new());
         for number in 0..PLACES {
-            let Some(place) = Place::lock(folder, number)? else { continue };
+            let Some(place) = LockedFile::lock(folder, number)? else { continue };
             if !place.file.exists() {
                 let (left, edits) = left.unzip();
                 return Ok((Self { place, written: None, last: None, left, unreadable, discards_left: false }, edits));
@@ -224,37 +224,37 @@ mod tests {
     fn a_crashed_windows_edits_are_offered_once_and_an_open_windows_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("unsaved");
-        let (mut crashed, left) = Recovery::open(&folder).unwrap();
+        let (mut crashed, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None);
         assert_eq!(crashed.keep(edits("article", -3.0).parts()).unwrap(), None);
-        let (mut other, left) = Recovery::open(&folder).unwrap();
+        let (mut other, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None, "the first window is still open");
         other.keep(edits("cantilever", -2.0).parts()).unwrap();
         other.keep(None).unwrap();
         drop((crashed, other));
-        let (mut next, left) = Recovery::open(&folder).unwrap();
+        let (mut next, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, Some(edits("article", -3.0)));
-        let (_, left) = Recovery::open(&folder).unwrap();
+        let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None, "another window offers it");
         next.discard_left();
         next.keep(edits("article", -3.0).parts()).unwrap();
         next.keep(None).unwrap();
         drop(next);
-        let (_, left) = Recovery::open(&folder).unwrap();
+        let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None);
     }
 
     #[test]
     fn a_copy_is_not_written_at_every_frame_and_one_that_cannot_be_read_stays() {
         let folder = tempfile::tempdir().unwrap();
-        let (mut window, _) = Recovery::open(folder.path()).unwrap();
+        let (mut window, _) = RecoveryCopies::open(folder.path()).unwrap();
         window.keep(edits("article", -3.0).parts()).unwrap();
         assert!(window.keep(edits("article", -4.0).parts()).unwrap().is_some());
         let file = window.place.file.clone();
         assert_eq!(Unsaved::read(&file).unwrap(), edits("article", -3.0));
         drop(window);
         std::fs::write(&file, "name = 3").unwrap();
-        let (window, left) = Recovery::open(folder.path()).unwrap();
+        let (window, left) = RecoveryCopies::open(folder.path()).unwrap();
         assert_eq!(left, None);
         assert!(file.exists() && window.place.file != file);
         assert!(window.unreadable[0].0 == file && window.unreadable[0].1.contains("name"), "{:?}", window.unreadable);

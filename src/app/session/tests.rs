@@ -297,13 +297,13 @@ fn restored_edits_know_what_their_file_contained() {
     crashed.save(&path).unwrap();
     crashed.apply(with_force(&crashed, -200.0)).unwrap();
     for is_changed in [false, true] {
-        let (mut recovery, _) = recovery::Recovery::open(&copies).unwrap();
+        let (mut recovery, _) = recovery::RecoveryCopies::open(&copies).unwrap();
         recovery.keep(Some((crashed.document(), crashed.scene()))).unwrap();
         drop(recovery);
         if is_changed {
             fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
         }
-        let (mut recovery, left) = recovery::Recovery::open(&copies).unwrap();
+        let (mut recovery, left) = recovery::RecoveryCopies::open(&copies).unwrap();
         let recovery::Unsaved { document, scene } = left.unwrap();
         let mut next = session(cantilever(-1.0));
         next.apply(Edit::Restore(Box::new((document, scene)))).unwrap();

@@ -7,7 +7,7 @@ use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
 use crate::app::modes::learn;
 use crate::app::session::{Changed, Edit};
-use crate::app::shell::lab::{Departure, Desk, Lab, Request};
+use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
@@ -62,10 +62,12 @@ impl Lab {
     pub(super) fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
         match action {
             Action::Open(id) => {
-                self.depart(ctx, Departure::Open(Source { name: id.into(), assignments: Vec::new() }));
+                self.depart(ctx, UnsavedDeparture::Open(Source { name: id.into(), assignments: Vec::new() }));
             }
-            Action::OpenFile => self.depart(ctx, Departure::AskForFile),
-            Action::Drop(path) => self.depart(ctx, Departure::Open(Source { name: path, assignments: Vec::new() })),
+            Action::OpenFile => self.depart(ctx, UnsavedDeparture::AskForFile),
+            Action::Drop(path) => {
+                self.depart(ctx, UnsavedDeparture::Open(Source { name: path, assignments: Vec::new() }))
+            }
             Action::Reload => self.open(ctx, self.source().clone()),
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(ctx),

@@ -13,7 +13,7 @@ use crate::app::shell::gallery::Gallery;
 use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
-use crate::app::viewport::view::{CardContent, Content, Viewport};
+use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
@@ -37,7 +37,7 @@ pub enum Request {
 #[derive(Debug)]
 pub(super) struct Desk {
     pub session: Session,
-    pub viewport: Viewport,
+    pub viewport: BodyView,
     pub view: ViewOptions,
     pub panel: PanelState,
     pub budget: Budget,
@@ -48,7 +48,7 @@ pub(super) struct Desk {
 impl Desk {
     pub(super) fn new(session: Session) -> Self {
         Self {
-            viewport: Viewport::new(session.simulation().system().mesh()),
+            viewport: BodyView::new(session.simulation().system().mesh()),
             session,
             view: ViewOptions::default(),
             panel: PanelState::default(),
@@ -85,7 +85,7 @@ pub(super) struct Lesson {
 
 /// Action that would lose unsaved edits.
 #[derive(Clone, Debug)]
-pub(super) enum Departure {
+pub(super) enum UnsavedDeparture {
     Close,
     Open(Source),
     AskForFile,
@@ -97,13 +97,13 @@ pub(super) enum Question {
     #[default]
     None,
     /// Unsaved edits would be lost.
-    Unsaved(Departure),
+    Unsaved(UnsavedDeparture),
     /// The window is to close while the scene is recorded.
     Recording,
     /// The scene is to be saved to its file, which another program has changed. A departure may follow.
-    Changed(Option<Departure>),
+    Changed(Option<UnsavedDeparture>),
     /// "Save" was answered, and the dialog asks for a file.
-    Saving(Departure),
+    Saving(UnsavedDeparture),
 }
 
 /// Complete content of a window.
@@ -238,7 +238,7 @@ impl Lab {
     }
 
     /// Returns the view of the body, and its content.
-    pub(super) fn viewport_and_content(&mut self) -> (&mut Viewport, Content<'_>) {
+    pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
         let Self { desk: Desk { session, viewport, view, panel, .. }, intro, lesson, .. } = self;
         (viewport, content(session, view, panel, intro.as_ref(), lesson.as_deref()))
     }

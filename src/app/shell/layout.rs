@@ -299,7 +299,7 @@ impl Lab {
         }
         if let Some(lesson) = &mut self.lesson {
             let Desk { session, viewport, .. } = &self.desk;
-            let view = learn::View {
+            let view = learn::CardView {
                 simulation: session.simulation(),
                 geometry: session.geometry(),
                 points: viewport.body().points(),

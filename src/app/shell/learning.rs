@@ -1,7 +1,7 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
-use crate::app::modes::learn::{self, Learn, Start};
+use crate::app::modes::learn::{self, CardStart, Learn};
 use crate::app::session::Session;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
@@ -80,8 +80,8 @@ impl Lab {
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
         viewport.fit();
-        session.set_running(setup.start != Start::Waiting);
-        if setup.start != Start::Now {
+        session.set_running(setup.start != CardStart::Waiting);
+        if setup.start != CardStart::Now {
             self.reset();
             let (viewport, content) = self.viewport_and_content();
             viewport.expect_bending(&content);

@@ -24,7 +24,7 @@ use crate::simulation::Motion;
 const BARS: f32 = 820.0;
 
 /// Number with its name.
-struct Number {
+struct BarNumber {
     name: &'static str,
     value: String,
     /// Remark after the number.
@@ -64,14 +64,14 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     });
 }
 
-fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Number> {
+fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
     let simulation = input.simulation;
     let time = input.solve_time.filter(|_| simulation.status().is_success());
     let seconds = time.map_or(0.0, |time| (time.total() - time.certify).as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut entries = vec![
-        Number {
+        BarNumber {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match errors.source {
@@ -90,7 +90,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
             color: error_color(palette, errors.own),
             ratio: None,
         },
-        Number {
+        BarNumber {
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
@@ -103,7 +103,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
         },
     ];
     if input.scene.solver.method == MethodKind::Warped {
-        entries.push(Number {
+        entries.push(BarNumber {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: rho.map_or(Cow::default(), |_| tr("per iteration").into()),
@@ -123,13 +123,13 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<Numb
     entries
 }
 
-fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Number; 3] {
+fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [BarNumber; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let clock = &input.playback.clock;
     let drift = motion.ledger().drift_of_input();
     [
-        Number {
+        BarNumber {
             name: "STEP",
             value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
             word: Cow::default(),
@@ -137,7 +137,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Num
             color: if cost > step { palette.error } else { palette.text },
             ratio: Some(cost / step),
         },
-        Number {
+        BarNumber {
             name: "SPEED",
             value: match clock.factor() {
                 Some(factor) => format!("× {}", fraction(factor)),
@@ -149,7 +149,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Num
             color: if clock.lags() { palette.error } else { palette.text },
             ratio: None,
         },
-        Number {
+        BarNumber {
             name: "DRIFT",
             value: percent(100.0 * drift),
             word: Cow::default(),
@@ -161,10 +161,10 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Num
 }
 
 /// Shows a name, its number, its bar and its remark.
-fn number(ui: &mut Ui, palette: &Palette, entry: Number, wide: bool) -> Response {
+fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Response {
     const GAP: f32 = 6.0;
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
-    let Number { name, value, word, tip, color, ratio } = entry;
+    let BarNumber { name, value, word, tip, color, ratio } = entry;
     let ratio = ratio.filter(|_| wide);
     let (name, word) = (tr(name), word.as_ref());
     let painter = ui.painter();

@@ -9,7 +9,7 @@ use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
-use crate::app::shell::lab::{Departure, Lab, Question, Request};
+use crate::app::shell::lab::{Lab, Question, Request, UnsavedDeparture};
 use crate::app::shell::messages::banner;
 use crate::app::view_options::Mode;
 use crate::scene::Scene;
@@ -33,7 +33,7 @@ impl Lab {
             self.desk.view.mode = Mode::Explore;
             self.enter_or_leave();
         }
-        self.depart(ctx, Departure::Close);
+        self.depart(ctx, UnsavedDeparture::Close);
         std::mem::take(&mut self.closes)
     }
 
@@ -45,7 +45,7 @@ impl Lab {
 
     /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
     /// the user's scene is kept.
-    pub(super) fn depart(&mut self, ctx: &Context, departure: Departure) {
+    pub(super) fn depart(&mut self, ctx: &Context, departure: UnsavedDeparture) {
         let loses = self.lesson.is_none() && self.unsaved().is_some();
         if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
     }
@@ -61,13 +61,13 @@ impl Lab {
         ctx.request_repaint();
     }
 
-    fn go(&mut self, ctx: &Context, departure: Departure) {
+    fn go(&mut self, ctx: &Context, departure: UnsavedDeparture) {
         match departure {
-            Departure::Close if self.recording.is_some() => self.ask(ctx, Question::Recording),
-            Departure::Close => self.closes = true,
-            Departure::Open(source) => self.open(ctx, source),
-            Departure::AskForFile if IS_PAGE => files::choose(),
-            Departure::AskForFile => {
+            UnsavedDeparture::Close if self.recording.is_some() => self.ask(ctx, Question::Recording),
+            UnsavedDeparture::Close => self.closes = true,
+            UnsavedDeparture::Open(source) => self.open(ctx, source),
+            UnsavedDeparture::AskForFile if IS_PAGE => files::choose(),
+            UnsavedDeparture::AskForFile => {
                 self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::app::platform::IS_PAGE;
 use crate::app::task::remote_solve::RemoteSolve;
-use crate::app::task::solve::{Model, Outcome, Phase, Snapshot, SolveProgress, SolveRequest, run};
+use crate::app::task::solve::{Model, Phase, Snapshot, SolveOutcome, SolveProgress, SolveRequest, run};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
 
@@ -12,7 +12,7 @@ pub(crate) enum SolveUpdate {
     /// Nothing new.
     None,
     Progress(Box<Snapshot>),
-    Done(Outcome),
+    Done(SolveOutcome),
     /// The solve was cancelled before it had a model.
     Cancelled,
     /// The solve has ended without a result.
@@ -32,7 +32,7 @@ pub(crate) struct BackgroundSolve {
 
 #[derive(Debug)]
 enum Runner {
-    Thread(Task<SolveProgress, Outcome>),
+    Thread(Task<SolveProgress, SolveOutcome>),
     Worker(Box<RemoteSolve>),
 }
 

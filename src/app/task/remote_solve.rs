@@ -11,7 +11,8 @@ use web_time::{Duration, Instant};
 use crate::app::task::quality::Quality;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::solve::{
-    Bodies, Model, Outcome, Phase, Rejected, Snapshot, SolveProgress, SolveRequest, Solved, Start, linear_scene, run,
+    Bodies, Model, Phase, Rejected, Snapshot, SolveOutcome, SolveProgress, SolveRequest, SolveStart, Solved,
+    linear_scene, run,
 };
 use crate::app::task::thread::{Reporter, Task, Update, Work};
 use crate::assembly::System;
@@ -55,7 +56,7 @@ impl Work for SolveWork {
 
     fn run(self, reporter: &Reporter<SentProgress, SentOutcome>) -> SentOutcome {
         let Self { scene, state, iterations, is_displayed } = self;
-        let start = state.map_or(Start::Rest, Start::State);
+        let start = state.map_or(SolveStart::Rest, SolveStart::State);
         let (scene, residuals) = (scene.0, Vec::new());
         let request = SolveRequest { scene, model: Model::New, start, iterations, residuals, is_displayed };
         let is_linear_sent = Cell::new(false);
@@ -108,7 +109,7 @@ impl RemoteSolve {
         let (mut made, mut present) = (0, None);
         let mut rejected = None;
         if let Model::Existing(own) = model {
-            let continues = own.0.simulation.scene() == &scene && matches!(start, Start::Present);
+            let continues = own.0.simulation.scene() == &scene && matches!(start, SolveStart::Present);
             model = match Model::Existing(own).set_up(&scene) {
                 Ok(mut own) => {
                     made = if continues { own.0.simulation.iterations() } else { 0 };
@@ -124,7 +125,7 @@ impl RemoteSolve {
             };
         }
         let state = match start {
-            Start::State(state) if present.is_none() => Some(state),
+            SolveStart::State(state) if present.is_none() => Some(state),
             _ => present,
         };
         if made == 0 {
@@ -153,7 +154,7 @@ impl RemoteSolve {
     }
 
     /// Returns the next update; waits for it if `waits` is `true`.
-    pub(crate) fn next(&mut self, waits: bool) -> Update<SolveProgress, Outcome> {
+    pub(crate) fn next(&mut self, waits: bool) -> Update<SolveProgress, SolveOutcome> {
         let may_end = self.has_found || matches!(self.model, Ok(Model::New));
         if may_end && self.cancelled.get().is_some_and(|since| since.elapsed() >= GRACE) {
             self.end();
@@ -216,7 +217,7 @@ impl RemoteSolve {
     }
 
     /// Returns a copy to display, and keeps the model.
-    fn display(&mut self, snapshot: Snapshot) -> Update<SolveProgress, Outcome> {
+    fn display(&mut self, snapshot: Snapshot) -> Update<SolveProgress, SolveOutcome> {
         let Snapshot { bodies, geometry, residuals } = snapshot;
         let copy = bodies.snapshot();
         self.model = Ok(Model::Existing(Box::new((bodies, None))));
@@ -233,12 +234,12 @@ mod tests {
     use crate::simulation::Status;
 
     fn request(scene: &Scene, model: Model) -> SolveRequest {
-        let start = Start::Present;
+        let start = SolveStart::Present;
         SolveRequest { scene: scene.clone(), model, start, iterations: None, residuals: Vec::new(), is_displayed: true }
     }
 
     /// Solves to the end, and counts the display geometries.
-    fn solve(request: SolveRequest) -> (Outcome, usize) {
+    fn solve(request: SolveRequest) -> (SolveOutcome, usize) {
         let mut solve = RemoteSolve::start(request).unwrap();
         let mut geometries = 0;
         loop {
@@ -303,7 +304,7 @@ mod tests {
         simulation.solve();
         assert_ne!(*simulation.state(), rest);
         let model = Model::Existing(Box::new((Bodies { simulation, linear: None }, None)));
-        let solve = RemoteSolve::start(SolveRequest { start: Start::Rest, ..request(&scene, model) }).unwrap();
+        let solve = RemoteSolve::start(SolveRequest { start: SolveStart::Rest, ..request(&scene, model) }).unwrap();
         let Ok(Model::Existing(own)) = &solve.model else { panic!("no model") };
         assert_eq!(*own.0.simulation.state(), rest);
     }

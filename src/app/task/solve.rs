@@ -59,7 +59,7 @@ pub(crate) enum Model {
 
 /// State that a solve starts from.
 #[derive(Debug, Default)]
-pub(crate) enum Start {
+pub(crate) enum SolveStart {
     /// Current state of the model.
     #[default]
     Present,
@@ -67,7 +67,7 @@ pub(crate) enum Start {
     State(State),
 }
 
-impl Start {
+impl SolveStart {
     /// Sets the state that a solve starts from. A state of another mesh does not fit and is ignored.
     pub(crate) fn apply(&self, simulation: &mut Simulation) {
         match self {
@@ -83,7 +83,7 @@ impl Start {
 pub(crate) struct SolveRequest {
     pub scene: Scene,
     pub model: Model,
-    pub start: Start,
+    pub start: SolveStart,
     /// Largest number of iterations; `None` for no limit.
     pub iterations: Option<u32>,
     /// Residuals recorded before the solve.
@@ -134,7 +134,7 @@ pub(crate) struct Rejected {
     pub model: Option<(Bodies, Option<DisplayGeometry>)>,
 }
 
-pub(crate) type Outcome = Result<Box<Solved>, Box<Rejected>>;
+pub(crate) type SolveOutcome = Result<Box<Solved>, Box<Rejected>>;
 
 /// Records the residual of an iteration; a new solve starts a new list.
 pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
@@ -190,7 +190,7 @@ impl Model {
 ///
 /// # Errors
 /// [`Rejected`].
-pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> Outcome {
+pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
     let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
     let needs_geometry = is_displayed && matches!(model, Model::New);
     let (mut bodies, mut geometry) = model.set_up(&scene)?;

@@ -117,7 +117,7 @@ pub(crate) struct Arrow {
 
 /// Scene and state whose load arrows are drawn.
 #[derive(Clone, Copy)]
-pub(crate) struct Forces<'a> {
+pub(crate) struct ForceArrows<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
     /// Positions of the nodes, m.
@@ -130,7 +130,7 @@ pub(crate) struct Forces<'a> {
     pub opening: OpeningLoads,
 }
 
-impl Forces<'_> {
+impl ForceArrows<'_> {
     /// Returns the arrows of all forces that act at the current time.
     pub(crate) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();

@@ -9,7 +9,7 @@ use crate::mesh::{Mesh, Segment};
 const INWARDS: f64 = 0.1;
 
 /// Straight segment of the outline.
-struct Piece {
+struct OutlinePiece {
     nodes: [u32; 2],
     ends: [Vector2<f64>; 2],
     /// Smallest and largest coordinate along the axis of the sweep.
@@ -46,18 +46,18 @@ fn crosses_itself(outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
         return false;
     }
     let axis = usize::from(size.y > size.x);
-    let mut pieces: Vec<Piece> = outline
+    let mut pieces: Vec<OutlinePiece> = outline
         .iter()
         .flat_map(|side| side.nodes().windows(2))
         .filter_map(|nodes| {
             let nodes = [*nodes.first()?, *nodes.last()?];
             let ends = [*positions.get(nodes[0] as usize)?, *positions.get(nodes[1] as usize)?];
             let (a, b) = (ends[0][axis], ends[1][axis]);
-            Some(Piece { nodes, ends, from: a.min(b), to: a.max(b) })
+            Some(OutlinePiece { nodes, ends, from: a.min(b), to: a.max(b) })
         })
         .collect();
     pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
-    let mut open: Vec<&Piece> = Vec::new();
+    let mut open: Vec<&OutlinePiece> = Vec::new();
     for piece in &pieces {
         open.retain(|other| other.to >= piece.from);
         if open.iter().any(|other| other.crosses(piece)) {
@@ -68,7 +68,7 @@ fn crosses_itself(outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
     false
 }
 
-impl Piece {
+impl OutlinePiece {
     fn crosses(&self, other: &Self) -> bool {
         !self.nodes.iter().any(|node| other.nodes.contains(node)) && self.separates(other) && other.separates(self)
     }

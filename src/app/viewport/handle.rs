@@ -2,7 +2,7 @@
 
 use egui::{Color32, Painter, Pos2, Vec2};
 
-use crate::app::viewport::arrow::{Arrow, Forces, NEAR, is_seen, load_point};
+use crate::app::viewport::arrow::{Arrow, ForceArrows, NEAR, is_seen, load_point};
 use crate::app::viewport::moment_arrow::{MomentArrow, moment_range};
 use crate::app::viewport::projection::Projection;
 use crate::scene::{Load, Place};
@@ -132,7 +132,7 @@ impl Grip {
     }
 }
 
-impl Forces<'_> {
+impl ForceArrows<'_> {
     /// Returns the circular arrows of all moments that act at the current time.
     pub(crate) fn moment_arrows(&self, projection: &Projection) -> Vec<MomentArrow> {
         let mesh = self.system.mesh();

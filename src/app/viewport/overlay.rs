@@ -9,9 +9,9 @@ use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{percent, tr};
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::arrow::{self, Forces};
+use crate::app::viewport::arrow::{self, ForceArrows};
 use crate::app::viewport::handle::HotHandle;
-use crate::app::widgets::legend::Mark;
+use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::assembly::{MouseSpring, System};
@@ -305,7 +305,8 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
 
 fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     let Overlay { scene, system, positions, time, .. } = *overlay;
-    let of = |scene| Forces { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
+    let of =
+        |scene| ForceArrows { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
     // The filled arrow belongs to the body, and the outline is the load that was asked for.
     let forces = of(overlay.wanted.unwrap_or(scene));
     let is_outline = overlay.wanted.is_some();
@@ -472,19 +473,23 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
         Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
-    let mut lines = vec![(palette.solution(overlay.scene), Mark::Line, own)];
+    let mut lines = vec![(palette.solution(overlay.scene), LegendMark::Line, own)];
     for companion in overlay.playback.companions() {
-        lines.push((palette.integrator(companion.integrator), Mark::Line, tr(companion.integrator.id()).to_owned()));
+        lines.push((
+            palette.integrator(companion.integrator),
+            LegendMark::Line,
+            tr(companion.integrator.id()).to_owned(),
+        ));
     }
     if overlay.ghost.is_some() {
         let text = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
-        lines.push((palette.method(MethodKind::Linear), Mark::Line, text));
+        lines.push((palette.method(MethodKind::Linear), LegendMark::Line, text));
     }
     if !overlay.exact.is_empty() {
-        lines.push((palette.exact, Mark::Dashes, tr("reference").to_owned()));
+        lines.push((palette.exact, LegendMark::Dashes, tr("reference").to_owned()));
     }
     if overlay.options.rest_outline {
-        lines.push((palette.rest, Mark::Outline, tr("rest").to_owned()));
+        lines.push((palette.rest, LegendMark::Outline, tr("rest").to_owned()));
     }
     let font = FontId::proportional(BODY);
     // Wrapped into rows if the view is narrow.
@@ -494,7 +499,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         .into_iter()
         .map(|(color, mark, text)| {
             let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
-            let width = Mark::WIDTH + 6.0 + galley.size().x;
+            let width = LegendMark::WIDTH + 6.0 + galley.size().x;
             if at.x > 0.0 && at.x + width > most {
                 at = vec2(0.0, at.y + ROW);
             }
@@ -511,7 +516,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     for (color, mark, galley, place) in placed {
         let left = corner + place + vec2(0.0, 0.5 * ROW);
         mark.paint(painter, left, color);
-        painter.galley(left + vec2(Mark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
+        painter.galley(left + vec2(LegendMark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
     }
     frame
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::arrow::Forces;
+use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::crossing::passes_through_itself;
@@ -104,7 +104,7 @@ struct Crossing {
 
 /// View of one body.
 #[derive(Debug)]
-pub(crate) struct Viewport {
+pub(crate) struct BodyView {
     camera: CameraController,
     margins: Margins,
     /// `true` if camera movements are animated, as in a window.
@@ -122,7 +122,7 @@ pub(crate) struct Viewport {
     crossing: Crossing,
 }
 
-impl Viewport {
+impl BodyView {
     /// Creates a view of a body at rest.
     pub(crate) fn new(mesh: &Mesh) -> Self {
         Self {
@@ -312,9 +312,9 @@ impl Viewport {
     }
 
     /// Returns the loads of the last frame's arrows.
-    fn forces<'a>(&'a self, content: &Content<'a>) -> Forces<'a> {
+    fn forces<'a>(&'a self, content: &Content<'a>) -> ForceArrows<'a> {
         let simulation = content.simulation();
-        Forces {
+        ForceArrows {
             scene: simulation.scene(),
             system: simulation.system(),
             positions: &self.body.nodes,
@@ -472,7 +472,7 @@ impl Viewport {
         if let Some(reach) = content.reach() {
             let positions: Vec<_> = positions(reach).collect();
             let own = self.forces(content);
-            let forces = Forces { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
+            let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.arrows(&projection));
         }
         let on_top = overlay::has_legend_on_top(size.y);

@@ -4,13 +4,13 @@ use egui::{Color32, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
 /// Line style of a solution.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Mark {
+pub(crate) enum LegendMark {
     Line,
     Dashes,
     Outline,
 }
 
-impl Mark {
+impl LegendMark {
     /// Width of every mark, points.
     pub(crate) const WIDTH: f32 = 18.0;
 

@@ -25,7 +25,7 @@ use crate::app::language::{fill, tr};
 use crate::app::offscreen::record::{LiveRecording, pointer};
 use crate::app::offscreen::recorder::Recorder;
 use crate::app::platform::{self, IS_PAGE};
-use crate::app::session::recovery::Recovery;
+use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
@@ -113,7 +113,7 @@ struct App {
     settings: Settings,
     settings_file: Option<PathBuf>,
     /// Copy of unsaved edits; `None` if the system has no folder for it.
-    recovery: Option<Recovery>,
+    recovery: Option<RecoveryCopies>,
     open: Option<OpenWindow>,
     /// Window that has been opened and is taken over by the next event.
     opening: Rc<RefCell<Option<Result<OpenWindow, AppError>>>>,
@@ -158,7 +158,7 @@ impl App {
         lab.set_easing(true);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
         let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
-        let recovery = folder.and_then(|folder| match Recovery::open(&folder) {
+        let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
             Ok((recovery, left)) => {
                 left.into_iter().for_each(|left| lab.offer(left));
                 for (file, reason) in recovery.unreadable() {
@@ -317,7 +317,7 @@ impl App {
         for request in requests {
             match request {
                 Request::Screenshot => self.say_saved(screenshot.as_ref()),
-                Request::DiscardCopy => self.recovery.iter_mut().for_each(Recovery::discard_left),
+                Request::DiscardCopy => self.recovery.iter_mut().for_each(RecoveryCopies::discard_left),
                 Request::Record => self.record(now),
                 Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),

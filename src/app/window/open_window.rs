@@ -11,10 +11,10 @@ use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
 use crate::app::AppError;
-use crate::app::offscreen::painter::Stage;
+use crate::app::offscreen::painter::PaintStage;
 use crate::app::platform::clipboard::Clipboard;
 use crate::app::platform::new_file::NewFile;
-use crate::render::{Candidate, Gpu, NO_WINDOW, RenderError, Search, View, read_texture, wanted_name};
+use crate::render::{AdapterSearch, Candidate, Gpu, NO_WINDOW, RenderError, View, read_texture, wanted_name};
 
 /// Window, and the graphics resources that draw into it. The order of the fields matters: the surface must be dropped
 /// before its window.
@@ -37,7 +37,7 @@ pub(super) struct BareWindow {
 pub(super) struct Graphics {
     surface: wgpu::Surface<'static>,
     pub(super) configuration: wgpu::SurfaceConfiguration,
-    pub(super) stage: Stage,
+    pub(super) stage: PaintStage,
     pub(super) gpu: Gpu,
     instance: wgpu::Instance,
 }
@@ -59,7 +59,7 @@ impl Graphics {
             wgpu::Instance::new(descriptor)
         };
         let surface = |instance: &wgpu::Instance| instance.create_surface(window.clone()).map(Some);
-        let search = Search { name: wanted_name(adapter), instance, surface };
+        let search = AdapterSearch { name: wanted_name(adapter), instance, surface };
         Ok(search.first_usable(async |candidate| Self::on(candidate, window.inner_size()).await).await?)
     }
 
@@ -76,7 +76,7 @@ impl Graphics {
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         let made = gpu.without_error(|| {
             surface.configure(&gpu.device, &configuration);
-            Stage::new(&gpu, format)
+            PaintStage::new(&gpu, format)
         });
         let stage = made.await?;
         Ok(Self { surface, configuration, stage, gpu, instance })

@@ -11,13 +11,13 @@ use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
 
 /// Work by its name.
-type Entry = (&'static str, fn(&[u8]));
+type WorkerEntry = (&'static str, fn(&[u8]));
 
-const fn entry<W: Work>() -> Entry {
+const fn entry<W: Work>() -> WorkerEntry {
     (W::NAME, serve::<W>)
 }
 
-const ENTRIES: [Entry; 11] = [
+const ENTRIES: [WorkerEntry; 11] = [
     entry::<FactWork<ReferenceFact>>(),
     entry::<FactWork<CurveFact>>(),
     entry::<FactWork<PathFact>>(),

@@ -34,19 +34,19 @@ pub(super) struct Expansion {
     terms: [Vec<Vector2<f64>>; 3],
     /// A linear solution up to which the body was found stable.
     checked: Option<Vec<Vector2<f64>>>,
-    scratch: Option<Scratch>,
+    scratch: Option<ExpansionScratch>,
 }
 
 /// Work vectors, allocated once.
 #[derive(Debug)]
-struct Scratch {
+struct ExpansionScratch {
     rest: State,
     probe: State,
     forces: Forces,
     sum: Vec<Vector2<f64>>,
 }
 
-impl Scratch {
+impl ExpansionScratch {
     fn new(problem: &Problem) -> Self {
         let rest = problem.system().at_rest();
         let forces = Forces::new(rest.displacement.len());
@@ -70,7 +70,8 @@ impl Expansion {
         let problem = it.problem;
         let system = problem.system();
         let Self { factor, terms: [first, second, third], scratch, .. } = self;
-        let Scratch { rest, probe, forces, sum } = scratch.get_or_insert_with(|| Scratch::new(problem));
+        let ExpansionScratch { rest, probe, forces, sum } =
+            scratch.get_or_insert_with(|| ExpansionScratch::new(problem));
         for vector in [&mut *first, second, third] {
             vector.resize(sum.len(), Vector2::zeros());
         }
@@ -127,7 +128,7 @@ impl Expansion {
         if covered.is_some_and(|scale| (0.0..=1.0).contains(&scale)) {
             return true;
         }
-        let Scratch { probe, forces, .. } = scratch.get_or_insert_with(|| Scratch::new(it.problem));
+        let ExpansionScratch { probe, forces, .. } = scratch.get_or_insert_with(|| ExpansionScratch::new(it.problem));
         for ahead in [CHECK_AHEAD, 1.0] {
             probe.displacement.overwrite().iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
             report.factorizations += 1;

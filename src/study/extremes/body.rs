@@ -7,7 +7,7 @@ use crate::scene::{Scene, Source, open};
 
 /// Body of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
+pub enum CaseBody {
     /// Cantilever.
     Beam,
     /// Built-in scene with a mesh file, by its name.
@@ -17,7 +17,7 @@ pub enum Body {
 /// Built-in scenes with mesh files.
 pub const FILES: [&str; 3] = ["bracket", "clip", "cook"];
 
-impl Body {
+impl CaseBody {
     /// Returns the identifier in tables.
     #[must_use]
     pub fn id(self) -> &'static str {

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use self::body::distorted;
-pub use self::body::{Body, FILES};
+pub use self::body::{CaseBody, FILES};
 use super::Extent;
 use crate::format::number;
 use crate::method::{METHODS, Reason};
@@ -21,7 +21,7 @@ use crate::simulation::{Simulation, SimulationError, Status};
 
 /// Initial state of a solve; fixed nodes stay at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Start {
+pub enum CaseStart {
     /// Rest mesh.
     Rest,
     /// Every node on the axis: all elements without area.
@@ -34,7 +34,7 @@ pub enum Start {
     Turned,
 }
 
-impl Start {
+impl CaseStart {
     /// All initial states.
     pub const ALL: [Self; 5] = [Self::Rest, Self::Flat, Self::Mirrored, Self::Random, Self::Turned];
 
@@ -70,13 +70,13 @@ impl Start {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
     /// Body.
-    pub body: Body,
+    pub body: CaseBody,
     /// Element.
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
     /// Initial state.
-    pub start: Start,
+    pub start: CaseStart,
     /// Transverse tip load α = P L²/EI; for a mesh file, the factor of the scene's loads.
     pub alpha: f64,
     /// Young's modulus, Pa.
@@ -167,10 +167,10 @@ pub fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
     for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
         let ordinary = Case {
-            body: Body::Beam,
+            body: CaseBody::Beam,
             element,
             method,
-            start: Start::Rest,
+            start: CaseStart::Rest,
             alpha: 1.0,
             young: 1e6,
             poisson: 0.3,
@@ -191,8 +191,8 @@ pub fn cases(extent: Extent) -> Vec<Case> {
                     cases.push(Case { alpha, slenderness, young, ..ordinary });
                 }
             }
-            for start in Start::ALL {
-                if start != Start::Rest {
+            for start in CaseStart::ALL {
+                if start != CaseStart::Rest {
                     cases.push(Case { alpha, start, ..ordinary });
                 }
             }
@@ -211,19 +211,19 @@ impl Case {
     fn on_file(self, id: &'static str, alpha: f64) -> Option<Self> {
         let scene = body::scene(id)?;
         let Material { young, poisson, .. } = scene.material;
-        let case = Self { body: Body::File(id), alpha, young, poisson, slenderness: 1.0, aspect: 1.0, ..self };
+        let case = Self { body: CaseBody::File(id), alpha, young, poisson, slenderness: 1.0, aspect: 1.0, ..self };
         scene.elements().any(|e| e == self.element).then_some(case)
     }
 
     /// Returns `true` for a beam with rectangular cells that starts at rest.
     fn is_plain(&self) -> bool {
-        (self.body, self.start) == (Body::Beam, Start::Rest) && self.distortion == 0.0
+        (self.body, self.start) == (CaseBody::Beam, CaseStart::Rest) && self.distortion == 0.0
     }
 
     /// Returns the scene of the case.
     #[must_use]
     pub fn scene(&self) -> Scene {
-        if let Body::File(id) = self.body
+        if let CaseBody::File(id) = self.body
             && let Some(mut scene) = body::scene(id)
         {
             scene.set_element(self.element);
@@ -266,7 +266,7 @@ impl Case {
             Some(mesh) => Simulation::with_mesh(&scene, mesh)?,
             None => Simulation::new(&scene)?,
         };
-        if self.start != Start::Rest {
+        if self.start != CaseStart::Rest {
             let nodes = simulation.system().mesh().nodes().iter().enumerate();
             let u = nodes.map(|(n, x)| self.start.place(n, *x, 1.0) - x).collect::<Vec<_>>();
             // Cannot fail: one vector per node, all finite.
@@ -283,8 +283,8 @@ impl Case {
             _ => Outcome::NotConverged,
         };
         let length = match self.body {
-            Body::Beam => self.slenderness,
-            Body::File(_) => simulation.system().size(),
+            CaseBody::Beam => self.slenderness,
+            CaseBody::File(_) => simulation.system().size(),
         };
         let tip = solution.probes.first().map_or(Vector2::zeros(), |p| p.u) / length;
         Ok(Entry {
@@ -351,14 +351,14 @@ pub(crate) fn alphas(entries: &[Entry]) -> Vec<f64> {
 }
 
 /// Predicate that selects cases.
-type Kind = fn(&Case) -> bool;
+type CaseFilter = fn(&Case) -> bool;
 
 /// Returns the percentage of successful cases of a kind under a load; `None` if there are no such cases.
 fn percent_well(
     entries: &[Entry],
     (element, method): (ElementKind, MethodKind),
     alpha: f64,
-    is_of: Kind,
+    is_of: CaseFilter,
 ) -> Option<f64> {
     let here = entries.iter().filter(|e| {
         let c = &e.case;
@@ -390,14 +390,14 @@ pub fn summary(entries: &[Entry]) -> String {
         "\n{at_rounding} of the converged cases stopped at working precision: residual above the tolerance, within \
          the bound of rounding"
     );
-    let kinds: [(Kind, &str); 4] = [
+    let kinds: [(CaseFilter, &str); 4] = [
         (|c| c.is_plain() && !c.moved, "of the cases from rest, by load α = P L²/EI"),
         (
             |c| c.is_plain() && c.moved,
             "of the cases from rest, by the displacement of the moved tip, α/3 of the length, at most 0.8",
         ),
         (|c| c.distortion > 0.0, "of the cases with distorted cells, by load α = P L²/EI"),
-        (|c| c.body != Body::Beam, "of the mesh files, by their scenes' load times"),
+        (|c| c.body != CaseBody::Beam, "of the mesh files, by their scenes' load times"),
     ];
     for (is_of, by) in kinds {
         let _ = write!(text, "\ncertified or converged, percent {by}\nelement method ");

@@ -86,7 +86,7 @@ impl MotionReference {
         let [coarse, fine] = meshes(scene, plan)?;
         // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
-        let follow = |&(mesh, steps): &(&Reference, u32), observe: Observer<'_>| {
+        let follow = |&(mesh, steps): &(&ReferenceMesh, u32), observe: Observer<'_>| {
             fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, observe)
         };
         let paths = all_done(parallel::map(&paths, follow, |done| {
@@ -151,14 +151,14 @@ pub(super) fn fine_path(
 }
 
 /// Mesh of the reference.
-struct Reference {
+struct ReferenceMesh {
     scene: Scene,
     system: Arc<System>,
     cells: Option<[u32; 2]>,
 }
 
 /// Returns the mesh with half as many cells in each direction, and the fine mesh.
-fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
+fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> {
     let element = finest_element(scene);
     let with = |factor: f64| {
         let setting = MotionSetting {
@@ -170,7 +170,7 @@ fn meshes(scene: &Scene, plan: &Plan) -> Result<[Reference; 2], StudyError> {
             iterations: 0,
         };
         let scene = setting.apply(scene);
-        Ok::<_, StudyError>(Reference { system: system_of(&scene)?, scene, cells: setting.cells })
+        Ok::<_, StudyError>(ReferenceMesh { system: system_of(&scene)?, scene, cells: setting.cells })
     };
     let (coarse, mut fine) = (with(0.5 * plan.reference_mesh)?, with(plan.reference_mesh)?);
     if scene.beam.is_none() {

@@ -11,7 +11,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, Pl
 use crate::app::action::Action;
 use crate::app::language::{fill, joined, percent, said, tr};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
-use crate::app::modes::budget::study_task::{Background, StudyState};
+use crate::app::modes::budget::study_task::{BackgroundStudy, StudyState};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
@@ -26,7 +26,7 @@ use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
 /// State of Budget: the study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
-    background: Option<Background>,
+    background: Option<BackgroundStudy>,
     /// Study that starts once the one in progress has ended: two at a time would slow each other down.
     next: Option<(Scene, Extent)>,
     /// `true` if the last study was cancelled.
@@ -68,7 +68,7 @@ impl Budget {
             return;
         }
         *self = Self { of: Some(without_settings(scene)), limits: self.limits, ..Self::default() };
-        match Background::start(scene.clone(), extent) {
+        match BackgroundStudy::start(scene.clone(), extent) {
             Ok(background) => self.background = Some(background),
             Err(error) => self.error = Some(error),
         }
@@ -84,7 +84,7 @@ impl Budget {
 
     /// Returns the fraction done and the current measurement, while a study is in progress.
     pub(crate) fn progress(&self) -> Option<(f32, &Sentence)> {
-        self.background.as_ref().map(Background::progress)
+        self.background.as_ref().map(BackgroundStudy::progress)
     }
 
     /// Returns `true` while a study is in progress.
@@ -151,7 +151,7 @@ impl Budget {
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
             current: self.of.as_ref() == Some(&without_settings(scene)),
             is_partial: self.is_partial,
-            progress: self.background.as_ref().map(Background::progress),
+            progress: self.background.as_ref().map(BackgroundStudy::progress),
             error: self.error.as_ref(),
         };
         let (limits, messages) = (&mut self.limits, &mut self.messages);

@@ -46,14 +46,14 @@ pub(crate) enum StudyState {
 
 /// Study in a background thread. Dropping it cancels it.
 #[derive(Debug)]
-pub(crate) struct Background {
+pub(crate) struct BackgroundStudy {
     task: Task<StudyProgress, Done>,
     /// Fraction done, and (`now`) the current measurement.
     fraction: f32,
     now: Sentence,
 }
 
-impl Background {
+impl BackgroundStudy {
     /// Starts a study of the scene.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::{Icon, icon_button};
-use crate::app::widgets::legend::Mark;
+use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use crate::assembly::System;
@@ -432,17 +432,17 @@ fn key(ui: &Ui, rect: Rect, view: &ViewOptions, range: [f64; 2]) {
     let font = FontId::proportional(SMALL);
     let middle = rect.center().y;
     let mut x = rect.left() + 12.0;
-    let mut entry = |text: &str, mark: Mark, color: Color32| {
+    let mut entry = |text: &str, mark: LegendMark, color: Color32| {
         mark.paint(&painter, pos2(x, middle), color);
-        let at = pos2(x + Mark::WIDTH + 6.0, middle);
+        let at = pos2(x + LegendMark::WIDTH + 6.0, middle);
         let place = painter.text(at, Align2::LEFT_CENTER, tr(text), font.clone(), palette.secondary);
         x = place.right() + 16.0;
     };
     if view.exact {
-        entry("reference", Mark::Dashes, palette.exact);
+        entry("reference", LegendMark::Dashes, palette.exact);
     }
     if view.rest_outline {
-        entry("rest", Mark::Outline, palette.rest);
+        entry("rest", LegendMark::Outline, palette.rest);
     }
     grid::color_key(ui, rect, x, view, range);
 }

@@ -11,7 +11,7 @@ use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::arrow::Forces;
+use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay::{self, Overlay};
@@ -67,9 +67,9 @@ impl PaneDisplay {
     }
 
     /// Returns the loads of the displayed body at a simulated time, s.
-    pub(super) fn forces<'a>(&'a self, scene: &'a Scene, time: f64, input: &PaneInput<'_>) -> Option<Forces<'a>> {
+    pub(super) fn forces<'a>(&'a self, scene: &'a Scene, time: f64, input: &PaneInput<'_>) -> Option<ForceArrows<'a>> {
         let (system, positions) = (self.system.as_ref()?, &self.body_mesh.nodes);
-        Some(Forces { scene, system, positions, time, direction: input.direction, opening: input.opening })
+        Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening: input.opening })
     }
 }
 

@@ -33,7 +33,7 @@ const TINY: f64 = 50.0;
 
 /// Load that is traced: the first force, else the first moment, else gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Axis {
+struct TraceAxis {
     name: &'static str,
     /// Label of its edits.
     label: &'static str,
@@ -45,7 +45,7 @@ struct Axis {
     direction: Option<[f64; 2]>,
 }
 
-impl Axis {
+impl TraceAxis {
     fn of(scene: &Scene) -> Option<Self> {
         let kinds: [fn(&Load) -> bool; 3] = [
             |load| matches!(load, Load::Force { .. }),
@@ -96,7 +96,7 @@ struct Dot {
 /// Results so far.
 #[derive(Debug)]
 pub(super) struct Trace {
-    axis: Option<Axis>,
+    axis: Option<TraceAxis>,
     family: Option<Scene>,
     direction: Option<[f64; 2]>,
     series: Vec<(PaneSetting, Vec<Dot>)>,
@@ -137,7 +137,7 @@ facts! {
 /// to there is fine enough for all loads from a quarter of it.
 fn with_round_load(scene: &Scene) -> Scene {
     let mut round = without_settings(scene);
-    if let Some(axis) = Axis::of(scene)
+    if let Some(axis) = TraceAxis::of(scene)
         && let Some(direction) = axis.direction
     {
         let load = 4f64.powf(axis.magnitude.log(4.0).ceil()).min(axis.limit.max);
@@ -148,7 +148,7 @@ fn with_round_load(scene: &Scene) -> Scene {
 
 /// Returns the displacement of the first probe of the exact beam over the traced load.
 fn exact_line(scene: &Scene, observe: Observer<'_>) -> Option<Vec<Exact>> {
-    let axis = Axis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
+    let axis = TraceAxis::of(scene).filter(|axis| axis.magnitude > 0.0)?;
     // The load curve scales all loads together, so it applies to a single load only.
     if has_several_loads(scene) || scene.probes.first()?.place != Place::from("right") {
         return None;
@@ -170,7 +170,7 @@ impl Trace {
     pub(super) fn set_scene(&mut self, scene: &Scene) {
         /// Largest difference between two unit vectors that count as the same direction.
         const SAME_DIRECTION: f64 = 1e-6;
-        self.axis = Axis::of(scene);
+        self.axis = TraceAxis::of(scene);
         let family = self.axis.map(|axis| axis.family(scene));
         let direction = self.axis.and_then(|axis| axis.direction);
         let has_rotated = self.direction.zip(direction).is_some_and(|(a, b)| {
@@ -285,7 +285,7 @@ impl Trace {
     }
 
     /// Returns the most informative quantities of the curve, chosen once, when the first results are known.
-    fn usual(&mut self, axis: Axis) -> CurvePlot {
+    fn usual(&mut self, axis: TraceAxis) -> CurvePlot {
         let known: Vec<Vector2<f64>> = self.exact_at(axis.magnitude).into_iter().collect();
         let curved = |s: &&(PaneSetting, Vec<Dot>)| s.0.method != Some(MethodKind::Linear);
         let answers =
@@ -298,7 +298,7 @@ impl Trace {
     }
 
     /// Returns the figure of the panes' curves, and their results for the current load.
-    fn figure(&self, axis: Axis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
+    fn figure(&self, axis: TraceAxis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
         let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
         let exact = |all: &[Exact]| -> Vec<FigurePoint> {
             let seen = all.iter().filter(|(load, _)| *load <= 1.001 * reach);
@@ -390,7 +390,7 @@ impl Trace {
     fn set_load(
         &self,
         response: PlotResponse<()>,
-        axis: Axis,
+        axis: TraceAxis,
         scene: &Scene,
         drawn: &Figure,
         actions: &mut Vec<Action>,

@@ -21,24 +21,24 @@ use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 /// Reason for which a figure is not saved.
 #[derive(Debug, Error)]
 #[error("{}", Sentence::from(self))]
-pub(crate) enum SaveError {
+pub(crate) enum FigureSaveError {
     NoFile(#[from] std::io::Error),
     File { path: PathBuf, reason: std::io::Error },
     Picture(#[from] PictureError),
 }
 
-impl From<&SaveError> for Sentence {
-    fn from(error: &SaveError) -> Self {
+impl From<&FigureSaveError> for Sentence {
+    fn from(error: &FigureSaveError) -> Self {
         match error {
-            SaveError::NoFile(error) => error.to_string().into(),
-            SaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
-            SaveError::Picture(error) => error.to_string().into(),
+            FigureSaveError::NoFile(error) => error.to_string().into(),
+            FigureSaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
+            FigureSaveError::Picture(error) => error.to_string().into(),
         }
     }
 }
 
 /// Saves a figure in the current folder under the first free name, and returns its path.
-pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveError> {
+pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, FigureSaveError> {
     let new = NewFile::create(Path::new(""), file.extension())?;
     let bytes = match file {
         FigureFile::Csv => figure.csv().into_bytes(),
@@ -48,7 +48,7 @@ pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, SaveErr
     let path = new.path().to_owned();
     match files::save(&path, &bytes) {
         Ok(()) => Ok(path),
-        Err(reason) => Err(SaveError::File { path, reason }),
+        Err(reason) => Err(FigureSaveError::File { path, reason }),
     }
 }
 

@@ -6,7 +6,7 @@ use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, Pl
 use realfft::RealFftPlanner;
 
 use crate::app::language::{fill, tr};
-use crate::app::session::history::{History, Sample};
+use crate::app::session::history::{History, MotionSample};
 use crate::app::session::playback::Playback;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::Palette;
@@ -90,8 +90,8 @@ fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'st
     still(palette, id, x, y).legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
 }
 
-fn thinned(history: &History, point: impl Fn(&Sample) -> [f64; 2]) -> Vec<PlotPoint> {
-    let samples: Vec<&Sample> = history.last(SHOWN).collect();
+fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
+    let samples: Vec<&MotionSample> = history.last(SHOWN).collect();
     let stride = samples.len().div_ceil(MAX_POINTS).max(1);
     let kept = samples.iter().rev().step_by(stride);
     kept.map(|s| PlotPoint::from(point(s))).collect()
@@ -119,7 +119,7 @@ fn curves(plot: &mut PlotUi<'_>, lines: impl Iterator<Item = (IntegratorKind, Ve
 }
 
 /// Name of a kind of energy, its colour, and the function that returns its value, J.
-type EnergyKind = (&'static str, Color32, fn(&Sample) -> f64);
+type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
 
 fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)], cursor: Option<f64>) {
     let palette = Palette::new(ui.visuals());

@@ -2,7 +2,7 @@
 
 use egui::{Painter, Ui};
 
-use super::{Learn, Needs, Shown, View, area, code, exploded, frames, locking, matrices, residuals, trade};
+use super::{CardView, Learn, Needs, Shown, area, code, exploded, frames, locking, matrices, residuals, trade};
 use crate::app::action::Action;
 use crate::scene::{Load, MethodKind, Scene};
 use crate::simulation::Field;
@@ -24,7 +24,7 @@ pub(crate) struct Card {
     /// Shows numbers and controls next to the text.
     pub show: fn(&mut Ui, &Shown<'_>, &mut Learn, &mut Vec<Action>),
     /// Paints over the body.
-    pub paint: fn(&Painter, &View<'_>, &Learn),
+    pub paint: fn(&Painter, &CardView<'_>, &Learn),
     /// `true` if the elements are drawn apart from each other.
     pub apart: bool,
     /// `true` if a step goes to the next line of the pseudocode.
@@ -40,7 +40,7 @@ pub(crate) struct Setup {
     /// `true` if the outline of the reference solution is shown, and (`rest`) the outline at rest.
     pub exact: bool,
     pub rest: bool,
-    pub start: Start,
+    pub start: CardStart,
     /// Edits the scene so that it has the largest body that the card's slider reaches: the view leaves room for it from
     /// the beginning.
     pub reach: Option<fn(&mut Scene)>,
@@ -48,7 +48,7 @@ pub(crate) struct Setup {
 
 /// Start of the iteration to the equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Start {
+pub(crate) enum CardStart {
     /// From the current state.
     Now,
     /// From rest.
@@ -70,7 +70,7 @@ fn with(scene: &mut Scene, method: MethodKind, force: f64) {
     }
 }
 
-fn nothing(_: &Painter, _: &View<'_>, _: &Learn) {}
+fn nothing(_: &Painter, _: &CardView<'_>, _: &Learn) {}
 
 /// All cards, in the order of the article.
 pub(crate) const CARDS: &[Card] = &[
@@ -88,7 +88,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::LargestStrain,
             exact: true,
             rest: true,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: Some(|scene| with(scene, MethodKind::Linear, area::LARGEST_FORCE)),
         },
         needs: Needs::Nothing,
@@ -111,7 +111,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -133,7 +133,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::LargestStrain,
             exact: false,
             rest: false,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -156,7 +156,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -180,7 +180,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: Start::Waiting,
+            start: CardStart::Waiting,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -203,7 +203,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: false,
             rest: true,
-            start: Start::Waiting,
+            start: CardStart::Waiting,
             reach: None,
         },
         needs: Needs::Rho,
@@ -226,7 +226,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: false,
             rest: true,
-            start: Start::Rest,
+            start: CardStart::Rest,
             reach: None,
         },
         needs: Needs::Rho,
@@ -248,7 +248,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: true,
             rest: true,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: None,
         },
         needs: Needs::Errors,
@@ -271,7 +271,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: true,
             rest: true,
-            start: Start::Now,
+            start: CardStart::Now,
             reach: None,
         },
         needs: Needs::Nothing,

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::frames::{angle_text, paint_picked};
 use super::triangle::{Triangle, frames};
-use super::{Learn, NOT_TRIANGLES, Shown, View, not_triangles};
+use super::{CardView, Learn, NOT_TRIANGLES, Shown, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
 use crate::app::widgets::palette::{Palette, SMALL};
@@ -35,7 +35,7 @@ fn mean(points: &[Vector2<f64>]) -> Vector2<f64> {
 }
 
 /// Paints the rest shape of every element at its position in the exploded view.
-pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
+pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
     let mesh = view.simulation.system().mesh();
     let strength = learn.rotation_part as f32;
     if strength > 0.0 && !view.is_fine() {

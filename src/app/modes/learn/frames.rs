@@ -4,7 +4,7 @@ use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, 
 use nalgebra::{Matrix2, Vector2};
 
 use super::triangle::{Triangle, frames};
-use super::{Learn, NOT_TRIANGLES, Shown, View, formula, not_triangles};
+use super::{CardView, Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, tr};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
@@ -14,7 +14,7 @@ use crate::rotation::Rotation;
 const SHORTEST: f32 = 5.0;
 
 /// Paints the axes of every element's frame.
-pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
+pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
     let rotations = if view.is_fine() { Vec::new() } else { frames(view.simulation) };
     for (element, rotation) in rotations.into_iter().enumerate() {
         let corners = view.corners(element);
@@ -36,7 +36,7 @@ pub(super) fn paint(painter: &Painter, view: &View<'_>, learn: &Learn) {
 }
 
 /// Paints the outline of the selected element.
-pub(super) fn paint_picked(painter: &Painter, view: &View<'_>, learn: &Learn) {
+pub(super) fn paint_picked(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
     let corners = view.corners(learn.picked);
     if corners.len() >= 3 {
         painter.add(Shape::closed_line(corners.clone(), Stroke::new(5.0, view.palette.canvas)));

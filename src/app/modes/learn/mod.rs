@@ -32,7 +32,7 @@ mod residuals;
 mod trade;
 mod triangle;
 
-pub(crate) use cards::{CARDS, Card, Start};
+pub(crate) use cards::{CARDS, Card, CardStart};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
 use locking::ElementError;
@@ -113,7 +113,7 @@ pub(crate) struct Shown<'a> {
 }
 
 /// View that a card paints over.
-pub(crate) struct View<'a> {
+pub(crate) struct CardView<'a> {
     pub simulation: &'a Simulation,
     pub geometry: &'a DisplayGeometry,
     /// Positions of the drawn points, m.
@@ -123,7 +123,7 @@ pub(crate) struct View<'a> {
     pub palette: Palette,
 }
 
-impl View<'_> {
+impl CardView<'_> {
     /// Returns the window position of a point of the plane.
     fn place(&self, p: Vector2<f64>) -> Pos2 {
         let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
@@ -242,7 +242,7 @@ impl Learn {
     }
 
     /// Selects the element that is drawn at a position in the window.
-    pub(crate) fn pick(&mut self, view: &View<'_>, at: Pos2) {
+    pub(crate) fn pick(&mut self, view: &CardView<'_>, at: Pos2) {
         let place = |p: u32| view.points.get(p as usize).map(|&p| view.place(p));
         let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
         let found = view.geometry.triangles.iter().position(|corners| {
@@ -257,7 +257,7 @@ impl Learn {
     }
 
     /// Paints over the body.
-    pub(crate) fn paint(&self, painter: &Painter, view: &View<'_>) {
+    pub(crate) fn paint(&self, painter: &Painter, view: &CardView<'_>) {
         (self.card().paint)(painter, view, self);
     }
 

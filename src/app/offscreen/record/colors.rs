@@ -7,7 +7,7 @@ use quantizr::{Image, Options, QuantizeResult};
 
 use crate::image::Picture;
 
-type Color = [u8; 3];
+type Rgb = [u8; 3];
 
 /// Largest number of colours of a GIF.
 const MAX_COLORS: usize = 256;
@@ -17,16 +17,16 @@ const EXACT: usize = 32;
 
 /// At most 256 colours that represent all colours.
 #[derive(Debug)]
-pub(super) struct Palette {
-    colors: Vec<Color>,
+pub(super) struct GifPalette {
+    colors: Vec<Rgb>,
     /// Indices of colours looked up so far, with `true` for those whose nearest palette colour differs visibly.
-    known: HashMap<Color, (u8, bool)>,
+    known: HashMap<Rgb, (u8, bool)>,
 }
 
-impl Palette {
+impl GifPalette {
     /// Makes a palette for pictures like these.
     pub(super) fn of(pictures: &[Picture]) -> Self {
-        let mut counts: HashMap<Color, u64> = HashMap::new();
+        let mut counts: HashMap<Rgb, u64> = HashMap::new();
         for color in pictures.iter().flat_map(colors) {
             *counts.entry(color).or_default() += 1;
         }
@@ -34,7 +34,7 @@ impl Palette {
         // Sorted by frequency, then by value, so that the result is the same in every run.
         counts.sort_by_key(|&(color, count)| (std::cmp::Reverse(count), color));
         let rare = counts.split_off(counts.len().min(if counts.len() > MAX_COLORS { EXACT } else { MAX_COLORS }));
-        let mut palette: Vec<Color> = counts.into_iter().map(|(color, _)| color).collect();
+        let mut palette: Vec<Rgb> = counts.into_iter().map(|(color, _)| color).collect();
         palette.extend(quantized(&rare, MAX_COLORS - palette.len()));
         if palette.is_empty() {
             palette.push([0; 3]);
@@ -73,15 +73,15 @@ impl Palette {
     }
 }
 
-fn colors(picture: &Picture) -> impl Iterator<Item = Color> {
+fn colors(picture: &Picture) -> impl Iterator<Item = Rgb> {
     picture.rgba.as_chunks().0.iter().map(|&[r, g, b, _]: &[u8; 4]| [r, g, b])
 }
 
 /// Returns the index of the nearest colour, and `true` if it differs visibly.
-fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
+fn nearest(palette: &[Rgb], color: Rgb) -> (u8, bool) {
     /// Squared distance above which colours differ visibly: about 20 of 255 in every channel.
     const FAR: u32 = 4000;
-    let distance = |other: &Color| -> u32 {
+    let distance = |other: &Rgb| -> u32 {
         // The eye is most sensitive to green, and least to blue.
         other.iter().zip(color).zip([3, 6, 1]).map(|((&a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
     };
@@ -90,7 +90,7 @@ fn nearest(palette: &[Color], color: Color) -> (u8, bool) {
 }
 
 /// Means of groups of similar colours, of which a frequent one weighs more than a rare one.
-fn quantized(colors: &[(Color, u64)], most: usize) -> Vec<Color> {
+fn quantized(colors: &[(Rgb, u64)], most: usize) -> Vec<Rgb> {
     // The square root of the count: rare colours of the body matter beside the large areas of the background. It also keeps
     // sums of colours exact in quantizr's single precision, which would else cut groups of a single colour.
     let pixels = colors.iter().flat_map(|&([r, g, b], count)| repeat_n([r, g, b, u8::MAX], count.isqrt() as usize));
@@ -109,7 +109,7 @@ fn quantized(colors: &[(Color, u64)], most: usize) -> Vec<Color> {
 mod tests {
     use super::*;
 
-    fn picture(colors: impl Iterator<Item = Color>) -> Picture {
+    fn picture(colors: impl Iterator<Item = Rgb>) -> Picture {
         let rgba: Vec<u8> = colors.flat_map(|[r, g, b]| [r, g, b, 255]).collect();
         Picture { size: [rgba.len() as u32 / 4, 1], rgba }
     }
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn few_colours_stay_as_they_are() {
         let few = picture((0..200).map(|i| [i, 255 - i, 7]));
-        let mut palette = Palette::of(std::slice::from_ref(&few));
+        let mut palette = GifPalette::of(std::slice::from_ref(&few));
         let mut indices = Vec::new();
         palette.indices(&few, &mut indices);
         for (pixel, index) in few.rgba.chunks(4).zip(&indices) {
@@ -131,7 +131,7 @@ mod tests {
         // A gradient, another gradient that is wide, and a large background.
         let gradient = (0..4000_u32).map(|i| [(i / 16) as u8, (i / 20) as u8, 128 - (i / 40) as u8]);
         let many = picture(gradient.chain(std::iter::repeat_n(background, 9000)));
-        let mut palette = Palette::of(std::slice::from_ref(&many));
+        let mut palette = GifPalette::of(std::slice::from_ref(&many));
         assert!(palette.bytes().len() <= 3 * MAX_COLORS);
         let mut indices = Vec::new();
         palette.indices(&many, &mut indices);
@@ -144,6 +144,6 @@ mod tests {
 
     #[test]
     fn no_picture_has_a_palette_too() {
-        assert_eq!(Palette::of(&[]).bytes(), [0, 0, 0]);
+        assert_eq!(GifPalette::of(&[]).bytes(), [0, 0, 0]);
     }
 }

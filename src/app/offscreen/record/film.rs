@@ -6,7 +6,7 @@ use std::io::{BufWriter, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::RecordError;
-use super::colors::Palette;
+use super::colors::GifPalette;
 use crate::image::Picture;
 
 /// Format of a recording.
@@ -92,7 +92,7 @@ pub(super) struct Film {
 
 struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
-    palette: Palette,
+    palette: GifPalette,
     /// `true` if a frame whose colours are missing in the palette gets a new palette.
     adapts: bool,
     /// `true` if the current palette is not the one at the beginning of the file.
@@ -135,7 +135,7 @@ impl Film {
         let file = || Ok(BufWriter::new(File::create(path).map_err(|e| failed(&e))?));
         let gif = match format {
             MovieFormat::Gif => {
-                let palette = Palette::of(samples);
+                let palette = GifPalette::of(samples);
                 // A side of a frame has at most 8192 pixels.
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
@@ -226,7 +226,7 @@ impl Gif {
         let Self { encoder, palette, adapts, is_local, before, now } = self;
         let poor = palette.indices(picture, now);
         if *adapts && poor as f64 > MAX_POOR * now.len() as f64 {
-            *palette = Palette::of(std::slice::from_ref(picture));
+            *palette = GifPalette::of(std::slice::from_ref(picture));
             palette.indices(picture, now);
             *is_local = true;
             before.clear();

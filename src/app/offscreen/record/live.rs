@@ -11,7 +11,7 @@ use egui_wgpu::ScreenDescriptor;
 use super::RecordError;
 use super::film::{Film, MovieFormat};
 use crate::app::language::{self, Language, count, fill, said, tr};
-use crate::app::offscreen::painter::Stage;
+use crate::app::offscreen::painter::PaintStage;
 use crate::app::platform::new_file::NewFile;
 use crate::app::task::thread::{Task, Update};
 use crate::image::Picture;
@@ -105,7 +105,7 @@ impl LiveRecording {
     pub(crate) fn take(
         &mut self,
         gpu: &Gpu,
-        stage: &mut Stage,
+        stage: &mut PaintStage,
         (views, primitives): (&[View<'_>], &[ClippedPrimitive]),
         screen: &ScreenDescriptor,
         (number, now): (u64, f64),
@@ -340,7 +340,7 @@ mod tests {
         let source = Source { name: "swing".into(), assignments: Vec::new() };
         let scene = open(&source).unwrap();
         let mut lab = Lab::new(source, scene.clone(), Simulation::new(&scene).unwrap());
-        let (ctx, mut stage) = (egui::Context::default(), Stage::new(&gpu, FORMAT));
+        let (ctx, mut stage) = (egui::Context::default(), PaintStage::new(&gpu, FORMAT));
         let screen = ScreenDescriptor { size_in_pixels: [640, 400], pixels_per_point: 1.0 };
         let mut recording = LiveRecording::start(&gpu, FORMAT, [640, 400], file, Language::English).unwrap();
         let (frames, between) = (60, 0.03);

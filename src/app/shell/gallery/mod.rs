@@ -29,17 +29,17 @@ const WIDEST: f32 = 420.0;
 const NARROWEST: f32 = 340.0;
 
 /// Built-in scene in the gallery.
-struct Entry {
+struct GalleryEntry {
     id: &'static str,
     name: String,
     about: String,
     analysis: Analysis,
 }
 
-static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
+static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {
     let entry = |built_in: &registry::BuiltIn| {
         let Scene { name, about, analysis, .. } = Scene::from_toml(built_in.toml).ok()?;
-        Some(Entry { id: built_in.id, name, about, analysis })
+        Some(GalleryEntry { id: built_in.id, name, about, analysis })
     };
     registry::BUILT_IN.iter().filter_map(entry).collect()
 });
@@ -51,13 +51,13 @@ const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "Dynamic"), (Analysis
 #[derive(Debug, Default)]
 pub(crate) struct Gallery {
     thumbnails: BTreeMap<&'static str, Thumbnail>,
-    work: Work,
+    work: ThumbnailState,
     is_open: bool,
 }
 
 /// State of the work on the thumbnails.
 #[derive(Debug, Default)]
-enum Work {
+enum ThumbnailState {
     #[default]
     NotBegun,
     Running(Task<Made, ()>),
@@ -67,18 +67,18 @@ enum Work {
 impl Gallery {
     /// Receives the thumbnails that are ready; starts the work on the first call.
     fn poll(&mut self, ctx: &Context) {
-        if matches!(self.work, Work::NotBegun) {
+        if matches!(self.work, ThumbnailState::NotBegun) {
             // If the thread cannot be started, the gallery shows names and descriptions only.
-            self.work = Task::run(ThumbnailWork).map_or(Work::Ended, Work::Running);
+            self.work = Task::run(ThumbnailWork).map_or(ThumbnailState::Ended, ThumbnailState::Running);
         }
-        while let Work::Running(task) = &self.work {
+        while let ThumbnailState::Running(task) = &self.work {
             match task.poll() {
                 Update::Progress((number, thumbnail)) => {
                     let built_in = registry::BUILT_IN.get(number);
                     self.thumbnails.extend(built_in.map(|built_in| (built_in.id, thumbnail)));
                 }
                 Update::None => return ctx.request_repaint_after(POLL),
-                Update::Done(()) | Update::Died => self.work = Work::Ended,
+                Update::Done(()) | Update::Died => self.work = ThumbnailState::Ended,
             }
         }
     }
@@ -120,7 +120,7 @@ impl Gallery {
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
             ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
-            let group: Vec<&Entry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
+            let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
             for row in group.chunks(columns) {
                 ui.horizontal(|ui| {
                     for entry in row {
@@ -143,7 +143,7 @@ impl Gallery {
         }
     }
 
-    fn entry(&self, ui: &mut Ui, palette: &Palette, entry: &Entry, width: f32, is_present: bool) -> Response {
+    fn entry(&self, ui: &mut Ui, palette: &Palette, entry: &GalleryEntry, width: f32, is_present: bool) -> Response {
         const PADDING: f32 = 6.0;
         const TEXT: f32 = 12.0;
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());
@@ -200,8 +200,8 @@ mod tests {
     fn thumbnails_are_computed_in_the_background() {
         let ctx = Context::default();
         let mut gallery = Gallery::default();
-        assert!(matches!(gallery.work, Work::NotBegun), "nothing is made before it is opened");
-        while !matches!(gallery.work, Work::Ended) {
+        assert!(matches!(gallery.work, ThumbnailState::NotBegun), "nothing is made before it is opened");
+        while !matches!(gallery.work, ThumbnailState::Ended) {
             gallery.poll(&ctx);
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
