@@ -67,7 +67,7 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
     let simulation = input.simulation;
     let time = input.solve_time.filter(|_| simulation.status().is_success());
-    let seconds = time.map_or(0.0, |time| (time.total() - time.certify).as_secs_f64());
+    let seconds = time.map_or(0.0, |time| time.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let mut entries = vec![

@@ -196,13 +196,7 @@ impl Arrow {
         } else {
             paint_arrow(painter, self.from, self.vector, faint)
         };
-        // A ring around the tip shows that it can be grabbed.
-        let grip = tip - direction * 6.0;
-        if is_hot {
-            painter.circle(grip, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
-        } else {
-            painter.circle_stroke(grip, 8.5, Stroke::new(1.0, faint.gamma_multiply(0.6)));
-        }
+        paint_grip(painter, tip - direction * 6.0, faint, is_hot);
         let label = engineering(self.magnitude, "N");
         let (anchor, at) = label_place(tip, direction);
         boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
@@ -235,13 +229,21 @@ fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
     (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
 }
 
+/// Paints the ring that shows where an arrow can be grabbed; filled while the pointer is over it.
+pub(crate) fn paint_grip(painter: &Painter, at: Pos2, color: Color32, is_hot: bool) {
+    if is_hot {
+        painter.circle(at, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
+    } else {
+        painter.circle_stroke(at, 8.5, Stroke::new(1.0, color.gamma_multiply(0.6)));
+    }
+}
+
 /// Length of the head of an arrow, and its half width, points.
 const HEAD: [f32; 2] = [12.0, 5.04];
 
 /// Paints an arrow with the vector `vector` at `from`, and returns its tip.
 pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    let [tip, neck, side] = head(from, vector);
-    let side = side - neck;
+    let (tip, neck, side) = head(from, vector);
     painter.line_segment([from, neck], Stroke::new(3.0, color));
     painter.add(Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
     tip
@@ -251,21 +253,20 @@ pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Co
 fn paint_outline(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
     /// Half width of the shaft as a fraction of that of the head.
     const SHAFT: f32 = 0.45;
-    let [tip, neck, side] = head(from, vector);
-    let side = side - neck;
+    let (tip, neck, side) = head(from, vector);
     let shaft = SHAFT * side;
     let line = [from + shaft, neck + shaft, neck + side, tip, neck - side, neck - shaft, from - shaft];
     painter.add(Shape::closed_line(line.to_vec(), Stroke::new(1.5, color)));
     tip
 }
 
-/// Returns the tip of an arrow, the middle of the head's base, and a corner of it.
-fn head(from: Pos2, vector: Vec2) -> [Pos2; 3] {
+/// Returns the tip of an arrow, the middle of the head's base, and the vector from there to a corner.
+fn head(from: Pos2, vector: Vec2) -> (Pos2, Pos2, Vec2) {
     let direction = vector.normalized();
     let [length, width] = HEAD;
     let tip = from + vector;
     let neck = tip - direction * length;
-    [tip, neck, neck + vec2(-direction.y, direction.x) * width]
+    (tip, neck, vec2(-direction.y, direction.x) * width)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
-use crate::app::viewport::arrow::{MIN_SPAN, NEAR, power_of_ten_above};
+use crate::app::viewport::arrow::{MIN_SPAN, paint_grip, power_of_ten_above};
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
@@ -127,13 +127,7 @@ impl MomentArrow {
         let sweep = self.sweep();
         let faint = if self.moment == 0.0 && !is_hot { color.gamma_multiply(0.55) } else { color };
         let (end, along) = self.paint_arrow(painter, faint, if is_outline { 1.0 } else { 3.0 });
-        // A ring around the end shows that it can be grabbed.
-        let grip = end + along * 3.0;
-        if is_hot {
-            painter.circle(grip, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
-        } else {
-            painter.circle_stroke(grip, 8.5, Stroke::new(1.0, faint.gamma_multiply(0.6)));
-        }
+        paint_grip(painter, end + along * 3.0, faint, is_hot);
         let below = (RADIUS + PITCH * (sweep.abs() / TAU).ceil() + 12.0) as f32;
         let label = engineering(self.moment, "N m");
         boxed_text(painter, self.center + vec2(0.0, below), Align2::CENTER_TOP, &label, visuals, faint, 200.0);

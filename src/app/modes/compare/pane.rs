@@ -56,8 +56,7 @@ impl Pane {
     /// Returns the time of the solve from rest, s; `None` until it has been measured.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
-        let time = self.time.get(&self.timed_scene()?)?;
-        Some((time.total() - time.certify).as_secs_f64())
+        Some(self.time.get(&self.timed_scene()?)?.total().as_secs_f64())
     }
 
     /// Returns the scene whose solve is timed: it ends after the setting's number of iterations.
