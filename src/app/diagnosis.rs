@@ -9,6 +9,7 @@ use crate::method::{floor_text, rho_text};
 use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
+use crate::stress::strain_warning;
 use crate::study::Reference;
 
 /// Definition of the energy drift, as shown in the user interface.
@@ -69,10 +70,28 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     Errors { own: own.map(|(error, _)| error), linear, source }
 }
 
+/// Errors above this value, percent, are large: they need a remedy.
+const LARGE_ERROR: f64 = 5.0;
+
+/// Returns a reason to doubt a result whose error is small, in a few words that stand beside the error; `None` if there
+/// is none, or no small error.
+pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
+    errors.own.filter(|own| *own <= LARGE_ERROR && *input.simulation.status() == Status::Converged)?;
+    if input.quality.is_inside_out(input.simulation) {
+        return Some(tr("inverted elements").to_owned());
+    }
+    let strain = input.quality.max_strain;
+    if strain_warning(strain).is_some() {
+        return Some(fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    }
+    let off = input.reference?.beam_off_by_percent?;
+    Some(fill!("beam theory differs by %{off}", off = percent(off)))
+}
+
 /// Returns the colour of an error, percent.
 pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
     match error {
-        Some(error) if error > 5.0 => palette.error,
+        Some(error) if error > LARGE_ERROR => palette.error,
         Some(error) if error > 1.0 => palette.warning,
         Some(_) => palette.good,
         None => palette.secondary,
@@ -260,8 +279,6 @@ pub(crate) struct Remedy {
 
 /// Returns the most effective remedy; `None` if nothing is wrong or no edit helps.
 pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
-    /// Errors above this value, percent, need a remedy.
-    const LARGE: f64 = 5.0;
     let (simulation, scene) = (input.simulation, input.scene);
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         return None;
@@ -282,7 +299,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
         return Some(Remedy { text, offer, action: Action::Reset });
     }
-    let off = errors.own.filter(|&error| error > LARGE)?;
+    let off = errors.own.filter(|&error| error > LARGE_ERROR)?;
     let off = percent(off);
     if errors.source == Some(ErrorSource::Theory) {
         return Some(with_newton(fill!("%{error} error: linear theory holds for small rotations only.", error = off)));

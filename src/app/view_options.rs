@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::scene::{Analysis, Scene};
-use crate::simulation::Field;
+use crate::simulation::{Field, PointValues};
 
 /// Mode of the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -194,9 +194,9 @@ impl Default for ViewOptions {
 }
 
 impl ViewOptions {
-    /// Returns `true` if the field is drawn from values recovered at the nodes.
-    pub(crate) fn is_smooth(&self) -> bool {
-        !self.raw && !self.field.is_of_elements()
+    /// Returns the source of the displayed values.
+    pub(crate) fn point_values(&self) -> PointValues {
+        if self.raw { PointValues::Raw } else { PointValues::Recovered }
     }
 
     /// Shows what is hidden and hides what is shown; opening a drawer closes the other one.

@@ -139,7 +139,8 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
 /// Returns sentences about the limitations of a result that are found without a reference solution.
 fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
-    let Deformation { max_strain, inverted_elements, .. } = Deformation::of(simulation.problem(), simulation.state());
+    let Deformation { max_strain, inverted_elements, .. } =
+        Deformation::of(simulation.problem(), simulation.state(), simulation.kinematics());
     let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
     limits.extend(inversion.iter().chain(&strain_warning(max_strain)).map(ToString::to_string));
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));

@@ -9,6 +9,9 @@ use super::body::{BodyRenderer, Frame, View, Viewport};
 use super::camera::Camera;
 use super::colormap::ColorMap;
 use super::{FORMAT, Gpu, RenderError};
+use crate::assembly::Kinematics;
+use crate::scene::Material;
+use crate::simulation::Field;
 
 /// Environment variable with the names of the backends to be used.
 const BACKEND: &str = "WGPU_BACKEND";
@@ -322,7 +325,11 @@ impl Gpu {
             stamp: 0,
             positions: &corners,
             triangles: &[[0, 1, 2], [0, 2, 3]],
-            values: &[[None; 3]; 2],
+            field: Field::default(),
+            components: &[],
+            largest_component: 0.0,
+            material: Material::default(),
+            kinematics: Kinematics::Corotated,
             absent_color: BODY,
             range: [0.0, 1.0],
             map: ColorMap::default(),

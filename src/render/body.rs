@@ -1,25 +1,38 @@
 //! Render pass of the bodies: coloured triangles and the wireframe, multisampled, drawn directly into the frame.
 
 use bytemuck::{Pod, Zeroable};
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
-use super::colormap::{self, ColorMap};
+use super::colormap::ColorMap;
 use super::{Camera, Gpu};
+use crate::assembly::Kinematics;
+use crate::rotation::Rotation;
+use crate::scene::Material;
+use crate::simulation::Field;
+use crate::stress::Local;
 
 /// Input for drawing a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Revision number of positions, triangles, values and lines; equal values reuse the GPU upload.
+    /// Revision number of positions, triangles, components and lines; equal numbers reuse the GPU upload.
     pub stamp: u64,
     /// Node positions, m.
     pub positions: &'a [Vector2<f64>],
     /// Triangles, as indices of nodes.
     pub triangles: &'a [[u32; 3]],
-    /// Values at the corners of every triangle, interpolated linearly; `None` if there is no value.
-    pub values: &'a [[Option<f64>; 3]],
-    /// Colour of triangles without values, gamma space.
+    /// Displayed field.
+    pub field: Field,
+    /// Components of the field at every position, which are interpolated; see [`Field::components`].
+    pub components: &'a [Option<[f64; 3]>],
+    /// Largest magnitude of a component.
+    pub largest_component: f64,
+    /// Material of the body.
+    pub material: Material,
+    /// Strain measure of the state.
+    pub kinematics: Kinematics,
+    /// Colour where the field has no value, gamma space.
     pub absent_color: [u8; 3],
-    /// Values at both ends of the colour map.
+    /// Values of the field at both ends of the colour map.
     pub range: [f64; 2],
     /// The colour map.
     pub map: ColorMap,
@@ -70,9 +83,17 @@ pub struct View<'a> {
 #[repr(C)]
 struct Vertex {
     position: [f32; 2],
+    /// Opaque: the colour of the vertex. Transparent: the colour where the field has no value.
     color: [u8; 4],
-    /// Position of the value in the colour map, 0 to 1; negative if `color` is used instead.
-    value: f32,
+    /// Components of the field, relative to the largest.
+    components: [f32; 3],
+}
+
+impl Vertex {
+    /// Returns a vertex with a colour of its own.
+    fn colored(position: [f32; 2], color: [u8; 4]) -> Self {
+        Self { position, color, components: [0.0; 3] }
+    }
 }
 
 /// Inputs that the vertices of a view were computed from.
@@ -83,6 +104,7 @@ struct Uploaded {
     pixels_per_point: f64,
     /// Size of the view, pixels.
     size: [u32; 2],
+    field: (Field, Material, Kinematics),
     range: [f64; 2],
     lines: usize,
     colors: [[u8; 3]; 2],
@@ -91,35 +113,74 @@ struct Uploaded {
     parts: [u32; 3],
 }
 
-/// Value of a vertex whose own colour is used.
-const COLORED: f32 = -1.0;
 /// Number of samples of the colour map in the shader.
 const MAP_COLORS: usize = 64;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-struct CameraUniform {
+struct ViewUniform {
     scale: [f32; 2],
-    padding: [f32; 2],
+    range: [f32; 2],
+    lambda: f32,
+    mu: f32,
+    thinning: f32,
+    out_of_plane: f32,
+    unit: f32,
+    field: u32,
+    /// WebGL needs multiples of 16 bytes.
+    padding: [u32; 2],
 }
 
-/// Uniform buffer of a camera, and its bind group.
+impl ViewUniform {
+    /// Returns the uniform of a body, with clip space units per metre.
+    fn new(frame: &Frame<'_>, scale: [f32; 2]) -> Self {
+        let (material, lame) = (frame.material, frame.material.lame());
+        // Rounding in f32 does not depend on units if components and values are of order 1.
+        let unit = if frame.largest_component > 0.0 { frame.largest_component } else { 1.0 };
+        let stress = material.young * unit;
+        let (field, value) = match (frame.field, frame.kinematics) {
+            (Field::RotationAngle, _) => (1, 1.0),
+            (Field::LargestStrain, _) => (2, unit),
+            (Field::EnergyDensity, _) => (3, stress * unit),
+            (Field::BiotVonMises, _) | (Field::VonMises, Kinematics::Linear) => (4, stress),
+            (Field::VonMises, Kinematics::Corotated) => (5, stress),
+            (Field::MeshError, _) => (0, unit),
+        };
+        let [low, high] = frame.range.map(|end| end / value);
+        let range = [low, high - low].map(|v| v as f32);
+        let unit_trace = Local { strain: Matrix2::identity() * 0.5, rotation: Rotation::IDENTITY };
+        Self {
+            scale,
+            // The shader takes the middle of the colour map for an empty range.
+            range: if range.iter().all(|v| v.is_finite()) { range } else { [0.0; 2] },
+            lambda: (lame.lambda / material.young) as f32,
+            mu: (lame.mu / material.young) as f32,
+            thinning: -unit_trace.strain(&material).zz as f32,
+            out_of_plane: material.out_of_plane_stress(1.0) as f32,
+            unit: unit as f32,
+            field,
+            padding: [0; 2],
+        }
+    }
+}
+
+/// Uniform buffer of a view, and its bind group.
 #[derive(Debug)]
-struct CameraBinding {
+struct ViewBinding {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
 
-impl CameraBinding {
+impl ViewBinding {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, map: &wgpu::Buffer) -> Self {
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("camera"),
-            size: size_of::<CameraUniform>() as u64,
+            label: Some("view"),
+            size: size_of::<ViewUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("camera"),
+            label: Some("view"),
             layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
@@ -140,8 +201,8 @@ pub struct BodyRenderer {
     map: wgpu::Buffer,
     /// Colour map in the buffer `map`.
     uploaded_map: Option<ColorMap>,
-    /// Camera uniforms, one per view; created on first use.
-    cameras: Vec<CameraBinding>,
+    /// Uniforms, one per view; created on first use.
+    bindings: Vec<ViewBinding>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     /// Inputs of the vertices in the vertex buffer.
@@ -179,8 +240,8 @@ impl BodyRenderer {
             count: None,
         };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("camera"),
-            entries: &[uniform(0, wgpu::ShaderStages::VERTEX), uniform(1, wgpu::ShaderStages::FRAGMENT)],
+            label: Some("view"),
+            entries: &[uniform(0, wgpu::ShaderStages::VERTEX_FRAGMENT), uniform(1, wgpu::ShaderStages::FRAGMENT)],
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("body"),
@@ -198,7 +259,7 @@ impl BodyRenderer {
                     buffers: &[Some(wgpu::VertexBufferLayout {
                         array_stride: size_of::<Vertex>() as u64,
                         step_mode: wgpu::VertexStepMode::Vertex,
-                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Float32],
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Unorm8x4, 2 => Float32x3],
                     })],
                 },
                 primitive: wgpu::PrimitiveState { topology, ..Default::default() },
@@ -223,7 +284,7 @@ impl BodyRenderer {
             layout,
             map,
             uploaded_map: None,
-            cameras: Vec::new(),
+            bindings: Vec::new(),
             vertices: Self::vertex_buffer(gpu, 1024),
             scratch: Vec::new(),
             uploaded: Vec::new(),
@@ -294,7 +355,7 @@ impl BodyRenderer {
         });
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         let mut first = 0;
-        for ((view, uploaded), binding) in views.iter().zip(&self.uploaded).zip(&self.cameras) {
+        for ((view, uploaded), binding) in views.iter().zip(&self.uploaded).zip(&self.bindings) {
             let Viewport { corner: [x, y], size: [width, height] } = view.viewport;
             let [triangles, lines, end] = uploaded.parts;
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
@@ -310,13 +371,14 @@ impl BodyRenderer {
         }
     }
 
-    /// Uploads the vertices of all views, unless they are already uploaded, and the camera uniforms.
+    /// Uploads the vertices of all views and their uniforms, unless they are already uploaded.
     fn upload(&mut self, gpu: &Gpu, views: &[View<'_>], pixels_per_point: f64) {
         let wanted = |view: &View<'_>, parts| Uploaded {
             stamp: view.frame.stamp,
             camera: view.camera,
             pixels_per_point,
             size: view.viewport.size,
+            field: (view.frame.field, view.frame.material, view.frame.kinematics),
             range: view.frame.range,
             lines: view.frame.lines.len(),
             colors: [view.frame.background, view.frame.absent_color],
@@ -337,11 +399,11 @@ impl BodyRenderer {
             let parts = self.add_vertices(frame, camera, seen);
             self.uploaded.push(wanted(view, parts));
             let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
-            let uniform = CameraUniform { scale: clip_per_metre, padding: [0.0; 2] };
-            if self.cameras.len() == i {
-                self.cameras.push(CameraBinding::new(gpu, &self.layout, &self.map));
+            let uniform = ViewUniform::new(frame, clip_per_metre);
+            if self.bindings.len() == i {
+                self.bindings.push(ViewBinding::new(gpu, &self.layout, &self.map));
             }
-            gpu.queue.write_buffer(&self.cameras[i].uniform, 0, bytemuck::bytes_of(&uniform));
+            gpu.queue.write_buffer(&self.bindings[i].uniform, 0, bytemuck::bytes_of(&uniform));
         }
         let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
         if self.vertices.size() < bytes.len() as u64 {
@@ -361,15 +423,18 @@ impl BodyRenderer {
         let [r, g, b] = frame.background;
         let [x, y] = view.map(|side| (0.5 * side) as f32);
         let corners = [[-x, -y], [x, -y], [x, y], [-x, -y], [x, y], [-x, y]];
-        self.scratch.extend(corners.map(|position| Vertex { position, color: [r, g, b, 255], value: COLORED }));
+        self.scratch.extend(corners.map(|corner| Vertex::colored(corner, [r, g, b, 255])));
         let triangles = self.scratch.len() as u32;
         let [r, g, b] = frame.absent_color;
-        for (triangle, values) in frame.triangles.iter().zip(frame.values) {
-            // A triangle with a missing value at a corner is drawn without values.
-            let known = values.iter().all(Option::is_some);
-            self.scratch.extend(triangle.iter().zip(values).map(|(&node, value)| {
-                let at = value.filter(|_| known).map(|value| colormap::position(value, frame.range) as f32);
-                Vertex { position: position(node), color: [r, g, b, 255], value: at.unwrap_or(COLORED) }
+        let relative = |c: f64| if frame.largest_component > 0.0 { (c / frame.largest_component) as f32 } else { 0.0 };
+        for triangle in frame.triangles {
+            // A triangle whose components are missing at a corner is drawn without values.
+            let corners = triangle.map(|node| frame.components.get(node as usize).copied().flatten());
+            let is_known = corners.iter().all(Option::is_some);
+            self.scratch.extend(triangle.iter().zip(corners).map(|(&node, components)| Vertex {
+                position: position(node),
+                color: [r, g, b, if is_known { 0 } else { 255 }],
+                components: components.unwrap_or_default().map(relative),
             }));
         }
         let lines = self.scratch.len() as u32;
@@ -383,7 +448,7 @@ impl BodyRenderer {
             let strength = line_strength(height * camera.scale);
             if strength > 0.0 {
                 let color = [r, g, b, (f64::from(opacity) * strength) as u8];
-                self.scratch.extend(line.map(|node| Vertex { position: position(node), color, value: COLORED }));
+                self.scratch.extend(line.map(|node| Vertex::colored(position(node), color)));
             }
         }
         [triangles, lines, self.scratch.len() as u32]
@@ -403,7 +468,8 @@ fn line_strength(spacing: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::image::Picture;
-    use crate::render::{FORMAT, read_texture};
+    use crate::render::{FORMAT, colormap, read_texture};
+    use crate::scene::Plane;
 
     fn drawn(gpu: &Gpu, renderer: &mut BodyRenderer, views: &[View<'_>]) -> Picture {
         let size = [120, 80];
@@ -426,7 +492,11 @@ mod tests {
             stamp: 1,
             positions: &square,
             triangles: &[[0, 1, 2], [0, 2, 3]],
-            values: &[[Some(0.0), Some(0.2), Some(1.0)], [None; 3]],
+            field: Field::MeshError,
+            components: &[0.0, 0.2, 1.0, f64::NAN].map(|v| v.is_finite().then_some([v, 0.0, 0.0])),
+            largest_component: 1.0,
+            material: Material::default(),
+            kinematics: Kinematics::Corotated,
             absent_color: [90, 90, 90],
             range: [0.0, 1.0],
             map: ColorMap::SequentialOnDark,
@@ -464,6 +534,78 @@ mod tests {
             assert!(other.rgba == fresh.rgba, "change {i}: something from before is drawn");
             assert!(drawn(&gpu, &mut used, &[view]).rgba == shown.rgba, "change {i} stays");
         }
+    }
+
+    /// The shader computes the value at every pixel as [`Field::of_components`] does.
+    #[test]
+    fn pixels_have_the_colour_of_their_value() {
+        let gpu = Gpu::headless().unwrap();
+        let mut renderer = BodyRenderer::new(&gpu, FORMAT);
+        let corners = [[0.0, 0.0], [120.0, 0.0], [0.0, 80.0]].map(Vector2::from);
+        let viewport = Viewport { corner: [0, 0], size: [120, 80] };
+        let camera = Camera { center: Vector2::new(60.0, 40.0), scale: 1.0 };
+        // Bending with shear about a neutral axis through the triangle; a body that is inverted at a corner; and a large
+        // rotation.
+        let strains = [[1.0, -0.3, 0.2], [-0.8, 0.3, -0.1], [0.4, 0.2, 0.5]];
+        let inverted = [[-1.3, 0.1, 0.0], [0.2, 0.3, 0.1], [0.1, -0.2, 0.3]];
+        let turned = [2.8_f64, -0.4, 1.1].map(|angle| [angle.cos(), angle.sin(), 0.0]);
+        let (mut judged, mut absent) = (0, 0);
+        for (young, poisson, plane, size) in [
+            (1e6, 0.3, Plane::Stress, 0.2),
+            (210e9, 0.499, Plane::Strain, 1e-3),
+            (1e-3, -0.6, Plane::Strain, 0.3),
+            (7e10, 0.2, Plane::Stress, 1e-22),
+        ] {
+            let material = Material { young, poisson, plane, ..Material::default() };
+            let scaled = |strains: [[f64; 3]; 3], by: f64| strains.map(|own| own.map(|e| e * by));
+            let fields = Field::ALL.into_iter().flat_map(|field| match field {
+                Field::RotationAngle => vec![(field, turned)],
+                Field::VonMises => vec![(field, scaled(strains, size)), (field, inverted)],
+                _ => vec![(field, scaled(strains, size))],
+            });
+            for ((field, corners_components), kinematics) in
+                fields.flat_map(|it| [(it, Kinematics::Corotated), (it, Kinematics::Linear)])
+            {
+                let value = |components| field.of_components(components, &material, kinematics);
+                let largest = corners_components.iter().filter_map(|own| value(*own)).map(f64::abs).fold(0.0, f64::max);
+                let magnitudes = corners_components.as_flattened().iter().map(|c| c.abs());
+                let frame = Frame {
+                    stamp: 1 + judged,
+                    positions: &corners,
+                    triangles: &[[0, 1, 2]],
+                    field,
+                    components: &corners_components.map(Some),
+                    largest_component: magnitudes.fold(0.0, f64::max),
+                    material,
+                    kinematics,
+                    absent_color: [90, 90, 90],
+                    range: field.range(largest),
+                    map: ColorMap::SequentialOnDark,
+                    lines: &[],
+                    triangles_of_lines: &[],
+                    pieces: 1,
+                    line_color: [0; 4],
+                    background: [200, 0, 0],
+                    surround: [200, 0, 0],
+                };
+                let picture = drawn(&gpu, &mut renderer, &[View { viewport, frame, camera }]);
+                for (x, y) in [(4, 70), (10, 40), (30, 60), (50, 50), (80, 70), (100, 76), (3, 10), (40, 45)] {
+                    let at = [f64::from(x) + 0.5, 80.0 - (f64::from(y) + 0.5)];
+                    let (b, c) = (at[0] / 120.0, at[1] / 80.0);
+                    let weights = [1.0 - b - c, b, c];
+                    let own = [0, 1, 2].map(|i: usize| (0..3).map(|n| weights[n] * corners_components[n][i]).sum());
+                    let wanted = value(own)
+                        .map_or(frame.absent_color, |value| frame.map.color(colormap::position(value, frame.range)));
+                    let pixel = &picture.rgba[(y as usize * 120 + x as usize) * 4..][..3];
+                    let off = pixel.iter().zip(wanted).map(|(&p, w)| p.abs_diff(w)).max().unwrap();
+                    let about = format!("{field:?} {kinematics:?} {material:?} at {x}, {y}");
+                    assert!(off <= 4, "{about}: {pixel:?} is not {wanted:?}, {:?}", value(own));
+                    judged += 1;
+                    absent += u32::from(value(own).is_none());
+                }
+            }
+        }
+        assert!(absent > 0 && absent < 20, "{absent} of {judged}");
     }
 
     #[test]

@@ -6,6 +6,8 @@ use nalgebra::Vector2;
 
 use crate::element::ElementType;
 use crate::mesh::{Mesh, Segment};
+use crate::render::interpolated_field::{InterpolatedField, weighted_sum};
+use crate::simulation::PointValues;
 
 /// Display geometry of a mesh. Points are weighted sums of nodes.
 #[derive(Debug, Default)]
@@ -17,10 +19,8 @@ pub(crate) struct DisplayGeometry {
     weights: Vec<f64>,
     /// Triangles, as indices of points.
     pub triangles: Vec<[u32; 3]>,
-    /// Index of the first quadrature point of each triangle's element.
-    value_of: Vec<u32>,
-    /// Weights of the element's quadrature points in each triangle's value.
-    value_weights: Vec<f64>,
+    /// Weights of an element's quadrature points at each of its points.
+    point_weights: Vec<Vec<f64>>,
     /// Segments of the element sides, as indices of points.
     pub lines: Vec<[u32; 2]>,
     /// Triangle adjacent to each segment.
@@ -37,15 +37,16 @@ impl DisplayGeometry {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let entry = mesh.element().entry();
         let (stride, pieces) = (entry.nodes.len(), entry.drawn_pieces);
-        let mut drawing = Self { stride, pieces, boundary: mesh.outline(), ..Self::default() };
         let pattern = CellPattern::new(entry);
+        let point_weights = pattern.point_weights.clone();
+        let mut drawing = Self { stride, pieces, point_weights, boundary: mesh.outline(), ..Self::default() };
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
         // Boundary sides by their first corner: each with its end corner and its points.
         let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
-        for (number, nodes) in (0..).zip(mesh.elements()) {
+        for nodes in mesh.elements() {
             let first_triangle = drawing.triangles.len() as u32;
-            let first = drawing.add(&pattern, number, nodes);
+            let first = drawing.add(&pattern, nodes);
             for ((side, points), triangles_of_lines) in
                 mesh.sides(nodes).zip(&pattern.sides).zip(&pattern.triangles_of_lines)
             {
@@ -77,17 +78,13 @@ impl DisplayGeometry {
     }
 
     /// Adds an element; returns the index of its first point.
-    fn add(&mut self, pattern: &CellPattern, number: u32, nodes: &[u32]) -> u32 {
+    fn add(&mut self, pattern: &CellPattern, nodes: &[u32]) -> u32 {
         let first = (self.nodes.len() / self.stride) as u32;
         for weights in &pattern.points {
             self.nodes.extend(nodes);
             self.weights.extend(weights);
         }
-        for (corners, weights) in &pattern.triangles {
-            self.triangles.push(corners.map(|p| first + p));
-            self.value_of.push(number * weights.len() as u32);
-            self.value_weights.extend(weights);
-        }
+        self.triangles.extend(pattern.triangles.iter().map(|corners| corners.map(|p| first + p)));
         first
     }
 
@@ -103,41 +100,25 @@ impl DisplayGeometry {
         positions.extend((0..(self.nodes.len() / self.stride.max(1)) as u32).map(|p| self.point(p, place)));
     }
 
-    /// Computes the values at the corners of every triangle from nodal values with the shape functions; `None` if a
-    /// nodal value is missing. With a `period`, values that differ by a multiple of it are equivalent.
-    pub(crate) fn nodal_values(
-        &self,
-        at_nodes: &[Option<f64>],
-        period: Option<f64>,
-        values: &mut Vec<[Option<f64>; 3]>,
-    ) {
-        values.clear();
-        let at = |p: u32| -> Option<f64> {
-            let own = p as usize * self.stride..(p as usize + 1) * self.stride;
-            let mut first = None;
-            self.nodes[own.clone()]
-                .iter()
-                .zip(&self.weights[own])
-                .map(|(&n, &weight)| {
-                    let value = *at_nodes.get(n as usize)?.as_ref()?;
-                    let near = *first.get_or_insert(value);
-                    let turns = period.map_or(0.0, |period| period * ((value - near) / period).round());
-                    Some((value - turns) * weight)
-                })
-                .sum()
-        };
-        values.extend(self.triangles.iter().map(|corners| corners.map(at)));
-    }
-
-    /// Computes the value of every triangle, equal at its corners, from values at quadrature points; `None` if one is
-    /// missing.
-    pub(crate) fn values(&self, at_points: &[Option<f64>], values: &mut Vec<[Option<f64>; 3]>) {
-        values.clear();
-        let stride = self.value_weights.len() / self.value_of.len().max(1);
-        values.extend(self.value_of.iter().zip(self.value_weights.chunks(stride.max(1))).map(|(&first, weights)| {
-            let own = at_points.get(first as usize..).unwrap_or_default();
-            [own.iter().zip(weights).map(|(value, weight)| Some((*value)? * weight)).sum(); 3]
-        }));
+    /// Computes the components of a field at every point; `None` where they are not finite.
+    pub(crate) fn components(&self, field: &InterpolatedField, at_points: &mut Vec<Option<[f64; 3]>>) {
+        at_points.clear();
+        let components = field.components();
+        match field.values() {
+            PointValues::Recovered => {
+                let own = self.nodes.chunks(self.stride.max(1)).zip(self.weights.chunks(self.stride.max(1)));
+                at_points.extend(own.map(|(nodes, weights)| {
+                    weighted_sum(nodes.iter().map(|&node| components.get(node as usize)).zip(weights))
+                }));
+            }
+            PointValues::Raw => {
+                let count = self.point_weights.first().map_or(1, Vec::len);
+                for own in components.chunks(count) {
+                    let of_point = |weights: &Vec<f64>| weighted_sum(own.iter().map(Some).zip(weights));
+                    at_points.extend(self.point_weights.iter().map(of_point));
+                }
+            }
+        }
     }
 }
 
@@ -145,8 +126,10 @@ impl DisplayGeometry {
 struct CellPattern {
     /// Values of the shape functions at its points.
     points: Vec<Vec<f64>>,
-    /// Triangles, as indices of points, with the weights of the quadrature points' values at the centre of each.
-    triangles: Vec<([u32; 3], Vec<f64>)>,
+    /// Weights of the quadrature points at each of its points.
+    point_weights: Vec<Vec<f64>>,
+    /// Triangles, as indices of points.
+    triangles: Vec<[u32; 3]>,
     /// Points along each side.
     sides: Vec<Vec<u32>>,
     /// Triangle adjacent to every segment of each side.
@@ -156,9 +139,6 @@ struct CellPattern {
 impl CellPattern {
     fn new(entry: &ElementType) -> Self {
         let lattice = (entry.cell.lattice)(entry.drawn_pieces);
-        let place = |p: u32| Vector2::from(lattice.points[p as usize]);
-        let middle = |corners: &[u32; 3]| corners.iter().map(|&p| place(p)).sum::<Vector2<f64>>() / 3.0;
-        let triangles = lattice.triangles.iter().map(|t| (*t, (entry.point_weights)(middle(t).into())));
         let triangle_at = |piece: &[u32]| {
             let found = lattice.triangles.iter().position(|t| piece.iter().all(|p| t.contains(p)));
             found.unwrap_or_default() as u32
@@ -166,7 +146,8 @@ impl CellPattern {
         let triangles_of_lines = lattice.sides.iter().map(|side| side.windows(2).map(triangle_at).collect()).collect();
         Self {
             points: lattice.points.iter().map(|&at| (entry.shape)(at)).collect(),
-            triangles: triangles.collect(),
+            point_weights: lattice.points.iter().map(|&at| (entry.point_weights)(at)).collect(),
+            triangles: lattice.triangles.clone(),
             sides: lattice.sides.clone(),
             triangles_of_lines,
         }
@@ -177,7 +158,9 @@ impl CellPattern {
 mod tests {
     use super::*;
     use crate::Scene;
+    use crate::mesh::MaterialPoint;
     use crate::scene::ElementKind;
+    use crate::simulation::{Field, Simulation};
 
     #[test]
     fn drawn_triangles_cover_the_body_once() {
@@ -199,7 +182,6 @@ mod tests {
             let line: Vec<_> = drawing.outline[0].iter().map(|&p| points[p as usize]).collect();
             let around: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             assert!((around - 10.0).abs() < 1e-12, "{element:?}: {around}");
-            assert_eq!(drawing.triangles.len(), drawing.value_of.len());
             assert_eq!(drawing.lines.len(), drawing.triangles_of_lines.len());
             let touches =
                 |(line, &t): (&[u32; 2], &u32)| line.iter().all(|p| drawing.triangles[t as usize].contains(p));
@@ -207,36 +189,45 @@ mod tests {
                 drawing.lines.iter().zip(&drawing.triangles_of_lines).all(touches),
                 "{element:?}: a triangle elsewhere"
             );
-            // For a field that is linear within elements, the mean over the drawn triangles is exact.
-            let entry = element.entry();
-            let field = |nodes: &[u32], at: [f64; 2]| -> f64 {
-                let places = nodes.iter().map(|&n| mesh.nodes()[n as usize]);
-                places.zip((entry.shape)(at)).map(|(x, n)| (x.x + 2.0 * x.y) * n).sum()
-            };
-            let all = mesh.elements().flat_map(|nodes| entry.points.iter().map(move |point| (nodes, point.at)));
-            let at_points: Vec<Option<f64>> = all.map(|(nodes, at)| Some(field(nodes, at))).collect();
-            let count = at_points.len();
-            let mut values = Vec::new();
-            drawing.values(&at_points, &mut values);
-            let mean = |v: &[Option<f64>]| v.iter().flatten().sum::<f64>() / v.len() as f64;
-            assert!((mean(values.as_flattened()) - mean(&at_points)).abs() < 1e-12, "{element:?}");
-            drawing.values(&vec![Some(5.0); count], &mut values);
-            assert!(values.as_flattened().iter().flatten().all(|v| (v - 5.0).abs() < 1e-12), "{element:?}");
-            drawing.values(&vec![None; count], &mut values);
-            assert!(values.as_flattened().iter().all(Option::is_none), "{element:?}");
-            // Nodal values are interpolated exactly, and an angle takes the shorter way around.
-            let at_nodes: Vec<Option<f64>> = mesh.nodes().iter().map(|x| Some(x.x + 2.0 * x.y)).collect();
-            drawing.nodal_values(&at_nodes, None, &mut values);
-            for (corners, values) in drawing.triangles.iter().zip(&values) {
-                for (&p, value) in corners.iter().zip(values) {
-                    let x = points[p as usize];
-                    assert!((value.unwrap() - x.x - 2.0 * x.y).abs() < 1e-12, "{element:?}");
+        }
+    }
+
+    /// The components at the drawn points are those from which the value at these points is computed.
+    #[test]
+    fn drawn_components_have_the_value_of_their_point() {
+        for element in ElementKind::all() {
+            let scene = Scene::beam(3.0, 1.0).with_cells(3, 2).with_element(element);
+            let scene = scene.clamp("left").force("right", [2e4, -3e4]);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let mesh = simulation.mesh();
+            let (geometry, mut drawn) = (DisplayGeometry::new(mesh), Vec::new());
+            let entry = mesh.entry();
+            let lattice = (entry.cell.lattice)(entry.drawn_pieces);
+            for field in Field::ALL {
+                for values in [PointValues::Recovered, PointValues::Raw] {
+                    let interpolated = InterpolatedField::new(&simulation, field, values);
+                    geometry.components(&interpolated, &mut drawn);
+                    assert_eq!(drawn.len(), mesh.element_count() * lattice.points.len());
+                    let largest = interpolated.largest(mesh);
+                    assert!(largest > 0.0);
+                    let points = (0..mesh.element_count())
+                        .flat_map(|element| lattice.points.iter().map(move |&at| MaterialPoint { element, at }));
+                    for (point, components) in points.zip(&drawn) {
+                        let components = components.unwrap();
+                        let kinematics = interpolated.kinematics();
+                        let drawn = field.of_components(components, &interpolated.material(), kinematics).unwrap();
+                        let own = interpolated.at(mesh, point).unwrap();
+                        let about = format!("{element:?} {field:?} {values:?}: {drawn} is not {own}");
+                        assert!((drawn - own).abs() <= 1e-9 * largest, "{about}");
+                        // Quadratic shape functions exceed the values at the nodes.
+                        assert!(own.abs() < 1.05 * largest, "{about}, largest {largest}");
+                        if let Some(state) = simulation.point_state(point, values).filter(|_| !field.is_of_elements()) {
+                            assert!((state.field(field).unwrap() - own).abs() <= 1e-9 * largest, "{about}");
+                        }
+                    }
                 }
             }
-            let angles: Vec<Option<f64>> =
-                (0..mesh.nodes().len()).map(|n| Some(if n % 2 == 0 { 179.0 } else { -179.0 })).collect();
-            drawing.nodal_values(&angles, Some(360.0), &mut values);
-            assert!(values.as_flattened().iter().flatten().all(|v| v.abs() > 178.0), "{element:?}");
         }
     }
 }

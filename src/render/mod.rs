@@ -14,6 +14,7 @@ mod body;
 mod camera;
 pub mod colormap;
 pub(crate) mod display_geometry;
+pub(crate) mod interpolated_field;
 mod offscreen;
 
 pub use adapter::{AdapterReport, adapters};

@@ -64,12 +64,6 @@ impl Field {
         }
     }
 
-    /// Returns the period of the values: values that differ by it are equivalent.
-    #[must_use]
-    pub fn period(self) -> Option<f64> {
-        (self == Self::RotationAngle).then_some(360.0)
-    }
-
     /// Returns `true` if the field has one value per element and none at nodes.
     #[must_use]
     pub fn is_of_elements(self) -> bool {
@@ -101,7 +95,7 @@ impl Field {
         values.extend(nodal.nodes().iter().map(|local| self.of(local, material, kinematics)));
     }
 
-    pub(super) fn of(self, local: &Local, material: &Material, kinematics: Kinematics) -> Option<f64> {
+    pub(crate) fn of(self, local: &Local, material: &Material, kinematics: Kinematics) -> Option<f64> {
         let value = match self {
             Self::VonMises => local.cauchy(material, kinematics)?.von_mises(),
             Self::BiotVonMises => local.biot(material).von_mises(),

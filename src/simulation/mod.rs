@@ -20,7 +20,7 @@ use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, Suppo
 use crate::sentence::Sentence;
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
-use crate::stress::{ErrorEstimate, NodalStress, RecoveryScratch};
+use crate::stress::{ErrorEstimate, NodalStress};
 use crate::timings::Timings;
 
 mod field;
@@ -609,7 +609,7 @@ impl Simulation {
             residual: self.residual(),
             residual_floor: search.and_then(Equilibrium::residual_floor),
             certificate: search.and_then(Equilibrium::certificate),
-            deformation: Deformation::of(problem, state),
+            deformation: Deformation::of(problem, state, self.kinematics()),
             probes: probe_results(problem, state),
             energy: Energy {
                 supports: match (problem.supports().move_the_body(), self.is_linear()) {
@@ -648,32 +648,13 @@ impl Simulation {
     }
 
     /// Returns the strain measure of the current state.
-    fn kinematics(&self) -> Kinematics {
+    pub(crate) fn kinematics(&self) -> Kinematics {
         if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// Computes a field at every quadrature point; see [`Field::values`].
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
         field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
-    }
-
-    /// Computes a field recovered at the nodes, for display; for a field of elements, the values of [`Self::field`].
-    /// `nodal` and `scratch` are work memory, reused between states.
-    #[doc(hidden)]
-    pub fn smooth_field(
-        &self,
-        field: Field,
-        nodal: &mut Option<NodalStress>,
-        scratch: &mut RecoveryScratch,
-        values: &mut Vec<Option<f64>>,
-    ) {
-        if field.is_of_elements() {
-            return self.field(field, values);
-        }
-        let Body { problem, state, .. } = &self.body;
-        let nodal = nodal.get_or_insert_with(|| NodalStress::empty(*problem.material()));
-        nodal.update(problem, state, self.kinematics(), scratch);
-        field.nodal_values(nodal, values);
     }
 
     /// Returns the stress results: the largest stress, those at the probes, and the estimated mesh error.

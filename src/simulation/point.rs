@@ -66,16 +66,6 @@ impl Field {
     pub fn smooth_at(self, mesh: &Mesh, nodal: &NodalStress, point: MaterialPoint) -> Option<f64> {
         self.of(&nodal.mean(&mesh.weights(point)?), nodal.material(), nodal.kinematics())
     }
-
-    /// Returns the value at a material point, interpolated from the result of [`Self::values`] for a body on `mesh`;
-    /// `None` if there is no such point, or no value.
-    #[must_use]
-    pub fn raw_at(mesh: &Mesh, values: &[Option<f64>], point: MaterialPoint) -> Option<f64> {
-        let weights = (mesh.entry().point_weights)(point.at);
-        let first = point.element.checked_mul(weights.len())?;
-        let own = values.get(first..first.checked_add(weights.len())?)?;
-        own.iter().zip(weights).map(|(value, weight)| Some((*value)? * weight)).sum()
-    }
 }
 
 impl Simulation {

@@ -74,7 +74,7 @@ pub struct SupportReaction {
 pub struct Deformation {
     /// Largest magnitude of the polar rotation, degrees.
     pub max_rotation_deg: f64,
-    /// Largest magnitude of a principal strain.
+    /// Largest magnitude of a principal strain that is recovered at a node, as the stresses are.
     pub max_strain: f64,
     /// Number of elements with det F ≤ 0 at a point.
     pub inverted_elements: usize,
@@ -84,12 +84,14 @@ impl Deformation {
     /// Computes the measures for a state.
     #[doc(hidden)]
     #[must_use]
-    pub fn of(problem: &Problem, state: &State) -> Self {
+    pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let elements = problem.system().elements();
-        let mut result = Self::default();
+        let nodal = NodalStress::of(problem, state, kinematics);
+        let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
+        let mut result = Self { max_strain: strains.fold(0.0, f64::max), ..Self::default() };
         let mut last_inverted = None;
         let lame = problem.material().lame();
-        elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, strain| {
+        elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
             let f = Matrix2::identity() + h;
             let element = q / elements.points_per_element();
             if f.determinant() <= 0.0 && last_inverted != Some(element) {
@@ -98,7 +100,6 @@ impl Deformation {
             }
             let angle = polar(&f).map_or(0.0, |r| r.angle().abs());
             result.max_rotation_deg = result.max_rotation_deg.max(angle.to_degrees());
-            result.max_strain = result.max_strain.max(largest_principal(strain));
         });
         result
     }

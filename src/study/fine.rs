@@ -17,7 +17,7 @@ use crate::method::{Workspace, is_stable};
 use crate::progress::{Observer, Progress};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
 use crate::sentence::sentence;
-use crate::simulation::{Deformation, Simulation, SimulationError, Status};
+use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
 /// Cost allowed for a reference solution.
@@ -180,7 +180,7 @@ pub(super) fn fine(
     }
     let simulation = finest.ok_or(StudyError::NoReference)?;
     // Elements turned inside out are no solution of the continuous problem.
-    let is_inverted = Deformation::of(simulation.problem(), simulation.state()).inverted_elements > 0;
+    let is_inverted = simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0;
     if is_inverted || !stands(&simulation)? {
         return Err(StudyError::NoReference);
     }

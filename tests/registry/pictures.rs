@@ -8,6 +8,7 @@ use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::Place;
 use warpbeam::app::picture;
+use warpbeam::mesh::MaterialPoint;
 use warpbeam::render::{Camera, Gpu, colormap};
 use warpbeam::scene::registry;
 
@@ -79,19 +80,29 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
         }
     }
 
-    // Colours are compared at the middle of triangles that are large enough to have a pixel there without an edge.
+    // Colours are compared at the middle of triangles that are large enough to have a pixel there without an edge, with
+    // the value that the pointer shows there.
+    let (mesh, nodal) = (lab.simulation().mesh(), lab.simulation().nodal_stress());
+    let entry = mesh.element().entry();
+    let lattice = (entry.cell.lattice)(entry.drawn_pieces);
+    let position = |element: usize, at: [f64; 2]| {
+        let value = frame.field.smooth_at(mesh, &nodal, MaterialPoint { element, at }).unwrap();
+        colormap::position(value, frame.range)
+    };
     let mut seen = 0;
-    for (triangle, values) in frame.triangles.iter().zip(frame.values) {
+    for (i, triangle) in frame.triangles.iter().enumerate() {
         let [a, b, c] = triangle.map(|p| project(&camera, rect, frame.positions[p as usize]));
         let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
         if area < 60.0 {
             continue;
         }
         let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
-        // The value is linear between corners; the pixel's centre is not exactly the triangle's.
-        let positions = values.map(|value| colormap::position(value.unwrap(), frame.range));
-        let expected = frame.map.color(positions.iter().sum::<f64>() / 3.0);
-        let steep = positions.iter().fold(0.0f64, |m, v| m.max((v - positions[0]).abs()));
+        let (element, piece) = (i / lattice.triangles.len(), lattice.triangles[i % lattice.triangles.len()]);
+        let corners = piece.map(|p| lattice.points[p as usize]);
+        let middle = position(element, [0, 1].map(|axis| corners.iter().map(|at| at[axis]).sum::<f64>() / 3.0));
+        let expected = frame.map.color(middle);
+        // The pixel's centre is not exactly the triangle's.
+        let steep = corners.iter().fold(0.0f64, |m, &at| m.max((position(element, at) - middle).abs()));
         let got = pixel(&picture, x, y);
         if f64::from(distance(expected, got)) <= 3.0 + 40.0 * steep {
             seen += 1;

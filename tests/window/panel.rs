@@ -395,7 +395,7 @@ fn remedies_are_one_click_away() {
     wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
-    assert!(harness.query_by_label_contains("ERROR 1.5 % mesh").is_some(), "{:?}", texts(&harness));
+    assert!(harness.query_by_label("ERROR 1.5 % strain 48 %").is_some(), "{:?}", texts(&harness));
     assert!(harness.query_by_label_contains("lock in bending").is_none());
 
     let mut harness = self::harness("cantilever");

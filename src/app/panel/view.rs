@@ -1,16 +1,15 @@
 //! Panel section of the display options.
 
-use crate::app::viewport::color_range::range_of;
 use egui::{ComboBox, Ui};
 
 use crate::app::language::{joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::render::interpolated_field::InterpolatedField;
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::sentence;
 use crate::simulation::{Field, Simulation};
-use crate::stress::RecoveryScratch;
 
 pub(super) fn options(
     ui: &mut Ui,
@@ -40,13 +39,14 @@ pub(super) fn options(
         .on_hover_text(tr("Keep the ends of the colour map fixed; otherwise they follow the values"))
         .changed()
     {
-        view.fixed_range = fixed.then(|| value_range(input.simulation, view.field, view.raw));
+        view.fixed_range = fixed.then(|| value_range(input.simulation, view));
     }
     if let Some(range) = view.fixed_range {
-        let span = limits::Limit { unit: view.field.unit(), min: -1e30, max: 1e30 };
+        let (factor, unit) = view.field.display_unit();
+        let span = limits::Limit { unit, min: -1e30, max: 1e30 };
         // The range of the current values, extended by half its width at both ends. It does not depend on the fixed
         // range, so the slider does not change while it is dragged.
-        let [low, high] = value_range(input.simulation, view.field, view.raw);
+        let [low, high] = value_range(input.simulation, view).map(|end| factor * end);
         let span_now = high - low;
         let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
@@ -58,9 +58,9 @@ pub(super) fn options(
                 scale: SliderScale::Linear,
                 whole: false,
             };
-            if let Some(new) = field.show(ui, &mut state.messages, range[end]) {
+            if let Some(new) = field.show(ui, &mut state.messages, factor * range[end]) {
                 let mut changed = range;
-                changed[end] = new;
+                changed[end] = new / factor;
                 if changed[0] < changed[1] {
                     view.fixed_range = Some(changed);
                 } else {
@@ -128,13 +128,7 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     });
 }
 
-/// Returns the smallest and the largest value of a field; the range is never empty.
-fn value_range(simulation: &Simulation, field: Field, raw: bool) -> [f64; 2] {
-    let mut values = Vec::new();
-    if raw {
-        simulation.field(field, &mut values);
-    } else {
-        simulation.smooth_field(field, &mut None, &mut RecoveryScratch::default(), &mut values);
-    }
-    range_of(&values)
+/// Returns the range of the displayed field.
+fn value_range(simulation: &Simulation, view: &ViewOptions) -> [f64; 2] {
+    InterpolatedField::new(simulation, view.field, view.point_values()).range(simulation.system().mesh())
 }

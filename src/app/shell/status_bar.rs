@@ -1,6 +1,6 @@
 //! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, error_color, error_tip, rho, rho_number};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, error_color, error_tip, rho, rho_number};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -70,11 +70,17 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let seconds = time.map_or(0.0, |time| time.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
+    let doubt = doubt(input, errors);
+    let color = match error_color(palette, errors.own) {
+        color if doubt.is_some() && color == palette.good => palette.warning,
+        color => color,
+    };
     let mut entries = vec![
         BarNumber {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match errors.source {
+                _ if doubt.is_some() => doubt.unwrap_or_default().into(),
                 Some(source) => tr(source.word()).into(),
                 None if input.reference_failure.is_some() => tr("no reference").into(),
                 None => sought.map_or(Cow::default(), |done| {
@@ -85,9 +91,9 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
             tip: format!(
                 "{}\n{}",
                 error_tip(input.reference, input.reference_failure),
-                tr("The word beside it is the main source of the error")
+                tr("Beside it: a reason to doubt the result, or else the main source of the error")
             ),
-            color: error_color(palette, errors.own),
+            color,
             ratio: None,
         },
         BarNumber {

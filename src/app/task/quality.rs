@@ -13,7 +13,7 @@ pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
     /// Estimated discretization error in the energy norm, percent.
     pub mesh_error_percent: Option<f64>,
-    /// Largest principal strain.
+    /// Largest principal strain that is recovered at a node.
     pub max_strain: f64,
     /// Number of elements that are turned inside out, and number of all elements.
     inside_out: [usize; 2],
@@ -26,7 +26,7 @@ impl Quality {
             return;
         }
         self.mesh_error_percent = simulation.mesh_error(&simulation.nodal_stress()).percent;
-        let deformation = Deformation::of(simulation.problem(), simulation.state());
+        let deformation = Deformation::of(simulation.problem(), simulation.state(), simulation.kinematics());
         self.max_strain = deformation.max_strain;
         self.inside_out = [deformation.inverted_elements, simulation.mesh().element_count()];
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));

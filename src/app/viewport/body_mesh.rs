@@ -7,16 +7,14 @@ use egui::{Color32, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::color_range::range_of;
-use crate::app::widgets::palette::{self, Palette};
+use crate::app::widgets::palette::Palette;
 use crate::assembly::System;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::Material;
+use crate::render::interpolated_field::InterpolatedField;
 use crate::simulation::{Field, Simulation};
-use crate::stress::{NodalStress, RecoveryScratch};
 
 /// Displayed mesh of a body in its current state.
 #[derive(Debug, Default)]
@@ -27,21 +25,22 @@ pub(crate) struct BodyMesh {
     points: Vec<Vector2<f64>>,
     /// Revision number of points and values.
     stamp: u64,
-    /// Nodal stresses, for fields that are recovered at the nodes.
-    pub nodal: Option<NodalStress>,
-    scratch: RecoveryScratch,
-    /// Values of the field at quadrature points or nodes.
-    pub known: Vec<Option<f64>>,
-    /// Values of the field at the corners of the drawn triangles.
-    pub values: Vec<[Option<f64>; 3]>,
+    /// Displayed field.
+    field: InterpolatedField,
+    /// Components of the field at the drawn points.
+    components: Vec<Option<[f64; 3]>>,
+    /// Largest magnitude of these components.
+    largest_component: f64,
+    /// Largest magnitude of the field in the current state.
+    largest: f64,
     /// Values of the field at both ends of the colour map.
     pub range: [f64; 2],
-    /// Field that the range belongs to.
-    field: Option<Field>,
-    /// Extreme values of the field in the last seconds of a motion.
+    /// Field that the recent magnitudes belong to; `None` without such magnitudes.
+    recent_field: Option<Field>,
+    /// Largest magnitude of the field in the last seconds of a motion.
     recent: Recent,
-    /// Inputs that the current values were computed from, except for the positions of the nodes.
-    of: Option<Values>,
+    /// Equations of the body that the components belong to; `None` if they must be computed again.
+    system: Option<Arc<System>>,
     line_color: [u8; 4],
     background: [u8; 3],
     surround: [u8; 3],
@@ -49,16 +48,17 @@ pub(crate) struct BodyMesh {
     map: ColorMap,
 }
 
-/// Extreme values of a field in the last seconds of a motion, collected in two consecutive time windows.
+/// Largest magnitude of a field in the last seconds of a motion, collected in two consecutive time windows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Recent {
     /// Start of the current window, playing time in s.
     since: f64,
     /// Time of the last update, playing time in s.
     now: f64,
-    /// Extreme values in the current window, and in the previous one.
-    window: [f64; 2],
-    before: [f64; 2],
+    /// Largest magnitude in the current window, in the previous one, and as shown.
+    window: f64,
+    before: f64,
+    shown: f64,
 }
 
 impl Recent {
@@ -67,54 +67,22 @@ impl Recent {
     /// Time constant of the narrowing of the range, s.
     const EASE: f64 = 0.7;
 
-    fn new(now: f64, range: [f64; 2]) -> Self {
-        Self { since: now, now, window: range, before: range }
+    fn new(now: f64, largest: f64) -> Self {
+        Self { since: now, now, window: largest, before: largest, shown: largest }
     }
 
-    /// Adds the field's extreme values at `now`, playing time in s. Returns the range that follows the range `shown`:
-    /// it widens at once, and narrows slowly to the extremes of both windows.
-    fn extend(&mut self, now: f64, range: [f64; 2], shown: [f64; 2]) -> [f64; 2] {
+    /// Adds the field's largest magnitude at `now`, playing time in s. Returns the magnitude to show: it grows at once,
+    /// and falls slowly to the largest of both windows.
+    fn extend(&mut self, now: f64, largest: f64) -> f64 {
         if now - self.since >= Self::WINDOW {
-            *self = Self { since: now, now: self.now, window: range, before: self.window };
+            (self.since, self.before, self.window) = (now, self.window, largest);
         }
-        self.window = union(self.window, range);
-        let recent = union(self.window, self.before);
+        self.window = self.window.max(largest);
+        let recent = self.window.max(self.before);
         let left = (-(now - self.now).max(0.0) / Self::EASE).exp();
         self.now = now;
-        let eased = [0, 1].map(|end| recent[end] + (shown[end] - recent[end]) * left);
-        union(eased, recent)
-    }
-}
-
-fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0].min(b[0]), a[1].max(b[1])]
-}
-
-/// Inputs of the values of a body's field, except for the positions of the nodes.
-#[derive(Debug)]
-struct Values {
-    system: Arc<System>,
-    material: Material,
-    field: Field,
-    is_smooth: bool,
-    is_linear: bool,
-}
-
-impl Values {
-    fn of(simulation: &Simulation, view: &ViewOptions) -> Self {
-        Self {
-            system: simulation.system().clone(),
-            material: *simulation.problem().material(),
-            field: view.field,
-            is_smooth: view.is_smooth(),
-            is_linear: simulation.is_linear(),
-        }
-    }
-
-    fn are(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.system, &other.system)
-            && (self.material, self.field) == (other.material, other.field)
-            && (self.is_smooth, self.is_linear) == (other.is_smooth, other.is_linear)
+        self.shown = recent.max(recent + (self.shown - recent) * left);
+        self.shown
     }
 }
 
@@ -135,38 +103,33 @@ impl BodyMesh {
         played: Option<f64>,
     ) {
         let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
-        let of = Values::of(simulation, view);
+        let (mesh, values) = (simulation.system().mesh(), view.point_values());
         // Computing the values of a large body is expensive, and the state has usually not changed since the last
         // frame.
-        let is_known =
-            self.of.as_ref().is_some_and(|known| known.are(&of)) && self.nodes.iter().copied().eq(places.clone());
-        self.of = Some(of);
+        let is_known = self.system.as_ref().is_some_and(|system| Arc::ptr_eq(system, simulation.system()))
+            && self.field.has_settings(simulation, view.field, values)
+            && self.nodes.iter().copied().eq(places.clone());
         if !is_known {
+            self.system = Some(simulation.system().clone());
             self.nodes.clear();
             self.nodes.extend(places);
             let nodes = &self.nodes;
             geometry.points(&|n| nodes[n as usize], &mut self.points);
-            if view.is_smooth() {
-                simulation.smooth_field(view.field, &mut self.nodal, &mut self.scratch, &mut self.known);
-                geometry.nodal_values(&self.known, view.field.period(), &mut self.values);
-            } else {
-                simulation.field(view.field, &mut self.known);
-                geometry.values(&self.known, &mut self.values);
-            }
+            self.field.update(simulation, view.field, values);
+            geometry.components(&self.field, &mut self.components);
+            let magnitudes = self.components.iter().flatten().flatten().map(|component| component.abs());
+            self.largest_component = magnitudes.fold(0.0, f64::max);
+            self.largest = self.field.largest(mesh);
             self.stamp = stamp();
         }
-        let [mut low, mut high] = range_of(&self.known);
-        if palette::has_sign(view.field) {
-            let reach = high.abs().max(low.abs());
-            (low, high) = (-reach, reach);
-        }
         let now = played.unwrap_or_default();
-        let goes_on = played.is_some() && self.field == Some(view.field) && view.fixed_range.is_none();
+        let goes_on = played.is_some() && self.recent_field == Some(view.field) && view.fixed_range.is_none();
         if !goes_on {
-            (self.recent, self.range) = (Recent::new(now, [low, high]), [low, high]);
+            self.recent = Recent::new(now, self.largest);
         }
-        self.field = Some(view.field);
-        self.range = view.fixed_range.unwrap_or_else(|| self.recent.extend(now, [low, high], self.range));
+        self.recent_field = Some(view.field);
+        let follows = || view.field.range(self.recent.extend(now, self.largest));
+        self.range = view.fixed_range.unwrap_or_else(follows);
     }
 
     /// Returns the positions of the drawn points, m.
@@ -183,7 +146,7 @@ impl BodyMesh {
     pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
         place(&mut self.points);
         self.stamp = stamp();
-        self.of = None;
+        self.system = None;
     }
 
     /// Sets the colours of the theme and the colour map of the field.
@@ -198,12 +161,16 @@ impl BodyMesh {
         self.map = palette.map(field);
     }
 
+    /// Returns the values of the field at the drawn points.
+    pub(crate) fn values(&self) -> Vec<Option<f64>> {
+        let (field, material, kinematics) = (self.field.field(), self.field.material(), self.field.kinematics());
+        let value = |components| field.of_components(components, &material, kinematics);
+        self.components.iter().map(|components| value((*components)?)).collect()
+    }
+
     /// Returns the value of the field at a material point.
-    pub(crate) fn value_at(&self, view: &ViewOptions, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
-        match &self.nodal {
-            Some(nodal) if view.is_smooth() => view.field.smooth_at(mesh, nodal, point),
-            _ => Field::raw_at(mesh, &self.known, point),
-        }
+    pub(crate) fn value_at(&self, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
+        self.field.at(mesh, point)
     }
 
     /// Returns the input of the body's render pass.
@@ -212,7 +179,11 @@ impl BodyMesh {
             stamp: self.stamp,
             positions: &self.points,
             triangles: &geometry.triangles,
-            values: &self.values,
+            field: self.field.field(),
+            components: &self.components,
+            largest_component: self.largest_component,
+            material: self.field.material(),
+            kinematics: self.field.kinematics(),
             range: self.range,
             lines: if wireframe { &geometry.lines } else { &[] },
             triangles_of_lines: &geometry.triangles_of_lines,

@@ -419,10 +419,11 @@ fn legend(
     let is_small = has_legend_on_top(rect.height()) && rect.width() < 700.0;
     let size = vec2(if is_small { 170.0 } else { 240.0 }, 10.0);
     let field = overlay.options.field;
-    let [low, high] = overlay.color_range;
+    let (factor, unit) = field.display_unit();
+    let [low, high] = overlay.color_range.map(|end| factor * end);
     let font = FontId::proportional(SMALL);
-    let (power, symbol) = prefix(&[low, high], field.unit());
-    let unit = if field.unit().is_empty() { String::new() } else { format!(", {symbol}{}", field.unit()) };
+    let (power, symbol) = prefix(&[low, high], unit);
+    let unit = format!(", {symbol}{unit}");
     let raw = if overlay.options.raw && !field.is_of_elements() { tr(", raw") } else { "" };
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
     let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);

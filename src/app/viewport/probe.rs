@@ -26,7 +26,8 @@ pub(crate) fn is_on(kept: Pos2, click: Pos2) -> bool {
 
 /// Formats a value of a field with its unit.
 fn value(field: Field, value: f64) -> String {
-    engineering(three_digits(value), field.unit())
+    let (factor, unit) = field.display_unit();
+    engineering(three_digits(factor * value), unit)
 }
 
 /// Paints the value of the field and the displacement next to the pointer.
@@ -88,10 +89,9 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
                     row("θ", number(Field::RotationAngle), "Angle of the rotation R");
                 }
                 row("σ", number(Field::VonMises), "Von Mises stress, from the Cauchy stress, which follows from ε");
-                let strain = point.field(Field::LargestStrain).unwrap_or_default();
                 row(
                     "ε",
-                    engineering(three_digits(100.0 * strain), "%"),
+                    number(Field::LargestStrain),
                     if point.is_linear {
                         "Principal strain of largest magnitude, of ε = sym F − I, the strain of linear theory"
                     } else {

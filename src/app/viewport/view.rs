@@ -19,7 +19,7 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::MethodKind;
-use crate::simulation::{Field, PointValues, Simulation, Status};
+use crate::simulation::{Field, Simulation, Status};
 
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
 /// and the colour bar below.
@@ -341,13 +341,7 @@ impl BodyView {
 
     /// Returns the displayed field and its value at a material point.
     fn field_at(&self, content: &Content<'_>, point: MaterialPoint) -> (Field, Option<f64>) {
-        let field = content.options.field;
-        let value = if content.options.raw && !field.is_of_elements() {
-            self.shown(content).point_state(point, PointValues::Raw).and_then(|state| state.field(field))
-        } else {
-            self.body.value_at(content.options, content.mesh(), point)
-        };
-        (field, value)
+        (content.options.field, self.body.value_at(content.mesh(), point))
     }
 
     /// Shows the values at the pointer and at the pinned point.
@@ -362,8 +356,8 @@ impl BodyView {
             probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
         }
         let Some(point) = self.probe else { return };
-        let values = if content.options.raw { PointValues::Raw } else { PointValues::Recovered };
-        let (Some(state), Some(at)) = (shown.point_state(point, values), self.in_view(content, point)) else { return };
+        let state = shown.point_state(point, content.options.point_values());
+        let (Some(state), Some(at)) = (state, self.in_view(content, point)) else { return };
         if probe::show_card(ui, painter, self.rect, at, content.options.field, &state) {
             self.probe = None;
         }

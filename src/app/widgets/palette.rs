@@ -145,7 +145,7 @@ impl Palette {
 
     /// Returns the colour map of a field: diverging about zero if its sign matters.
     pub(crate) fn map(&self, field: Field) -> ColorMap {
-        match (has_sign(field), self.dark) {
+        match (field.has_sign(), self.dark) {
             (false, true) => ColorMap::SequentialOnDark,
             (false, false) => ColorMap::SequentialOnLight,
             (true, true) => ColorMap::DivergingOnDark,
@@ -185,11 +185,6 @@ impl Palette {
         }
         visuals
     }
-}
-
-/// Returns `true` if the sign of a field's values matters: zero is then in the middle of its colour map.
-pub(crate) fn has_sign(field: Field) -> bool {
-    field == Field::RotationAngle
 }
 
 /// Installs the colours and font sizes of both themes, once per context.

@@ -112,7 +112,8 @@ pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, rang
     let font = FontId::proportional(SMALL);
     let middle = rect.center().y;
     let bar = if rect.width() < 560.0 { 70.0 } else { 130.0 };
-    let unit = view.field.unit();
+    let (factor, unit) = view.field.display_unit();
+    let range = range.map(|end| factor * end);
     let (power, symbol) = prefix(&range, unit);
     let [low, high] = range.map(|v| engineering(three_digits(v / 10f64.powi(power)), ""));
     let put = |right: f32, text: String| {

@@ -130,7 +130,7 @@ impl Pane {
             painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
             there
         });
-        let value = body_mesh.value_at(view, mesh, point);
+        let value = body_mesh.value_at(mesh, point);
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 

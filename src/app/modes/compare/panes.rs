@@ -60,8 +60,6 @@ impl PaneDisplay {
             (self.body_mesh, self.range) = (BodyMesh::default(), None);
             self.system = Some(system.clone());
         }
-        // The body mesh has the common range of the last frame.
-        self.body_mesh.range = self.range.unwrap_or(self.body_mesh.range);
         self.body_mesh.update(simulation, &self.geometry, view, played);
         self.range = Some(self.body_mesh.range);
     }

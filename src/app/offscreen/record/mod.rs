@@ -12,16 +12,15 @@ pub(crate) use self::live::{LiveRecording, pointer};
 use crate::app::language::{self, Language, fill};
 use crate::app::offscreen::shot::Canvas;
 use crate::app::shell::lab::Lab;
-use crate::app::viewport::color_range::range_of;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
 use crate::progress::{Observer, Progress};
+use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
 use crate::scene::{Analysis, Scene, Source};
 use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Field, Simulation, SimulationError, Status};
+use crate::simulation::{Field, PointValues, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::stress::RecoveryScratch;
 
 mod colors;
 mod film;
@@ -334,7 +333,11 @@ impl Preview {
         let (low, high) = simulation.system().mesh().bounds();
         let largest = LARGEST_VIEW * (high - low).norm();
         let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
-        let (mut values, mut extremes) = (Vec::new(), Vec::new());
+        let (mut field, mut largest_value) = (InterpolatedField::default(), 0.0_f64);
+        let mut largest_of = |simulation: &Simulation| {
+            field.update(simulation, Field::default(), PointValues::Recovered);
+            field.largest(simulation.system().mesh())
+        };
         let mut range = Vec::new();
         let mut stride = 1;
         loop {
@@ -349,10 +352,7 @@ impl Preview {
             if moves {
                 // Unstable states extend neither the view nor the colour range.
                 if preview.include(low, high, largest) {
-                    smooth_values(&simulation, &mut values);
-                    values.append(&mut extremes);
-                    let finite = values.iter().flatten().copied();
-                    extremes = vec![finite.clone().reduce(f64::min), finite.reduce(f64::max)];
+                    largest_value = largest_value.max(largest_of(&simulation));
                 }
             } else {
                 range.push((low, high));
@@ -367,18 +367,16 @@ impl Preview {
             }
             preview.pictures += 1;
         }
-        if moves {
-            preview.range = range_of(&extremes);
-        } else {
+        if !moves {
             let (low, high) = bounds(&simulation);
             preview.include(low, high, f64::INFINITY);
             let largest = LARGEST_WAY * (preview.high - preview.low).norm();
             for (low, high) in range {
                 preview.include(low, high, largest);
             }
-            smooth_values(&simulation, &mut values);
-            preview.range = range_of(&values);
+            largest_value = largest_of(&simulation);
         }
+        preview.range = Field::default().range(largest_value);
         Some(preview)
     }
 
@@ -400,11 +398,6 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
     let nodes = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
     let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     nodes.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
-}
-
-/// Computes the values of the default field at the nodes.
-fn smooth_values(simulation: &Simulation, values: &mut Vec<Option<f64>>) {
-    simulation.smooth_field(Field::default(), &mut None, &mut RecoveryScratch::default(), values);
 }
 
 #[cfg(test)]
@@ -452,21 +445,16 @@ mod tests {
             let reel = reel(&again(), 0.04);
             let preview = Preview::new(&reel, again(), &|_| ControlFlow::Continue(())).unwrap();
             assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
-            let mut values = Vec::new();
             let moves = again().motion().is_some();
             let seen = run(&reel, again(), &mut |k, simulation| {
                 let (low, high) = bounds(simulation);
                 // Iterations before the equilibrium may leave the frame; the equilibrium is inside it.
                 let shown = moves || *simulation.status() == Status::Converged;
                 assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
-                smooth_values(simulation, &mut values);
-                let [low, high] = range_of(&values);
+                let field = InterpolatedField::new(simulation, Field::default(), PointValues::Recovered);
+                let largest = field.largest(simulation.system().mesh());
                 // The colour range of a body at rest covers its last state only.
-                let strained = values.iter().flatten().any(|v| *v > 0.0);
-                assert!(
-                    !moves || !strained || low >= preview.range[0] && high <= preview.range[1],
-                    "{id}, picture {k}"
-                );
+                assert!(!moves || largest <= preview.range[1], "{id}, picture {k}");
             });
             assert_eq!(seen, preview.pictures, "{id}");
         }

@@ -36,8 +36,8 @@ pub(crate) struct Thumbnail {
     /// Lines of the outline, as indices of points.
     outline: Vec<Vec<u32>>,
     triangles: Vec<[u32; 3]>,
-    /// Values of the field at the corners of the triangles.
-    values: Vec<[Option<f64>; 3]>,
+    /// Values of the field at the drawn points.
+    values: Vec<Option<f64>>,
 }
 
 impl Thumbnail {
@@ -63,7 +63,7 @@ impl Thumbnail {
         geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
         body_mesh.update(&simulation, &geometry, &view, None);
         let moved = body_mesh.points().to_vec();
-        let BodyMesh { values, range, .. } = body_mesh;
+        let (values, range) = (body_mesh.values(), body_mesh.range);
         let DisplayGeometry { outline, triangles, .. } = geometry;
         Some(Self {
             scene: SentScene(scene.clone()),
@@ -120,14 +120,9 @@ impl Thumbnail {
             })
         };
         let mut mesh = Mesh::default();
-        for (corners, values) in self.triangles.iter().zip(&self.values) {
-            let first = mesh.vertices.len() as u32;
-            for (&corner, &value) in corners.iter().zip(values) {
-                let pos = points.get(corner as usize).copied().unwrap_or_default();
-                mesh.vertices.push(Vertex { pos, uv: WHITE_UV, color: color(value) });
-            }
-            mesh.add_triangle(first, first + 1, first + 2);
-        }
+        let vertices = points.iter().zip(&self.values);
+        mesh.vertices.extend(vertices.map(|(&pos, &value)| Vertex { pos, uv: WHITE_UV, color: color(value) }));
+        self.triangles.iter().for_each(|&[a, b, c]| mesh.add_triangle(a, b, c));
         mesh
     }
 }
@@ -161,7 +156,7 @@ mod tests {
                 built_in.id
             );
             assert!(thumbnail.range[0] < thumbnail.range[1] && !thumbnail.outline.is_empty(), "{}", built_in.id);
-            assert_eq!(thumbnail.triangles.len(), thumbnail.values.len());
+            assert_eq!(thumbnail.moved.len(), thumbnail.values.len());
             if thumbnail.scene.0.analysis == Analysis::Static {
                 let mut solved = Simulation::new(&thumbnail.scene.0).unwrap();
                 solved.solve();
