@@ -10,7 +10,7 @@ use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
 use crate::stress::strain_warning;
-use crate::study::Reference;
+use crate::study::{Reference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -163,6 +163,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
     add(count(simulation.iterations(), "iteration"));
+    moved_points(simulation).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         path.sentences().for_each(|sentence| add(said(&sentence)));
     }
@@ -225,6 +226,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         lines.push(tr(halved).into());
         return lines;
     }
+    lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
     let residual = number(two_digits(simulation.residual()));
     let floor = simulation.equilibrium().and_then(Equilibrium::residual_floor);
     let asked = number(input.scene.solver.tolerance);
@@ -337,6 +339,9 @@ pub(crate) fn rho_number(rho: f64) -> String {
 pub(crate) fn error_tip(reference: Option<&Reference>, failure: Option<&Sentence>) -> String {
     if let Some(failure) = failure {
         return sentence(&said(failure));
+    }
+    if let Some(reference) = reference.filter(|reference| reference.first().is_none()) {
+        return sentence(&said(reference));
     }
     let reference = reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said);
     fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference)

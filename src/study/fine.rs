@@ -16,7 +16,7 @@ use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::progress::{Observer, Progress};
 use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
-use crate::sentence::sentence;
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
@@ -72,10 +72,16 @@ pub struct MovedPoint {
     pub distance: f64,
 }
 
-impl std::fmt::Display for MovedPoint {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [at, distance] = [engineering_pair(self.at, "m"), engineering(self.distance, "m")];
-        write!(f, "{} at {at} acts on the nearest node, {distance} away", self.key)
+displayed!(MovedPoint);
+
+impl From<&MovedPoint> for Sentence {
+    fn from(point: &MovedPoint) -> Self {
+        sentence!(
+            "%{point} at %{place} acts on the nearest node, %{distance} away",
+            point = point.key.clone(),
+            place = engineering_pair(point.at, "m"),
+            distance = engineering(point.distance, "m")
+        )
     }
 }
 

@@ -110,7 +110,7 @@ pub struct Reference {
     /// Distance of the exact beam from the fine solution used instead, percent; `None` if the beam is used, or there is
     /// none.
     pub beam_off_by_percent: Option<f64>,
-    /// Closed outlines of the deformed body, m.
+    /// Closed outlines of the deformed body, m; empty if no bound of the first probe's error is known.
     pub outline: Vec<Vec<Vector2<f64>>>,
     /// Displacement of the first probe by linear theory on a fine mesh, m: its distance from the reference is the error
     /// of linear theory.
@@ -128,7 +128,10 @@ displayed!(ReferenceSource, ProbeReference, Reference);
 
 impl From<&Reference> for Sentence {
     fn from(reference: &Reference) -> Self {
-        let known = reference.first().map_or_else(|| sentence!("no reference solution"), |first| (&first).into());
+        let known = reference.first().map_or_else(
+            || sentence!("no reference solution: the probe does not move, or no bound of the error is known"),
+            |first| (&first).into(),
+        );
         match reference.beam_off_by_percent {
             Some(off) => {
                 sentence!("%{reference}; beam theory differs by %{off} %", reference = known, off = format!("{off:.1}"))
@@ -206,10 +209,12 @@ impl Reference {
     fn of_fine(scene: &Scene, fine: Fine) -> Self {
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
         let probes = fine.probes.iter().zip(&fine.errors).map(|(&u, error)| probe(u, (*error)?, source));
+        let probes: Vec<_> = probes.collect();
+        let is_known = probes.first().is_some_and(Option::is_some);
         Self {
-            probes: probes.collect(),
+            probes,
             beam_off_by_percent: None,
-            outline: fine.outline,
+            outline: if is_known { fine.outline } else { Vec::new() },
             linear: fine.linear,
             moved: fine.moved,
             is_polygon: fine.is_polygon,

@@ -11,10 +11,10 @@ use warpbeam::Scene;
 use warpbeam::app::Lab;
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::format::percent;
-use warpbeam::scene::{Analysis, IntegratorKind, Load, MethodKind, Plane, Source};
+use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, MethodKind, Plane, Source};
 use warpbeam::simulation::{Simulation, Status};
-use warpbeam::study::Demand;
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
+use warpbeam::study::{Demand, Reference};
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let mut harness = harness_of(id);
@@ -410,6 +410,29 @@ fn remedies_are_one_click_away() {
     wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     assert!(harness.query_by_label_contains("holds for small rotations only").is_some(), "{:?}", texts(&harness));
+}
+
+/// The window says that a force acts on another point than the one of the scene, and that an error is unknown; an
+/// outline whose error is unknown is not drawn as a reference.
+#[test]
+fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
+    let moved = scene("article").force([2.5, 0.0], [0.0, -20e3]);
+    let mut harness = harness_with("article", moved);
+    harness.run();
+    let note = "load.1 at (2.5, 0) m acts on the nearest node, 707.1 mm away";
+    assert!(harness.query_by_label_contains(note).is_some(), "{:?}", texts(&harness));
+
+    // The displacement under a point load grows without limit on finer meshes.
+    let place = [1.5, -0.5];
+    let scene = Scene::beam(5.0, 1.0).with_cells(10, 2).with_element(ElementKind::Q4).clamp("left");
+    let scene = scene.force(place, [60e3, 0.0]).probe("there", place).with_method(MethodKind::Newton);
+    let reference = Reference::of(&scene).unwrap();
+    assert_eq!((reference.first(), reference.outline.len()), (None, 0));
+    let mut harness = harness_with("article", scene);
+    wait(&mut harness, "the reference", |lab| !lab.is_computing());
+    harness.run();
+    let mut bar = texts(&harness).into_iter().filter(|text| text.starts_with("ERROR"));
+    assert!(bar.next().is_some_and(|text| text.ends_with("no reference")), "{:?}", texts(&harness));
 }
 
 /// If ρ is above 1 although the result has converged, the window explains why.

@@ -71,6 +71,8 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let doubt = doubt(input, errors);
+    let is_without_reference =
+        input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
     let color = match error_color(palette, errors.own) {
         color if doubt.is_some() && color == palette.good => palette.warning,
         color => color,
@@ -82,7 +84,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
             word: match errors.source {
                 _ if doubt.is_some() => doubt.unwrap_or_default().into(),
                 Some(source) => tr(source.word()).into(),
-                None if input.reference_failure.is_some() => tr("no reference").into(),
+                None if is_without_reference => tr("no reference").into(),
                 None => sought.map_or(Cow::default(), |done| {
                     let percent = format!("{:.0}", 100.0 * done);
                     fill!("computing the reference: %{percent} %", percent = percent).into()
