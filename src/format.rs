@@ -208,6 +208,9 @@ pub struct Context {
 }
 
 impl Context {
+    /// Largest relative error of forces that a text ignores, however large the solver's tolerance is.
+    pub const MAX_INEXACT: f64 = 1e-6;
+
     /// Returns the context of all results of a kind; values that are not finite are ignored.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {

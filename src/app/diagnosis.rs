@@ -110,7 +110,7 @@ pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
 }
 
 /// Returns the status as a sentence, and `true` if it reports a failure. `shows_converged` is `true` if the last
-/// equilibrium is drawn.
+/// equilibrium is drawn, which has a label of its own.
 pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
     match simulation.status() {
@@ -121,13 +121,8 @@ pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converge
         Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
         Status::Converged => (tr("Converged").to_owned(), false),
         Status::Accepted => (tr("Accepted").to_owned(), false),
-        Status::NotConverged(reason) if shows_converged => {
-            (fill!("Not converged: %{reason}. Showing the last equilibrium.", reason = said(reason)), true)
-        }
         Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
-        Status::Diverged(reason) if shows_converged => {
-            (fill!("Diverged: %{reason}. Showing the last equilibrium.", reason = said(reason)), true)
-        }
+        Status::Diverged(reason) if shows_converged => (fill!("Diverged: %{reason}.", reason = said(reason)), true),
         Status::Diverged(reason) => {
             (fill!("Diverged: %{reason}. Showing the last finite state.", reason = said(reason)), true)
         }

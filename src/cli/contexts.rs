@@ -9,8 +9,6 @@ use crate::stress::PlaneTensor;
 const ROTATION: f64 = 1e-3;
 /// Rounding error of a strain energy relative to that of a strain, whose square it is.
 const ENERGY_OF_STRAIN: f64 = 1e-10;
-/// Largest relative error of forces that the text ignores, however large the solver's tolerance is.
-const MAX_INEXACT: f64 = 1e-6;
 
 /// Contexts of the results of a scene.
 pub(super) struct Contexts {
@@ -65,7 +63,7 @@ impl Contexts {
         moments.extend(forces.iter().map(|force| force * size));
         forces.extend(arms);
         // Forces balance to the tolerance of the solver.
-        let inexact = scene.solver.tolerance.max(solution.residual).min(MAX_INEXACT);
+        let inexact = scene.solver.tolerance.max(solution.residual).min(Context::MAX_INEXACT);
         let energy = &solution.energy;
         let mut energies = vec![energy.elastic, energy.external, energy.supports.unwrap_or_default()];
         if let Some(motion) = &solution.motion {

@@ -90,6 +90,10 @@ fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
     for k in 0..30 {
         let before = off(&warped);
         warped.step();
+        // An iteration that has ended does not move.
+        if *warped.status() != Status::Running {
+            break;
+        }
         let after = off(&warped);
         if after < lowest && rho < 1.0 || after > highest && k > 0 {
             break;

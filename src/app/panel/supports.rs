@@ -6,7 +6,7 @@ use crate::app::language::{fill, joined, tr};
 use crate::app::panel::{Action, PanelState};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
-use crate::format::{editable, engineering, engineering_pair};
+use crate::format::{Context, editable, engineering, engineering_pair};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
@@ -127,8 +127,10 @@ fn reach(length: f64) -> f64 {
 
 /// Shows a row with the reaction of every support of a body at rest.
 pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation: &Simulation) {
-    for (i, reaction) in simulation.support_reactions().into_iter().enumerate() {
-        let force = engineering_pair(reaction.force.into(), "N");
+    let reactions = simulation.support_reactions();
+    let forces = Context::of_inexact(reactions.iter().map(|reaction| reaction.force.norm()), Context::MAX_INEXACT);
+    for (i, reaction) in reactions.into_iter().enumerate() {
+        let force = forces.pair(reaction.force.into(), "N");
         let (name, tip) = match &reaction.place {
             Place::Edge(edge) => (
                 fill!("Support %{edge}", edge = tr(edge)),

@@ -283,13 +283,18 @@ impl Lab {
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
-        let (text, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
-        // If there is a status bar, it shows the warning.
-        let warning = (is_bad && !self.desk.view.bars).then_some(text.as_str());
-        self.desk.viewport.paint(&painter, ui.visuals(), &self.content(), errors, warning);
-        if readout.shows_converged {
-            let text = diagnosis::equilibrium_text(readout.shown.scene(), readout.scene);
-            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+        let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
+        // If there is a status bar, it shows the status.
+        let status = (is_bad && !self.desk.view.bars).then_some(status);
+        let label = readout.shows_converged;
+        let label = label.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene));
+        let visuals = ui.visuals();
+        let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
+        let note = status.iter().chain(&label).map(String::as_str).collect::<Vec<_>>().join("\n");
+        let note = (!note.is_empty()).then_some((note.as_str(), color));
+        self.desk.viewport.paint(&painter, visuals, &self.content(), errors, note);
+        if let Some(label) = label {
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
             let taken =

@@ -5,7 +5,7 @@ use crate::app::widgets::text::boxed_text;
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
-use crate::app::diagnosis::{self, Errors};
+use crate::app::diagnosis::Errors;
 use crate::app::language::{percent, tr};
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
@@ -58,8 +58,8 @@ pub(crate) struct Overlay<'a> {
     pub reactions: &'a [SupportReaction],
     /// Values of the field at both ends of the colour map.
     pub color_range: [f64; 2],
-    /// Warning about the state.
-    pub warning: Option<&'a str>,
+    /// Note about the state, and its colour.
+    pub note: Option<(&'a str, Color32)>,
 }
 
 /// Paints all overlays.
@@ -80,12 +80,9 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
     }
-    let at = rect.center_top() + vec2(0.0, 46.0);
-    if let Some(warning) = overlay.warning {
-        boxed_text(painter, at, Align2::CENTER_TOP, warning, visuals, visuals.error_fg_color, rect.width() - 48.0);
-    } else if let Some(wanted) = overlay.wanted {
-        let text = diagnosis::equilibrium_text(overlay.scene, wanted);
-        boxed_text(painter, at, Align2::CENTER_TOP, &text, visuals, palette.text, rect.width() - 48.0);
+    if let Some((note, color)) = overlay.note {
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 48.0);
     }
 }
 

@@ -46,7 +46,8 @@ fn metres(v: Vector2<f64>) -> String {
 
 /// Formats a matrix in two rows.
 fn rows(m: &Matrix2<f64>) -> String {
-    let number = |v: f64| format!("{:>8}", format!("{v:.4}"));
+    // Adding 0 removes the sign of -0.
+    let number = |v: f64| format!("{:>8}", format!("{:.4}", (1e4 * v).round() / 1e4 + 0.0));
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
 }
 

@@ -1,6 +1,6 @@
 //! View of one body: camera, drawn mesh, pointer, and overlays.
 
-use egui::{Align2, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
@@ -485,14 +485,14 @@ impl BodyView {
         })
     }
 
-    /// Paints the overlays; `warning` is a message over the body.
+    /// Paints the overlays; `note` is a text over the body, with its colour.
     pub(crate) fn paint(
         &self,
         painter: &Painter,
         visuals: &Visuals,
         content: &Content<'_>,
         errors: Errors,
-        warning: Option<&str>,
+        note: Option<(&str, Color32)>,
     ) {
         let (session, is_animated) = (content.session, content.animation.is_some());
         let simulation = session.simulation();
@@ -519,7 +519,7 @@ impl BodyView {
             playback: session.playback(),
             reactions: &reactions,
             color_range: self.body.range,
-            warning,
+            note,
         };
         overlay::paint(painter, self.rect, &overlay, visuals);
     }

@@ -317,7 +317,7 @@ impl<P: ComparedPane> Panes<P> {
                 reactions: &[],
                 playback: &self.still,
                 color_range: display.body_mesh.range,
-                warning: None,
+                note: None,
             };
             overlay::body(&painter, place, &overlay, ui.visuals());
         }
