@@ -25,6 +25,8 @@ mod contexts;
 mod draw_args;
 #[cfg(feature = "app")]
 mod driver;
+#[cfg(feature = "app")]
+mod explorer;
 mod json;
 mod manual;
 mod memory;
@@ -89,15 +91,21 @@ impl CliError {
     }
 }
 
+/// Messages of libraries that are printed without `RUST_LOG`. Errors of drivers are left out: they come back as values,
+/// and those of adapters that cannot draw are printed only if no adapter can.
+const LOG_FILTER: &str = "error,wgpu_hal=off,wgpu::backend=off";
+
 /// Runs the command given by the process arguments.
 #[must_use]
 pub fn main() -> ExitCode {
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error,wgpu_hal=off")).init();
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
     let command = Cli::parse().command;
     #[cfg(feature = "app")]
     if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_) | Command::Gpu(_))) {
         driver::silence();
     }
+    #[cfg(feature = "app")]
+    let needs_dialog = matches!(command, None | Some(Command::Run { .. })) && explorer::leave_console();
     let result = match command {
         #[cfg(feature = "app")]
         None => window::run_default(),
@@ -125,6 +133,10 @@ pub fn main() -> ExitCode {
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");
+        #[cfg(feature = "app")]
+        if needs_dialog {
+            explorer::show_error(&error.to_string());
+        }
         ExitCode::from(error.exit_code())
     })
 }

@@ -210,15 +210,20 @@ pub(crate) fn wanted_name(name: Option<&str>) -> Option<String> {
     name.map(str::to_owned).or_else(|| std::env::var(NAME).ok()).filter(|name| !name.trim().is_empty())
 }
 
+/// Creates an instance with these backends.
+pub(crate) fn instance(mut descriptor: wgpu::InstanceDescriptor, backends: wgpu::Backends) -> wgpu::Instance {
+    descriptor.backends = backends;
+    // No call here is indirect. wgpu would compile shaders for the validation of such calls, and log an error where the
+    // driver cannot compile them.
+    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    wgpu::Instance::new(descriptor)
+}
+
 /// Returns a search without a window.
 pub(crate) fn offscreen(
     name: Option<&str>,
 ) -> AdapterSearch<impl Fn(wgpu::Backends) -> wgpu::Instance, impl Fn(&wgpu::Instance) -> FoundSurface> {
-    let instance = |backends| {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        descriptor.backends = backends;
-        wgpu::Instance::new(descriptor)
-    };
+    let instance = |backends| instance(wgpu::InstanceDescriptor::new_without_display_handle_from_env(), backends);
     AdapterSearch { name: wanted_name(name), instance, surface: |_: &wgpu::Instance| Ok(None) }
 }
 

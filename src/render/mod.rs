@@ -18,7 +18,7 @@ pub(crate) mod interpolated_field;
 mod offscreen;
 
 pub use adapter::{AdapterReport, adapters};
-pub(crate) use adapter::{AdapterSearch, Candidate, NO_WINDOW, wanted_name};
+pub(crate) use adapter::{AdapterSearch, Candidate, NO_WINDOW, instance, wanted_name};
 pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;

@@ -9,6 +9,7 @@ mod cli;
 #[cfg(feature = "app")]
 mod docs;
 mod examples;
+mod packages;
 mod programs;
 #[cfg(feature = "app")]
 mod record;

@@ -144,8 +144,8 @@ const TESTS = {
     });
   },
 
-  async "a drag of the arrow changes the force, and an undo restores it"(browser) {
-    await onPage(browser, "?scene=article&lang=en", async ({ page, until, still }) => {
+  async "a drag of the arrow changes the force, and an undo restores it, on a Mac with Cmd"(browser) {
+    const drag = (undo) => async ({ page, until, still }) => {
       // Any input ends the animation of the start.
       await page.mouse.move(640, 700);
       const before = await still();
@@ -158,9 +158,12 @@ const TESTS = {
       const after = await until((now) => now.loads[tip.load].force.some((f, k) => f !== force[k]), "waited for another force");
       await until(settled, "waited for the new equilibrium");
       if (JSON.stringify(after.probes) === JSON.stringify(before.probes)) throw new Error("the body did not follow the force");
-      await page.keyboard.press("Control+z");
+      await page.keyboard.press(undo);
       await until((now) => now.loads[tip.load].force.every((f, k) => f === force[k]), "waited for the undo");
-    });
+    };
+    const mac = { userAgent: "Mozilla/5.0 (Macintosh; Intel Mac OS X 10_15_7) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/140.0.0.0 Safari/537.36" };
+    await onPage(browser, "?scene=article&lang=en", drag("Control+z"));
+    await onPage(browser, "?scene=article&lang=en", drag("Meta+z"), mac);
   },
 
   async "the swing runs, and its energy drift is the native one"(browser) {

@@ -3,6 +3,7 @@
 use crate::common::lab::{type_into, unfold};
 use crate::common::{scene, solve_json};
 use egui::accesskit::Role;
+use egui::os::OperatingSystem;
 use egui::{Event, Key, Modifiers, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -628,6 +629,29 @@ fn the_gallery_is_navigated_by_keys() {
         harness.run_steps(3);
         assert_eq!(harness.state().scene().name, "Chime");
         assert!(harness.query_by_role_and_label(Role::Button, "cantilever").is_none(), "{size:?}: it stays open");
+    }
+}
+
+/// Lists and tooltips name the keys of the system: on macOS, Cmd in place of Ctrl.
+#[test]
+fn shortcuts_have_the_names_of_the_system() {
+    for (system, command, other) in [
+        (OperatingSystem::Nix, "Ctrl", "Cmd"),
+        (OperatingSystem::Windows, "Ctrl", "Cmd"),
+        (OperatingSystem::Mac, "Cmd", "Ctrl"),
+    ] {
+        let mut harness = harness("article");
+        harness.ctx.set_os(system);
+        let undo = harness.get_by_role_and_label(Role::Button, "Undo").rect().center();
+        harness.hover_at(undo);
+        harness.run_steps(20);
+        harness.get_by_label(&format!("Undo the last edit ({command}+Z)"));
+        key(&mut harness, Modifiers::NONE, Key::F1);
+        harness.run();
+        for key in ["O", "Shift+S"] {
+            harness.get_by_label(&format!("{command}+{key}"));
+            assert!(harness.query_by_label(&format!("{other}+{key}")).is_none(), "{system:?}: {other}+{key}");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::app::language::{joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::widgets::text::with_keys;
 use crate::render::interpolated_field::InterpolatedField;
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::sentence;
@@ -121,7 +122,8 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Copy as Rust", "Copy a Rust program that builds the scene and solves it (Shift+C)", Action::CopyRust),
             ("Copy link", "Copy the address of this page with the whole scene in it (U)", Action::CopyLink),
         ] {
-            if action.is_available() && ui.button(tr(name)).on_hover_text(tr(tip)).clicked() {
+            let tip = with_keys(ui.ctx(), tr(tip));
+            if action.is_available() && ui.button(tr(name)).on_hover_text(tip).clicked() {
                 actions.push(action);
             }
         }

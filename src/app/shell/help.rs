@@ -4,6 +4,7 @@ use egui::{Align2, Context};
 
 use crate::app::language::tr;
 use crate::app::shell::shortcuts::shortcuts;
+use crate::app::widgets::text::with_keys;
 
 /// Keys that belong to a mode or to the control with the focus, and their descriptions.
 pub const FOCUS_KEYS: &[(&str, &str)] = &[
@@ -39,7 +40,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .show(ctx, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
                 for shortcut in shortcuts() {
-                    ui.strong(shortcut.text());
+                    ui.strong(with_keys(ctx, &shortcut.text()));
                     ui.label(tr(shortcut.does));
                     ui.end_row();
                 }

@@ -25,7 +25,7 @@ const fn with(modifiers: Modifiers, key: Key, does: &'static str, act: fn() -> A
 }
 
 impl Shortcut {
-    /// Returns the name of the key with its modifiers.
+    /// Returns the name of the key with its modifiers, except on systems of Apple.
     pub(crate) fn text(&self) -> String {
         let command = if self.modifiers.command { "Ctrl+" } else { "" };
         let shift = if self.modifiers.shift { "Shift+" } else { "" };

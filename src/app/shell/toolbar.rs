@@ -1,6 +1,7 @@
 //! Toolbar along the top: scene, run, modes, theme, help.
 
 use crate::app::widgets::buttons::{Icon, icon_button};
+use crate::app::widgets::text::with_keys;
 use egui::{Align, Button, Layout, Ui};
 
 use crate::app::action::Action;
@@ -119,8 +120,8 @@ fn history(ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
         (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
     ] {
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), None, false));
-        let tip = tr(tip);
-        if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
+        let tip = with_keys(ui.ctx(), tr(tip));
+        if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
             actions.push(action);
         }
     }

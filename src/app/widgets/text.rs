@@ -1,13 +1,18 @@
-//! Text on a box, semibold text, and the sign for an unknown number.
+//! Text on a box, semibold text, the names of keys, and the sign for an unknown number.
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Visuals, vec2};
+use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Visuals, vec2};
 
 use crate::app::widgets::palette::BODY;
 
 /// Sign in place of an unknown number.
 pub(crate) const UNKNOWN: &str = "\u{2013}";
+
+/// Returns a text with the names of keys on this system: Cmd in place of Ctrl on those of Apple.
+pub(crate) fn with_keys(ctx: &Context, text: &str) -> String {
+    if ctx.os().is_mac() { text.replace("Ctrl+", "Cmd+") } else { text.to_owned() }
+}
 
 /// Paints text on a box with the background's colour, moved into the view if it would leave it.
 pub(crate) fn boxed_text(

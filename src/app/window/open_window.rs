@@ -14,7 +14,7 @@ use crate::app::AppError;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::platform::clipboard::Clipboard;
 use crate::app::platform::new_file::NewFile;
-use crate::render::{AdapterSearch, Candidate, Gpu, NO_WINDOW, RenderError, View, read_texture, wanted_name};
+use crate::render::{AdapterSearch, Candidate, Gpu, NO_WINDOW, RenderError, View, instance, read_texture, wanted_name};
 
 /// Window, and the graphics resources that draw into it. The order of the fields matters: the surface must be dropped
 /// before its window.
@@ -54,9 +54,7 @@ impl Graphics {
     ) -> Result<Self, AppError> {
         let instance = |backends| {
             let display = Box::new(display.clone());
-            let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
-            descriptor.backends = backends;
-            wgpu::Instance::new(descriptor)
+            instance(wgpu::InstanceDescriptor::new_with_display_handle_from_env(display), backends)
         };
         let surface = |instance: &wgpu::Instance| instance.create_surface(window.clone()).map(Some);
         let search = AdapterSearch { name: wanted_name(adapter), instance, surface };

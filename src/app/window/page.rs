@@ -2,6 +2,8 @@
 
 use std::error::Error;
 
+use egui::os::OperatingSystem;
+
 use crate::app::language::{self, Language, tr};
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
@@ -45,5 +47,8 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let scene = files::open(&source)?;
     // A large model is meshed in the background.
     let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    Ok(App::new((source, scene, simulation), (settings, unreadable), address.card)?.run(Display::open()?)?)
+    let app = App::new((source, scene, simulation), (settings, unreadable), address.card)?;
+    // Shortcuts have the Cmd key on systems of Apple.
+    app.ctx.set_os(OperatingSystem::from_user_agent(&page::user_agent()));
+    Ok(app.run(Display::open()?)?)
 }

@@ -39,9 +39,22 @@ fn replace_file(path: &Path, bytes: &[u8], syncs: bool) -> std::io::Result<()> {
             file.set_permissions(before.permissions())?;
         }
         drop(file);
-        std::fs::rename(&temporary, &path)
+        std::fs::rename(&temporary, &path).map_err(explained)
     };
     write().inspect_err(|_| drop(std::fs::remove_file(&temporary)))
+}
+
+/// Adds the usual reason to an error of Windows, which does not replace a file that another program keeps for itself. Its
+/// message may be "Access is denied".
+fn explained(error: std::io::Error) -> std::io::Error {
+    /// Error of Windows: another program has opened the file.
+    const SHARING_VIOLATION: i32 = 32;
+    let is_open =
+        error.kind() == std::io::ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION);
+    match cfg!(windows) && is_open {
+        true => std::io::Error::new(error.kind(), format!("another program may have opened the file: {error}")),
+        false => error,
+    }
 }
 
 #[cfg(test)]

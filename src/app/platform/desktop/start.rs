@@ -11,7 +11,27 @@ const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
 
 /// Returns the attributes of a window of this size, points.
 pub(crate) fn window(attributes: WindowAttributes, event_loop: &ActiveEventLoop, size: [f32; 2]) -> WindowAttributes {
-    attributes.with_inner_size(first_size(event_loop, size)).with_min_inner_size(SMALLEST)
+    with_icon(attributes).with_inner_size(first_size(event_loop, size)).with_min_inner_size(SMALLEST)
+}
+
+/// Adds the icons of title bar and taskbar, which `build.rs` has put into the program. A window of Windows has none by
+/// itself.
+#[cfg(windows)]
+fn with_icon(attributes: WindowAttributes) -> WindowAttributes {
+    use winit::dpi::PhysicalSize;
+    use winit::platform::windows::{IconExtWindows as _, WindowAttributesExtWindows as _};
+    use winit::window::Icon;
+
+    /// Number of the icon in the program.
+    const ICON: u16 = 1;
+    let icon = |side: u32| Icon::from_resource(ICON, Some(PhysicalSize::new(side, side))).ok();
+    attributes.with_window_icon(icon(32)).with_taskbar_icon(icon(256))
+}
+
+/// Adds nothing: other systems show the icon of the installed program.
+#[cfg(not(windows))]
+fn with_icon(attributes: WindowAttributes) -> WindowAttributes {
+    attributes
 }
 
 /// Returns the size of a new window, points: the wanted size, but at most nine tenths of the screen.

@@ -82,6 +82,11 @@ pub(crate) fn language() -> Option<String> {
     web_sys::window()?.navigator().language()
 }
 
+/// Returns the browser's description of itself, which names the system.
+pub(crate) fn user_agent() -> String {
+    web_sys::window().and_then(|window| window.navigator().user_agent().ok()).unwrap_or_default()
+}
+
 /// Returns the text of a scene in a link.
 fn decode(packed: &str) -> Result<String, LinkError> {
     let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;

@@ -16,6 +16,7 @@ use crate::app::language::tr;
 use crate::app::readout::Readout;
 use crate::app::task::thread::{POLL, Task, Update};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::widgets::text::with_keys;
 use crate::scene::{Analysis, Scene, registry};
 
 pub(crate) mod thumbnail;
@@ -110,8 +111,8 @@ impl Gallery {
         ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         ui.horizontal(|ui| {
-            if ui.button(tr("Open a file…")).on_hover_text(tr("Open a scene file, or a recent one (Ctrl+O)")).clicked()
-            {
+            let tip = with_keys(ui.ctx(), tr("Open a scene file, or a recent one (Ctrl+O)"));
+            if ui.button(tr("Open a file…")).on_hover_text(tip).clicked() {
                 actions.push(Action::OpenFile);
             }
             ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
