@@ -22,7 +22,8 @@ pub struct Frame<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Displayed field.
     pub field: Field,
-    /// Components of the field at every position, which are interpolated; see [`Field::components`].
+    /// Components of the field at every position, which are interpolated: of the strain, ε₁₁, ε₂₂, ε₁₂; of a rotation
+    /// angle, cos θ, sin θ, 0; or the value of an element, 0, 0.
     pub components: &'a [Option<[f64; 3]>],
     /// Largest magnitude of a component.
     pub largest_component: f64,

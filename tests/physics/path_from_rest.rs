@@ -366,8 +366,15 @@ fn random_scenes_end_on_their_path() {
         let (total, size) =
             external.iter().fold((solution.reaction.force, 0.0), |(sum, size), f| (sum + f, size + f.norm()));
         let reactions: f64 = solution.supports.iter().map(|support| support.force.norm()).sum();
-        let tolerance = if solution.residual_floor.is_some() { 1e-3 } else { 1e-5 };
-        if total.norm() > tolerance * (size + reactions) {
+        let off = total.norm() / (size + reactions);
+        // In a body hundreds of times as long as high, rounding may change the residual by more than the tolerance: the
+        // inner forces are much larger than the loads.
+        let is_rounding = || {
+            let mut exact = scene.clone();
+            exact.solver.tolerance = 1e-14;
+            solved(&exact).solution().residual_floor.is_some_and(|floor| floor > scene.solver.tolerance)
+        };
+        if off > 1e-3 || off > 1e-5 && !is_rounding() {
             wrong.push(format!("seed {seed}: {} N are not balanced of {size} N", total.norm()));
         }
         let Some(truth) = in_small_steps(&scene, 60) else { continue };
