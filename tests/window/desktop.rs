@@ -540,11 +540,15 @@ fn edits_survive_a_killed_window() {
         harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
     };
     let next = Window::open(&desktop, &["run", "article"]);
-    assert!(changed(&next.settle(), &edited) > 10_000, "it starts with the scene as it was opened");
+    let offered = next.settle();
+    assert!(changed(&offered, &edited) > 10_000, "it starts with the scene as it was opened");
     let click = || {
-        next.point(restore.x, restore.y);
-        desktop.xdotool(&["click", "1"]);
-        next.point(420.0, 735.0);
+        // A second click after the first one would inspect the body under the button.
+        if next.shows(&offered) {
+            next.point(restore.x, restore.y);
+            desktop.xdotool(&["click", "1"]);
+            next.point(420.0, 735.0);
+        }
     };
     ask_until("the restored edits", click, || next.shows(&edited).then_some(()));
     wait_for("another copy", || copies.join("1.toml").exists().then_some(()));

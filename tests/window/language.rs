@@ -233,10 +233,12 @@ fn sources(folder: &Path) -> impl Iterator<Item = PathBuf> {
     crate::common::files::rust_files(folder).into_iter().filter(|file| !file.ends_with("tests.rs"))
 }
 
-/// Literals of the window's sources that are not shown in it: copied texts, ids, variables, and messages
-/// of programs without a window.
+/// Literals of the window's sources that are not shown in it: copied texts, ids, variables, messages of programs without
+/// a window; and those that are not translated: names of keys, and reasons added to messages of the system.
 const NOT_SHOWN: &[&str] = &[
     "wasm32",
+    "Cmd+",
+    "another program may have opened the file: {error}",
     ".toml,.msh",
     "scene=",
     "no document",
