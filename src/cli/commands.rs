@@ -78,7 +78,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let mut stages = solution.time;
     stages.certify += certify_path;
     let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, reference: reference_time };
-    let mut warnings = limits_of(&simulation, &stress);
+    let mut warnings = limits_of(&simulation, &solution.deformation, &stress);
     if let Some(Err(error)) = &reference {
         warnings.push(match error {
             StudyError::TooFine { .. } => format!("{error} within the default effort; --reference full does it"),
@@ -137,10 +137,9 @@ fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &
 }
 
 /// Returns sentences about the limitations of a result that are found without a reference solution.
-fn limits_of(simulation: &Simulation, stress: &StressResult) -> Vec<String> {
+fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &StressResult) -> Vec<String> {
     let mut limits: Vec<String> = Vec::new();
-    let Deformation { max_strain, inverted_elements, .. } =
-        Deformation::of(simulation.problem(), simulation.state(), simulation.kinematics());
+    let Deformation { max_strain, inverted_elements, .. } = *deformation;
     let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
     limits.extend(inversion.iter().chain(&strain_warning(max_strain)).map(ToString::to_string));
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));

@@ -52,6 +52,14 @@ pub struct Frame<'a> {
     pub surround: [u8; 3],
 }
 
+impl Frame<'_> {
+    /// Returns the unit of the components in the shader. Rounding in f32 does not depend on units if components and
+    /// values are of order 1.
+    fn component_unit(&self) -> f64 {
+        if self.largest_component > 0.0 { self.largest_component } else { 1.0 }
+    }
+}
+
 /// Rectangle of a target, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Viewport {
@@ -136,9 +144,9 @@ impl ViewUniform {
     /// Returns the uniform of a body, with clip space units per metre.
     fn new(frame: &Frame<'_>, scale: [f32; 2]) -> Self {
         let (material, lame) = (frame.material, frame.material.lame());
-        // Rounding in f32 does not depend on units if components and values are of order 1.
-        let unit = if frame.largest_component > 0.0 { frame.largest_component } else { 1.0 };
+        let unit = frame.component_unit();
         let stress = material.young * unit;
+        // The numbers are those of the fields in `mesh.wgsl`.
         let (field, value) = match (frame.field, frame.kinematics) {
             (Field::RotationAngle, _) => (1, 1.0),
             (Field::LargestStrain, _) => (2, unit),
@@ -427,7 +435,7 @@ impl BodyRenderer {
         self.scratch.extend(corners.map(|corner| Vertex::colored(corner, [r, g, b, 255])));
         let triangles = self.scratch.len() as u32;
         let [r, g, b] = frame.absent_color;
-        let relative = |c: f64| if frame.largest_component > 0.0 { (c / frame.largest_component) as f32 } else { 0.0 };
+        let unit = frame.component_unit();
         for triangle in frame.triangles {
             // A triangle whose components are missing at a corner is drawn without values.
             let corners = triangle.map(|node| frame.components.get(node as usize).copied().flatten());
@@ -435,7 +443,7 @@ impl BodyRenderer {
             self.scratch.extend(triangle.iter().zip(corners).map(|(&node, components)| Vertex {
                 position: position(node),
                 color: [r, g, b, if is_known { 0 } else { 255 }],
-                components: components.unwrap_or_default().map(relative),
+                components: components.unwrap_or_default().map(|c| (c / unit) as f32),
             }));
         }
         let lines = self.scratch.len() as u32;

@@ -215,8 +215,7 @@ mod tests {
                         .flat_map(|element| lattice.points.iter().map(move |&at| MaterialPoint { element, at }));
                     for (point, components) in points.zip(&drawn) {
                         let components = components.unwrap();
-                        let kinematics = interpolated.kinematics();
-                        let drawn = field.of_components(components, &interpolated.material(), kinematics).unwrap();
+                        let drawn = interpolated.value(components).unwrap();
                         let own = interpolated.at(mesh, point).unwrap();
                         let about = format!("{element:?} {field:?} {values:?}: {drawn} is not {own}");
                         assert!((drawn - own).abs() <= 1e-9 * largest, "{about}");

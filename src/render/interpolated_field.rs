@@ -91,7 +91,7 @@ impl InterpolatedField {
     /// recovered at the nodes.
     pub(crate) fn update(&mut self, simulation: &Simulation, field: Field, values: PointValues) {
         let (problem, state, kinematics) = (simulation.problem(), simulation.state(), simulation.kinematics());
-        self.values = if field.is_of_elements() { PointValues::Raw } else { values };
+        self.values = source(field, values);
         (self.field, self.material, self.kinematics) = (field, *problem.material(), kinematics);
         self.components.clear();
         if field.is_of_elements() {
@@ -108,8 +108,7 @@ impl InterpolatedField {
 
     /// Returns `true` if only the simulation's displacements can differ from those of this field.
     pub(crate) fn has_settings(&self, simulation: &Simulation, field: Field, values: PointValues) -> bool {
-        let values = if field.is_of_elements() { PointValues::Raw } else { values };
-        (self.field, self.values) == (field, values)
+        (self.field, self.values) == (field, source(field, values))
             && self.material == *simulation.problem().material()
             && self.kinematics == simulation.kinematics()
     }
@@ -140,6 +139,11 @@ impl InterpolatedField {
         &self.components
     }
 
+    /// Returns the value of interpolated components.
+    pub(crate) fn value(&self, components: [f64; 3]) -> Option<f64> {
+        self.field.of_components(components, &self.material, self.kinematics)
+    }
+
     /// Returns the value at a material point of the mesh; `None` if there is no such point, or no value.
     pub(crate) fn at(&self, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
         let components = match self.values {
@@ -152,24 +156,23 @@ impl InterpolatedField {
                 weighted_sum(own.iter().map(Some).zip(&weights))
             }
         };
-        self.field.of_components(components?, &self.material, self.kinematics)
+        self.value(components?)
     }
 
     /// Returns the largest magnitude of the values at the nodes, or at the corners of every element if the components
     /// are not recovered; 0 without values. Inside an element the value is smaller, because a norm of a strain that is
     /// interpolated between the corners is.
     pub(crate) fn largest(&self, mesh: &Mesh) -> f64 {
-        let value = |components| self.field.of_components(components, &self.material, self.kinematics);
         let largest = |largest: f64, value: Option<f64>| value.map_or(largest, |value| largest.max(value.abs()));
         match self.values {
-            PointValues::Recovered => self.components.iter().map(|own| value(*own)).fold(0.0, largest),
+            PointValues::Recovered => self.components.iter().map(|own| self.value(*own)).fold(0.0, largest),
             PointValues::Raw => {
                 let entry = mesh.entry();
                 let corners: Vec<Vec<f64>> = entry.cell.corners.iter().map(|at| (entry.point_weights)(*at)).collect();
                 let elements = self.components.chunks_exact(entry.points.len().max(1));
                 let at_corners = elements
                     .flat_map(|own| corners.iter().map(move |weights| weighted_sum(own.iter().map(Some).zip(weights))));
-                at_corners.map(|components| value(components?)).fold(0.0, largest)
+                at_corners.map(|components| self.value(components?)).fold(0.0, largest)
             }
         }
     }
@@ -178,6 +181,11 @@ impl InterpolatedField {
     pub(crate) fn range(&self, mesh: &Mesh) -> [f64; 2] {
         self.field.range(self.largest(mesh))
     }
+}
+
+/// Returns the source of a field's components: a field of elements is never recovered at the nodes.
+fn source(field: Field, wanted: PointValues) -> PointValues {
+    if field.is_of_elements() { PointValues::Raw } else { wanted }
 }
 
 /// Returns a weighted sum of components; `None` if one is missing or the sum is not finite.

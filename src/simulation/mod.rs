@@ -609,7 +609,7 @@ impl Simulation {
             residual: self.residual(),
             residual_floor: search.and_then(Equilibrium::residual_floor),
             certificate: search.and_then(Equilibrium::certificate),
-            deformation: Deformation::of(problem, state, self.kinematics()),
+            deformation: Deformation::of(problem, state, &self.nodal_stress()),
             probes: probe_results(problem, state),
             energy: Energy {
                 supports: match (problem.supports().move_the_body(), self.is_linear()) {

@@ -81,12 +81,11 @@ pub struct Deformation {
 }
 
 impl Deformation {
-    /// Computes the measures for a state.
+    /// Computes the measures for a state whose stress has been recovered.
     #[doc(hidden)]
     #[must_use]
-    pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
+    pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let elements = problem.system().elements();
-        let nodal = NodalStress::of(problem, state, kinematics);
         let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
         let mut result = Self { max_strain: strains.fold(0.0, f64::max), ..Self::default() };
         let mut last_inverted = None;

@@ -286,8 +286,7 @@ impl Lab {
         let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
         // If there is a status bar, it shows the status.
         let status = (is_bad && !self.desk.view.bars).then_some(status);
-        let label = readout.shows_converged;
-        let label = label.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene));
+        let label = readout.shows_converged.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene));
         let visuals = ui.visuals();
         let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
         let note = status.iter().chain(&label).map(String::as_str).collect::<Vec<_>>().join("\n");

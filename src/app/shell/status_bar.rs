@@ -81,11 +81,11 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
         BarNumber {
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
-            word: match errors.source {
-                _ if doubt.is_some() => doubt.unwrap_or_default().into(),
-                Some(source) => tr(source.word()).into(),
-                None if is_without_reference => tr("no reference").into(),
-                None => sought.map_or(Cow::default(), |done| {
+            word: match (doubt, errors.source) {
+                (Some(doubt), _) => doubt.into(),
+                (None, Some(source)) => tr(source.word()).into(),
+                (None, None) if is_without_reference => tr("no reference").into(),
+                (None, None) => sought.map_or(Cow::default(), |done| {
                     let percent = format!("{:.0}", 100.0 * done);
                     fill!("computing the reference: %{percent} %", percent = percent).into()
                 }),

@@ -25,8 +25,9 @@ impl Quality {
         if self.is_of(simulation) {
             return;
         }
-        self.mesh_error_percent = simulation.mesh_error(&simulation.nodal_stress()).percent;
-        let deformation = Deformation::of(simulation.problem(), simulation.state(), simulation.kinematics());
+        let nodal = simulation.nodal_stress();
+        self.mesh_error_percent = simulation.mesh_error(&nodal).percent;
+        let deformation = Deformation::of(simulation.problem(), simulation.state(), &nodal);
         self.max_strain = deformation.max_strain;
         self.inside_out = [deformation.inverted_elements, simulation.mesh().element_count()];
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));

@@ -163,9 +163,7 @@ impl BodyMesh {
 
     /// Returns the values of the field at the drawn points.
     pub(crate) fn values(&self) -> Vec<Option<f64>> {
-        let (field, material, kinematics) = (self.field.field(), self.field.material(), self.field.kinematics());
-        let value = |components| field.of_components(components, &material, kinematics);
-        self.components.iter().map(|components| value((*components)?)).collect()
+        self.components.iter().map(|components| self.field.value((*components)?)).collect()
     }
 
     /// Returns the value of the field at a material point.
