@@ -557,6 +557,29 @@ fn edits_survive_a_killed_window() {
     assert!(!copies.join("1.toml").exists());
 }
 
+/// The last edit before another program destroys the window is kept: so the menu of macOS ends the program.
+#[test]
+fn edits_survive_a_destroyed_window() {
+    let Some(desktop) = Desktop::start() else { return };
+    let mut window = Window::open(&desktop, &["run", "article"]);
+    let copies = desktop.config.path().join("warpbeam").join("unsaved");
+    let scene = || {
+        let copy = std::fs::read_to_string(copies.join("0.toml")).ok()?;
+        Some(toml::from_str::<toml::Table>(&copy).unwrap()["scene"].clone())
+    };
+    let slider = force_slider();
+    let at = |place: f32| window.point(slider.left() + place * slider.width(), slider.center().y);
+    at(0.4);
+    desktop.xdotool(&["mousedown", "1"]);
+    let first = wait_for("a copy of the first edit", scene);
+    let before = window.image();
+    at(0.7);
+    wait_for("the second edit", || (changed(&window.image(), &before) > 1_000).then_some(()));
+    desktop.xdotool(&["windowclose", &window.id]);
+    assert!(window.process.wait().unwrap().success());
+    assert_ne!(scene().unwrap(), first);
+}
+
 /// Returns the number of pictures of a GIF file and its duration, s; `None` while the file is incomplete.
 fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
     let bytes = std::fs::read(path).ok().filter(|bytes| bytes.last() == Some(&0x3b))?;

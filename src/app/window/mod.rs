@@ -395,7 +395,7 @@ impl App {
         }
     }
 
-    /// Stores a copy of unsaved edits when the window closes with an error.
+    /// Stores a copy of unsaved edits when the window closes without a question about them.
     fn keep_at_end(&mut self) {
         let (Some(recovery), Some(edits)) = (&mut self.recovery, self.lab.unsaved()) else { return };
         match recovery.keep_at_once(edits) {
@@ -570,7 +570,12 @@ impl ApplicationHandler for App {
                 open.bare.window.set_minimized(false);
                 open.bare.window.request_redraw();
             }
-            WindowEvent::Destroyed => return self.quit(event_loop, None),
+            WindowEvent::Destroyed => {
+                // The menu of macOS, or another program, has ended the window without a question.
+                self.keep_at_end();
+                self.keep_settings();
+                return self.quit(event_loop, None);
+            }
             WindowEvent::Resized(size) => {
                 open.resize(size.width, size.height);
                 let points = size.to_logical::<f32>(open.bare.window.scale_factor());
