@@ -6,10 +6,10 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use warpbeam::{LoadId, MethodKind, Scene, Simulation, Status};
+use warpbeam::{ElementKind, LoadId, MethodKind, Scene, Simulation, Status};
 
 /// Time that the game leaves for the beam in a frame of 16 ms.
-const BUDGET: Duration = Duration::from_millis(2);
+const BUDGET: Duration = Duration::from_micros(500);
 const FRAMES: u32 = 120;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
     let scene = Scene::beam(4.0, 0.4)
         .with_cells(16, 1)
+        .with_element(ElementKind::Q4)
         .with_method(MethodKind::Newton)
         .clamp("left")
         .force("right", [0.0, 0.0])
@@ -43,7 +44,7 @@ pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
             Status::Running => {}
             failed => eprintln!("frame {frame}: {failed:?}"),
         }
-        // A game would draw `beam.system().mesh().nodes()` plus `beam.displacement()` here.
+        // A game would draw `beam.positions()` here.
     }
     Ok((finished, beam.probe("tip").map_or(0.0, |u| u.norm())))
 }

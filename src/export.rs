@@ -1,5 +1,5 @@
-//! Export of results to files. Equilibrium: a table of nodes (`.csv`) or a mesh with fields (`.vtu`, read by ParaView).
-//! Motion: a table of probes and energies (`.csv`), the last state (`.vtu`) or a series of states (`.pvd`).
+//! Export of the current state to a file: a table of nodes (`.csv`), or the mesh with its fields (`.vtu`, read by
+//! ParaView). `warpbeam solve --out` also writes the course of a motion.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -62,7 +62,12 @@ impl Format {
     }
 }
 
-/// Writes the current state in the format given by the file name: a table (`.csv`) or the mesh with its fields (`.vtu`).
+/// Writes the current state in the format given by the file name: a table (`.csv`) or the mesh with its fields
+/// (`.vtu`).
+///
+/// Columns of `.csv`: `node`; `rest_x`, `rest_y`, `x`, `y`, `u_x`, `u_y` (m); `rotation_deg`; `strain_xx`, `_yy`,
+/// `_zz`, `_xy`; `stress_xx` and so on (Cauchy, Pa); `von_mises` (Pa); `file_node` for a mesh from a file. An undefined
+/// value is an empty field.
 ///
 /// ```no_run
 /// use warpbeam::{Scene, Simulation, export};

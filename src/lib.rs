@@ -26,13 +26,14 @@
 //!
 //! 1. A triangle maps its corners Xₐ at rest to xₐ: x = F X + b, with F = Σ xₐ ⊗ ∇Nₐ.
 //! 2. R is the rotation closest to F, S = RᵀF the rest: F = R S. In the plane R has a closed form.
-//! 3. S − I is the strain, zero under every rotation. Linear theory takes the symmetric part of F − I instead, and grows.
+//! 3. S − I is the strain, zero under every rotation. Linear theory takes the symmetric part of F − I instead, which is
+//!    not zero under a rotation: a rotated body grows.
 //! 4. The energy density is μ ‖S − I‖² + λ/2 tr²(S − I).
 //! 5. Its derivative, the force, is f = R Ke (Rᵀ x − X): rotated back, computed as in linear theory, rotated forward.
 //! 6. Equilibrium is f_int(x) = f_ext.
 //! 7. With A = Σ R Ke Rᵀ, method `warped` repeats x ← x + A⁻¹ (f_ext − f_int).
-//! 8. A is not the derivative of f_int; that is A + G. The iteration converges where ρ, the largest eigenvalue of A⁻¹G in
-//!    magnitude, is below 1.
+//! 8. A is not the derivative of f_int; that is A + G. The iteration converges where ρ, the largest eigenvalue of A⁻¹G
+//!    in magnitude, is below 1.
 //! 9. Method `newton` takes A + G, and follows the path of equilibria from rest where the body softens.
 //! 10. A result is stable if A + G is positive definite. Its error is its distance from a reference solution.
 //!
@@ -46,12 +47,15 @@
 //! |---|---|
 //! | describe a scene | [`Scene`] with its builder methods, or [`Scene::from_toml`]; [`Beam`], [`Material`], [`Load`], [`Support`], [`Probe`], [`SolverSettings`], [`DynamicsSettings`]; a mesh of your own: [`Mesh::new`] and [`Simulation::with_mesh`] |
 //! | solve it | [`Simulation::solve`], or [`Simulation::step`] in a loop of your own; [`Status`], [`Solution`], [`Equilibrium`], [`Certificate`] |
-//! | edit and grab | [`Simulation::set_force`] and its companions take a [`LoadId`] or [`SupportId`]; [`Simulation::grab`] attaches a [`MouseSpring`] to a [`MaterialPoint`]; [`Simulation::change_scene`] |
-//! | read results | [`Simulation::positions`], [`Simulation::probe`], [`Simulation::point_state`], [`Field`], [`NodalStress`]; files with [`export`] |
+//! | edit and grab | [`Simulation::set_force`] and the other setters take a [`LoadId`] or [`SupportId`]; [`Simulation::grab`] attaches a [`MouseSpring`] to a [`MaterialPoint`]; [`Simulation::change_scene`] |
+//! | read results | [`Simulation::positions`], [`Simulation::probe`], [`Simulation::point_state`], [`Simulation::section`], [`Field`], [`NodalStress`]; files with [`export`] |
 //! | move in time | [`Scene::moving`], [`Motion`] with its [`Ledger`] of energies, [`Moment`] |
 //! | measure errors and time | [`Reference`], [`Study`], [`Timings`] |
 //!
-//! Every vector is a [`nalgebra::Vector2<f64>`]; methods that take one also take `[f64; 2]`. All units are SI.
+//! Results are [`nalgebra::Vector2<f64>`]; builders and setters of scenes and simulations also take `[f64; 2]`. The
+//! data of a scene hold `[f64; 2]`. Units are SI and angles in rad, except where the name or the comment says otherwise
+//! (`_deg`, `_percent`, `_ms`).
+//!
 //! `examples/` has a game loop, grabbing, a mesh of one's own, a motion with energies, a load curve and a study.
 //!
 //! # Notation
@@ -67,7 +71,8 @@
 //! | `Ke` | linear element stiffness ∫ Bᵀ C B t dA | 6 × 6 (`t3`), 12 × 12 (`t6`), 8 × 8 (`q4`), N/m |
 //! | `A` | warped stiffness Σ R Ke Rᵀ | 2n × 2n, sparse, N/m |
 //! | `G` | geometric part of the exact tangent A + G | as `A` |
-//! | `ρ` | error factor of the warped iteration, largest eigenvalue of A⁻¹G in magnitude | scalar |
+//! | `ρ` of a result | largest eigenvalue of A⁻¹G in magnitude, by which an error shrinks per warped iteration; not the density | scalar |
+//! | `fₑ` | nodal forces of one element | n × 2, N |
 //! | `f_ext`, `f_int` | external force, and Σ R Ke (Rᵀ x − X) | n × 2, N |
 //!
 //! # The iteration
@@ -76,13 +81,11 @@
 //! rotations(F(x)) → assemble A, f → factorize → solve → update x → (draw)
 //! ```
 //!
-//! Data flows in one direction; each module imports only from modules to its left:
-//!
-//! `format`, `sentence`, `timings`, the scene's data (`model`), `simd` → `rotation`, `material`, `displacement` → `element` → `mesh`
-//! → `solver`, `scene` (reads scenes and mesh files), `state` → `assembly` → `method` for equilibria, `dynamics` for
-//! motions, `stress` → `simulation` → `exact_beam` → `study` → `plot`, the drawings → the window → the commands.
-//! `article` needs elements and rotations only. The list `LAYERS` in `tests/style/architecture.rs` holds this order, and a test
-//! fails on imports against it.
+//! A module imports only from its own layer and from layers to its left: `format`, `sentence`, `progress`, `timings`,
+//! `simd`, `image` → `model`, the scene's data → `rotation`, `displacement`, `material`, `state`, `continuation`,
+//! `exact_beam` → `element` → `mesh`, `article` → `scene` → `solver` → `assembly` → `method`, `dynamics`, `stress`,
+//! `section` → `simulation` → `export`, `study` → `plot` → `render` → the window → the commands. A test holds this
+//! order (`LAYERS` in `tests/style/architecture.rs`).
 //!
 //! The feature `app` (on by default) adds the window and the commands; `cli` adds the commands alone, without a GPU or
 //! a window. Without both features the library depends on no GPU, window or command line crate.
@@ -144,6 +147,8 @@ pub mod rotation;
 #[doc(hidden)]
 pub mod scene;
 #[doc(hidden)]
+pub mod section;
+#[doc(hidden)]
 pub mod sentence;
 #[doc(hidden)]
 pub mod simd;
@@ -180,6 +185,7 @@ pub use rotation::Rotation;
 pub use scene::{LoadId, SupportId};
 pub use state::{State, StateError};
 // Read results.
+pub use section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
 pub use sentence::Sentence;
 pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, Reaction, SupportReaction};
 pub use stress::{NodalStress, PlaneTensor};

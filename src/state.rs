@@ -107,7 +107,8 @@ impl State {
         self.displacement.view()
     }
 
-    /// Returns R of every element or quadrature point, element by element.
+    /// Returns the rotations R, element by element: one per `t3` and `q4`, one per quadrature point (three) of a `t6`,
+    /// element by element.
     #[must_use]
     pub fn rotations(&self) -> &[Rotation] {
         &self.rotations

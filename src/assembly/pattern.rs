@@ -10,7 +10,7 @@ const FIXED: u32 = u32::MAX;
 
 /// Lower triangle of a symmetric matrix over the free unknowns, in compressed columns with sorted rows.
 ///
-/// An unknown is 2 · node + axis. Fixed unknowns are eliminated (the article's 24 → 20).
+/// An unknown is 2 · node + axis. Fixed unknowns are eliminated (in the article's beam, 24 unknowns become 20).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     column_starts: Vec<usize>,

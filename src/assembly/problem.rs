@@ -80,6 +80,12 @@ impl Forces {
         &self.internal
     }
 
+    /// Returns Σ|fₑ| of every node by component, N.
+    #[must_use]
+    pub fn magnitude(&self) -> &[Vector2<f64>] {
+        &self.magnitude
+    }
+
     /// Returns f_ext of every node, N.
     #[must_use]
     pub fn external(&self) -> &[Vector2<f64>] {
@@ -236,7 +242,8 @@ impl Problem {
         });
     }
 
-    /// Performs [`System::update_rotations`] and [`Self::linearize`] in the same loop, for a state with a new displacement.
+    /// Performs [`System::update_rotations`] and [`Self::linearize`] in the same loop, for a state with a new
+    /// displacement.
     pub fn update_and_linearize(
         &self,
         state: &mut State,

@@ -17,14 +17,14 @@ use crate::solver::{SolverError, Symbolic};
 use crate::state::{State, StateError};
 use crate::stress::Recovery;
 
-/// Reason why a scene has no equations.
+/// Reason why the equations of a scene could not be set up.
 ///
 /// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SystemError {
-    /// The scene refers to something that does not exist.
+    /// The scene has an invalid value, or names an edge or point that the mesh does not have.
     Scene(#[from] Invalid),
     /// The factor of the matrix does not fit in memory.
     TooLarge {
@@ -223,6 +223,14 @@ impl System {
         &self.body.mesh
     }
 
+    /// Returns the beam of which this is the mesh; `None` for other meshes.
+    pub(crate) fn beam(&self) -> Option<&Beam> {
+        match &self.body.origin {
+            Origin::Beam(beam) => Some(beam),
+            Origin::Given | Origin::File(_) => None,
+        }
+    }
+
     /// Returns the loops over the elements.
     #[must_use]
     pub fn elements(&self) -> &dyn Elements {
@@ -287,7 +295,7 @@ impl System {
                 |nodes: &[u32]| nodes.windows(2).map(|w| (mesh.node(w[1]) - mesh.node(w[0])).norm()).sum::<f64>();
             let quarter = 0.25 * mesh.outline().iter().map(|side| along(side.nodes())).sum::<f64>();
             let area: f64 = self.nodal_areas().iter().sum();
-            // A body rounder than a square gets the size of a square.
+            // A body with a smaller perimeter than a square of its area gets the size of the square.
             let apart = (quarter * quarter - area).max(0.0).sqrt();
             [quarter + apart, quarter - apart]
         })

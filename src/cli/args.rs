@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[cfg(feature = "app")]
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number};
-use crate::scene::limits::{BUDGET_MS, MAX_ERROR_PERCENT};
+use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
 use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
@@ -69,6 +69,11 @@ pub(super) enum Command {
     /// stability under force control, and where the body jumps. For a cantilever also: linear theory, the exact beam,
     /// every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent.
     Curve(CurveArgs),
+    /// Compute the forces in a cut through the body: normal force N, shear force V and bending moment M, which the part
+    /// in front of the cut exerts on the part behind, and the stress along the cut beside that of beam theory. With
+    /// --along, N, V and M along a beam.
+    #[command(after_help = EXIT_CODES)]
+    Section(SectionArgs),
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
     /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). For a dynamic scene:
     /// the error of the first probe's path against the computing time per simulated second, also for every integrator
@@ -83,6 +88,9 @@ pub(super) enum Command {
         #[arg(long)]
         scaling: bool,
     },
+    /// Find the loads up to which each method and element holds on the cells of a static scene, from a hundredth to ten
+    /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %.
+    Limits(LimitsArgs),
     /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
     /// on this machine until both are met, and print the choice and the reason.
     #[command(
@@ -106,9 +114,10 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
-    /// List the graphics adapters in the order in which they are tried, and draw a small frame with each: name, backend,
-    /// driver, whether the adapter is usable or why not, and which one is used. An adapter of hardware is preferred to
-    /// software, and Vulkan, Metal and DirectX 12 to OpenGL. In a window, the adapter must also be able to draw into it.
+    /// List the graphics adapters in the order in which they are tried, and draw a small frame with each: name,
+    /// backend, driver, whether the adapter is usable or why not, and which one is used. An adapter of hardware is
+    /// preferred to software, and Vulkan, Metal and DirectX 12 to OpenGL. In a window, the adapter must also be able to
+    /// draw into it.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Gpu(AdapterArgs),
@@ -186,6 +195,59 @@ pub(super) struct CurveArgs {
     /// the moving support, or the larger component of the first probe.
     #[arg(long, value_name = "NAME", requires = "picture")]
     pub of: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SectionArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// Point of the cut on the body at rest: X and Y, or X alone if the line crosses the body in one place. Numbers are
+    /// in m, or have units: --at "30 mm,2 mm".
+    #[arg(long, value_name = "X[,Y]", value_parser = parse_place, required_unless_present = "along")]
+    pub at: Option<(f64, Option<f64>)>,
+    /// Direction of the cut's normal, counter-clockwise from the x axis: 30deg, or a number of radians. The normal
+    /// points to the part in front.
+    #[arg(long, value_name = "ANGLE", value_parser = parse_angle, default_value = "0deg", allow_hyphen_values = true)]
+    pub angle: f64,
+    /// Print N, V and M in this number of sections normal to the axis of a beam, evenly spaced from end to end.
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["at", "angle"], value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub along: Option<u16>,
+    /// Print one JSON object, and nothing else, on standard output.
+    #[arg(long)]
+    pub json: bool,
+    /// Also write a table.
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
+    /// Also draw the stress along the cut, or N, V and M along the beam.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub picture: Option<PathBuf>,
+}
+
+fn parse_place(text: &str) -> Result<(f64, Option<f64>), NumberError> {
+    let coordinate = |text: &str| parse_number(text, COORDINATE);
+    match text.split_once(',') {
+        Some((x, y)) => Ok((coordinate(x)?, Some(coordinate(y)?))),
+        None => Ok((coordinate(text)?, None)),
+    }
+}
+
+fn parse_angle(text: &str) -> Result<f64, NumberError> {
+    parse_number(text, ROTATION)
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LimitsArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// Print one JSON object, and nothing else, on standard output.
+    #[arg(long)]
+    pub json: bool,
+    /// Also write a table with a row for each load, method and element.
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
+    /// Also draw the load curve, and below it a strip for each method and element.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub picture: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -118,7 +118,11 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
 }
 
 /// Computes a motion to its end, or until cancelled; the file, if any, then contains the steps so far.
-fn march(simulation: &mut Simulation, mut writer: Option<MotionWriter>, watch: &Watch) -> Result<(), ExportError> {
+pub(super) fn march(
+    simulation: &mut Simulation,
+    mut writer: Option<MotionWriter>,
+    watch: &Watch,
+) -> Result<(), ExportError> {
     let duration = simulation.scene().dynamics.duration;
     let mut written = Ok(());
     while *simulation.status() == Status::Running && !watch.is_cancelled() {
@@ -142,6 +146,9 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
     let Deformation { max_strain, inverted_elements, .. } = *deformation;
     let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
     limits.extend(inversion.iter().chain(&strain_warning(max_strain)).map(ToString::to_string));
+    if simulation.passes_through_itself() {
+        limits.push("the body passes through itself: contact is not modelled".to_owned());
+    }
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation).iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
@@ -177,11 +184,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(&source)?;
     // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
-    let is_png = |path: &Path| {
-        check_suffix(path, &[".svg", ".png"], ".svg or .png")?;
-        Ok::<_, CliError>(check_suffix(path, &[".png"], ".png").is_ok())
-    };
-    let is_png = picture.as_deref().map(is_png).transpose()?;
+    let is_png = picture.as_deref().map(self::is_png).transpose()?;
     out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
@@ -203,10 +206,26 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     if let (Some(picture), Some(is_png)) = (picture, is_png) {
         let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
         let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string));
-        if is_png { drawing.picture()?.write_png(&picture)? } else { export::write_text(&picture, &drawing.svg())? }
+        write_drawing(&drawing, &picture, is_png)?;
     }
     text::print(&summary)?;
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+}
+
+/// Returns `true` for the name of a PNG file, `false` for that of an SVG file; refuses others.
+pub(super) fn is_png(path: &Path) -> Result<bool, CliError> {
+    check_suffix(path, &[".svg", ".png"], ".svg or .png")?;
+    Ok(check_suffix(path, &[".png"], ".png").is_ok())
+}
+
+/// Writes a drawing to a PNG or an SVG file.
+pub(super) fn write_drawing(drawing: &Drawing, path: &Path, is_png: bool) -> Result<(), CliError> {
+    if is_png {
+        drawing.picture()?.write_png(path)?;
+    } else {
+        export::write_text(path, &drawing.svg())?;
+    }
+    Ok(())
 }
 
 /// Parses the name of the quantity to be drawn.

@@ -154,7 +154,7 @@ fn support(support: &Support, reaction: &SupportReaction) -> Value {
     Value::Object(object)
 }
 
-fn pair(v: Vector2<f64>) -> Value {
+pub(super) fn pair(v: Vector2<f64>) -> Value {
     json!([number(v.x), number(v.y)])
 }
 
@@ -163,6 +163,6 @@ fn microseconds(time: Duration) -> f64 {
 }
 
 /// Returns a number, or `null` if it is not finite.
-fn number(value: f64) -> Value {
+pub(super) fn number(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }

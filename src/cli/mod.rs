@@ -1,8 +1,8 @@
-//! Commands `run`, `scenes`, `solve`, `curve`, `study`, `tune`, `extremes`, `shot`, `record`, `gpu`, `rust`,
+//! Commands `run`, `scenes`, `solve`, `curve`, `section`, `study`, `limits`, `tune`, `extremes`, `shot`, `record`, `gpu`, `rust`,
 //! `completions` and `man`; without the feature `app`, those that need no window and no GPU.
 //!
-//! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator, 2
-//! bad input or usage, or a result that could not be written, 3 no graphics adapter.
+//! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator,
+//! 2 bad input or usage, or a result that could not be written, 3 no graphics adapter.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -15,6 +15,7 @@ use crate::export::ExportError;
 use crate::format::number;
 use crate::image::PictureError;
 use crate::scene::{self, Analysis, Scene, SceneError};
+use crate::section::SectionError;
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;
 
@@ -28,12 +29,14 @@ mod driver;
 #[cfg(feature = "app")]
 mod explorer;
 mod json;
+mod limits;
 mod manual;
 mod memory;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
 mod scene_args;
+mod section;
 mod solved;
 mod text;
 #[cfg(feature = "app")]
@@ -61,6 +64,8 @@ enum CliError {
          large rotations"
     )]
     NoPath(String),
+    #[error("{scene}: {error}")]
+    Section { scene: String, error: SectionError },
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },
     #[error("standard output: {0}")]
@@ -117,8 +122,10 @@ pub fn main() -> ExitCode {
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
         Some(Command::Curve(args)) => commands::curve(args),
+        Some(Command::Section(args)) => section::section(args),
         Some(Command::Study { scene, out, scaling: false }) => commands::study(&scene.into(), &out),
         Some(Command::Study { scene, out, scaling: true }) => commands::scaling(&scene.into(), &out),
+        Some(Command::Limits(args)) => limits::limits(args),
         Some(Command::Tune(args)) => commands::tune(args),
         Some(Command::Extremes { out }) => commands::extremes(&out),
         #[cfg(feature = "app")]
@@ -173,6 +180,7 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
     // The unit of a built-in mesh is known.
     if source.built_in().is_none() {
         warn_of_millimetres(&scene, simulation.system().size());
+        warn_of_built_in_mesh(source, &scene);
     }
     Ok((scene, simulation))
 }
@@ -191,6 +199,19 @@ fn warn_of_millimetres(scene: &Scene, size: f64) {
         eprintln!(
             "warpbeam: warning: {} is {size} m across; if it is in millimetres, write scale = 0.001 under [mesh], else scale = 1",
             mesh.file
+        );
+    }
+}
+
+/// Prints a warning if a scene file names a mesh file that does not exist, so that the mesh of a built-in scene is
+/// used.
+fn warn_of_built_in_mesh(source: &scene::Source, scene: &Scene) {
+    if let Some(file) = scene.mesh.as_ref().map(|mesh| &mesh.file)
+        && scene::registry::mesh(file).is_some()
+        && !source.folder().join(file).is_file()
+    {
+        eprintln!(
+            "warpbeam: warning: {file} does not exist in the folder of the scene; the built-in mesh of this name is used"
         );
     }
 }

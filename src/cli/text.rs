@@ -203,6 +203,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     text.push_str(&match moved(scene) {
         true => match solution.energy.supports {
             Some(work) => format!(", of the moved supports {}\n", joules(work)),
+            None if path.is_none() => ", of the moved supports not known: the result is not certified\n".to_owned(),
             None => ", of the moved supports not known: the load path was not followed to its end\n".to_owned(),
         },
         false => "\n".to_owned(),

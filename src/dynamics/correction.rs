@@ -12,9 +12,9 @@ use crate::rotation::Rotation;
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
 
-/// Step lengths of conjugate gradients, the ratio of the factorized matrix to the current one in a direction, with which a
-/// kept factor serves. In a wider range more stages keep their factor, and stiff bodies explode in long time steps, in which
-/// their stresses change much.
+/// Range of the step length of conjugate gradients in which a kept factor is used. The step length is the ratio of the
+/// factorized matrix to the current one in the search direction. In a wider range more stages keep their factor, but
+/// stiff bodies then explode in long time steps, during which their stresses change much.
 const SIMILAR: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// Relative difference of inertia or stiffness that counts as rounding error.
 const SAME: f64 = 1e-9;

@@ -14,8 +14,8 @@ const MAX_GAIN: f64 = 0.1;
 /// Smallest energy gained, relative to the energy put in, for which the time step is reported as too long.
 const MIN_NOTED_GAIN: f64 = 0.01;
 
-/// Energies of a motion, J, and the energy added and removed since its start. Their sum is the energy at the start;
-/// [`Self::imbalance`] is the rounding error.
+/// Energies of a motion, J, and the energy added and removed since its start: kinetic + elastic + potential +
+/// dissipated + integrator − pulses − mouse_spring − edits = start, up to the rounding error [`Self::imbalance`].
 ///
 /// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

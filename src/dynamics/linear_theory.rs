@@ -28,10 +28,10 @@ const NO_WAY: f64 = 1e-12;
 /// State of the decision for or against linear theory in a motion.
 ///
 /// Linear theory has two errors: at an instant, the neglected shortening by rotations; over time, a slightly different
-/// stiffness. Over a step Δ the stiffness of the corotated body is Δ·(f₁ − f₀)/Δ². Half the relative error of the
-/// stiffness is the relative error of a frequency; the phase error of a vibration is its sum over the phase angles
-/// passed. This phase error accumulates. Linear theory does not detect buckling: the tangent must be positive definite
-/// under more than the current stress.
+/// stiffness. Over a step with displacement Δ, the ratio of corotated to linear stiffness is Δ·(f₁ − f₀)/(Δ·K Δ), f₀
+/// and f₁ the corotated forces at its start and end. Half of its distance from 1 is the relative error of a frequency.
+/// Multiplied by the phase angles of the steps and summed, it is the phase error of a vibration, which accumulates.
+/// Linear theory does not detect buckling: the tangent must be positive definite under more than the current stress.
 #[derive(Debug, Default)]
 pub(crate) struct LinearTheory {
     /// `true` if the current state is that of linear theory.

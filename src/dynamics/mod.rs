@@ -3,7 +3,8 @@
 //! To add an integrator, write a file in this folder and a line in [`INTEGRATORS`]. The implicit ones solve stages of a
 //! common form:
 //!
-//! f_ext − f_int(u) − f_d − α M (u − û) = 0, û the displacement in free flight, with a tangent of f_int plus α M.
+//! f_ext + s − f_int(u) − f_d − α M (u − û) = 0, with s a constant start force and û the displacement in free flight.
+//! The matrix is the tangent of f_int plus α M.
 //!
 //! Equations, factor and state are the same as in statics.
 

@@ -17,7 +17,8 @@ use crate::timings::{Timings, timed};
 ///
 /// The damping velocity is the difference quotient v = β u + Σ cᵢ uᵢ, and f_d = m (a M v + b ∫ F ℂ[Ė] ∇N dA) with the
 /// same quotient Ė of Green's strain, so that the stiffness-proportional part does not damp rotations of the body
-/// (Rayleigh damping with factors a and b).
+/// (Rayleigh damping with factors a and b, α and β in [`crate::Damping`]). Here α and β are weights of the stage, and m
+/// is a number.
 #[derive(Debug)]
 pub(super) struct Stage<'a> {
     /// α, 1/s².
@@ -42,8 +43,8 @@ pub(super) struct Stage<'a> {
     pub damping: f64,
 }
 
-/// Mean force of the mouse spring over a stage: the part of earlier stages, N, and the share of the force in the stage's
-/// own equations.
+/// Mean force of the mouse spring over a stage: `earlier`, N, from earlier stages, plus `share` times the force in this
+/// stage's equations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MeanForce {
     pub earlier: Vector2<f64>,
@@ -441,12 +442,14 @@ impl StageSolver<'_> {
 
     /// Computes the stage's entries in the ledger; the residual at its end is left in the memory's forces.
     ///
-    /// The integrator's loss is the work of the unsolved residual, and the difference between the work of loads and the
-    /// work of the forces used. Averaged forces do the work of the potential, and pulses do the work of their forces half
-    /// way. Forces at the end do not: pulses are recorded with their mean over the stage.
+    /// The integrator's loss is the work of the unsolved residual, plus the difference between the work of the loads
+    /// and that of the forces used. Forces averaged over the stage do exactly the work of the potential; the pulses are
+    /// then recorded with the rest of the work. Forces at the end of the stage do not, and the pulses are recorded with
+    /// their mean.
     ///
-    /// The mouse spring does the work of the mean force that the integrator applies. Its force at the end velocity would
-    /// not do: a firm spring damps a light node within a step, and the end velocity of a trapezoidal stage then alternates.
+    /// The mouse spring is recorded with the mean force that the integrator applies, not with its force at the end
+    /// velocity: a firm spring damps a light node within a step, and the end velocity of a trapezoidal stage then
+    /// alternates.
     pub(super) fn record(&mut self, stage: &Stage<'_>, start: &State, state: &State, spring: &MeanForce) -> StepEnergy {
         let spring = spring.earlier + self.applied_mouse_spring_force(stage, start, state) * spring.share;
         self.residual(stage, None, start, state);

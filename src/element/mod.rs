@@ -31,6 +31,7 @@ pub use isoparametric::Isoparametric;
 pub use point::QuadraturePoint;
 pub(crate) use rounding::UNIT;
 pub use side::side_weights;
+pub(crate) use side::{integrate_side, lagrange};
 
 /// Properties of an element type, used by meshes, loads, files and drawing.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// Evaluates Lagrange's polynomials on `n` equally spaced nodes over [−1, 1], and their derivatives, at `xi`.
-fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
+pub(crate) fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
     let node = |i: usize| 2.0 * i as f64 / (n - 1) as f64 - 1.0;
     let others = |a: usize| (0..n).filter(move |&b| b != a);
     (0..n)
@@ -30,12 +30,19 @@ pub fn side_weights(nodes: &[Vector2<f64>]) -> Vec<f64> {
     if nodes.len() < 2 {
         return weights;
     }
-    for (xi, weight) in GAUSS {
-        let shape = lagrange(nodes.len(), xi);
-        let tangent: Vector2<f64> = nodes.iter().zip(&shape).map(|(x, (_, slope))| x * *slope).sum();
-        for (sum, (n, _)) in weights.iter_mut().zip(&shape) {
-            *sum += weight * tangent.norm() * n;
-        }
-    }
+    integrate_side(nodes, [-1.0, 1.0], |shape, length| {
+        weights.iter_mut().zip(shape).for_each(|(sum, n)| *sum += length * n);
+    });
     weights
+}
+
+/// Calls `visit` at Gauss points of a part of a side, from one parameter to another within [−1, 1], with the shape
+/// functions of the side's nodes and the length that the point stands for, m.
+pub(crate) fn integrate_side(nodes: &[Vector2<f64>], [from, to]: [f64; 2], mut visit: impl FnMut(&[f64], f64)) {
+    let half = 0.5 * (to - from);
+    for (xi, weight) in GAUSS {
+        let (shape, slopes): (Vec<f64>, Vec<f64>) = lagrange(nodes.len(), from + half * (xi + 1.0)).into_iter().unzip();
+        let tangent: Vector2<f64> = nodes.iter().zip(slopes).map(|(x, slope)| x * slope).sum();
+        visit(&shape, weight * half * tangent.norm());
+    }
 }

@@ -33,7 +33,8 @@ pub enum GmshError {
     /// A binary file, or not a Gmsh file.
     #[error("expected Gmsh format 4.1, ASCII, got a binary file; {SAVE_IT}")]
     NotText,
-    /// The file as a whole lacks something.
+    /// The file follows the format, but no mesh can be made of it: it has no triangles or quadrilaterals, elements of
+    /// another shape, or too many elements.
     #[error("{0}")]
     Content(String),
     /// The elements do not form a valid mesh.

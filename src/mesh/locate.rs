@@ -11,7 +11,8 @@ use super::{Mesh, Segment};
 pub struct MaterialPoint {
     /// Element number.
     pub element: usize,
-    /// Reference coordinates in the element.
+    /// Reference coordinates (ξ, η) in the element: ξ ≥ 0, η ≥ 0, ξ + η ≤ 1 in a triangle, −1 to 1 each in a
+    /// quadrilateral.
     pub at: [f64; 2],
 }
 
@@ -81,6 +82,11 @@ impl Mesh {
     pub fn weights(&self, point: MaterialPoint) -> Option<Vec<(u32, f64)>> {
         let nodes = self.elements().nth(point.element)?;
         Some(nodes.iter().copied().zip((self.entry().shape)(point.at)).collect())
+    }
+
+    /// Returns the reference coordinates of a rest position, m, in an element; `None` if there are none.
+    pub(crate) fn place_in(&self, element: usize, at: Vector2<f64>) -> Option<[f64; 2]> {
+        self.invert(self.elements().nth(element)?, &self.nodes, at)
     }
 
     /// Returns the reference coordinates of a position in an element whose nodes are at `positions`; `None` if the map

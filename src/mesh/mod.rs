@@ -9,6 +9,7 @@ use crate::element::{ElementType, MAX_SIDE_NODES};
 use crate::model::ElementKind;
 
 mod beam;
+mod crossing;
 mod gmsh;
 mod locate;
 mod refine;
@@ -143,12 +144,13 @@ pub struct Mesh {
 const DEGENERATE: f64 = 1e-13;
 
 impl Mesh {
-    /// Returns a mesh with these rest positions (m), node numbers (element by element, in the order of
-    /// [`ElementType::nodes`]) and named edges. Clockwise elements are reversed.
+    /// Returns a mesh with these rest positions (m), node numbers and named edges. Node numbers are element by element:
+    /// the corners counter-clockwise, then for `t6` the middles of the sides 1–2, 2–3 and 3–1. Clockwise elements are
+    /// reversed.
     ///
     /// ```
     /// use std::collections::BTreeMap;
-    /// use warpbeam::mesh::{Mesh, Segment};
+    /// use warpbeam::{Mesh, Segment};
     /// use warpbeam::nalgebra::Vector2;
     /// use warpbeam::ElementKind;
     ///
@@ -156,7 +158,7 @@ impl Mesh {
     /// let left = BTreeMap::from([("left".to_owned(), Vec::from_iter(Segment::new(&[3, 0])))]);
     /// let mesh = Mesh::new(nodes, ElementKind::T3, vec![0, 1, 2, 0, 2, 3], left)?;
     /// assert_eq!(mesh.element_count(), 2);
-    /// # Ok::<(), warpbeam::mesh::MeshError>(())
+    /// # Ok::<(), warpbeam::MeshError>(())
     /// ```
     ///
     /// # Errors
@@ -360,7 +362,7 @@ impl Mesh {
         self.element
     }
 
-    /// Returns the node numbers, element by element, in the order of [`ElementType::nodes`]; corners counter-clockwise.
+    /// Returns the node numbers, element by element, in the order of [`Self::new`].
     #[must_use]
     pub fn connectivity(&self) -> &[u32] {
         &self.connectivity

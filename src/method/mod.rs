@@ -74,7 +74,7 @@ impl MethodEntry {
         })
     }
 
-    /// `true` if the method can find what a scene with this analysis asks for.
+    /// Returns `true` if the method can solve scenes of this analysis.
     #[must_use]
     pub fn serves(&self, analysis: Analysis) -> bool {
         analysis == Analysis::Static || self.motion.is_some()
@@ -112,7 +112,7 @@ impl MethodKind {
         self.entry().id
     }
 
-    /// `true` if the method moves a body by linear theory alone.
+    /// Returns `true` if the method moves a body by linear theory alone.
     pub(crate) fn moves_linearly(self) -> bool {
         self.entry().motion == Some(MotionMethod::Linear)
     }
@@ -147,8 +147,8 @@ pub enum Restart {
     NewUnknowns,
 }
 
-/// Solution method. It may have internal state; a new one starts at rest. The trait is not public: methods are listed in
-/// [`METHODS`].
+/// Solution method. It may have internal state; a new one starts at rest. The trait is not public: methods are listed
+/// in [`METHODS`].
 pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     /// Clones without cached factors; they are rebuilt on first use.
     fn copy(&self) -> Box<dyn Method>;

@@ -1,17 +1,17 @@
 //! Newton's method with the exact tangent A + G.
 //!
-//! From rest, the whole load is applied at once, with full steps. The first one is the linear solution, which is far too
-//! long, and the second one corrects it: a line search on the energy would reject both and slow the method down. The
-//! result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
+//! From rest, the whole load is applied at once, with full steps. The first one is the linear solution, which is far
+//! too long, and the second one corrects it: a line search on the energy would reject both and slow the method down.
+//! The result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
 //!
 //! - the body does not soften to first order in the load ([`softening`]),
-//! - every tangent is positive definite, which Cholesky tells at no cost,
+//! - every tangent is positive definite, as the factorization shows at no extra cost,
 //! - the displacement is not larger than that of linear theory.
 //!
 //! Otherwise [`PathFollower`] follows the path from rest.
 //!
-//! From another state, as of a load that is dragged, full steps lead to the equilibrium nearby; if they fail, the path is
-//! followed from rest.
+//! From another state, for example while a load is dragged, full steps lead to the equilibrium nearby; if they fail,
+//! the path is followed from rest.
 //!
 //! The motion of supports is applied with the load: the body is rotated as a whole with them, and the rest of their
 //! motion enters the first step as a force.
@@ -45,8 +45,8 @@ const CLOSE: f64 = 1e-2;
 const LAST_STEPS: u32 = 6;
 /// Number of successive steps without decrease after which full steps are given up.
 const PATIENCE: u32 = 3;
-/// Largest softening with which the whole load is applied at once. A larger value sends fewer bodies to the path, at the
-/// risk of a missed limit load.
+/// Largest softening with which the whole load is applied at once. A larger value sends fewer bodies to the path, at
+/// the risk of a missed limit load.
 const MAX_SOFTENING: f64 = 0.05;
 /// Largest displacement, relative to that of linear theory, with which the result counts as the end of the path.
 const MAX_GROWTH: f64 = 1.1;
@@ -85,8 +85,8 @@ struct LoadSteps {
 const GROW: f64 = 2.0;
 /// Factor by which load steps shrink after a failure.
 const SHRINK: f64 = 0.35;
-/// Number of solves along a path after which load steps take over: they solve slender bodies in fewer solves, but are not
-/// known to end on the path.
+/// Number of solves along a path after which load steps take over: they solve slender bodies in fewer solves, but are
+/// not known to end on the path.
 const MAX_PATH_SOLVES: u32 = 600;
 /// Smallest load step.
 const MIN_LOAD_STEP: f64 = 1e-4;
@@ -293,9 +293,9 @@ impl Newton {
     }
 }
 
-/// Returns by how much more than under linear theory the body is displaced, to first order in the load and relative to
-/// the linear displacement: positive for a body that softens, as an arch. The first step from rest, whose start is in
-/// the workspace, is the linear displacement d; with the elastic energy ½ a s² + ⅙ c s³ along s d it is −c/2a.
+/// Returns the displacement to second order in the load relative to the linear displacement d, minus 1; it is positive
+/// for a body that softens, such as an arch. With the elastic energy ½ a s² + ⅙ c s³ along s d it is −c/2a. d is the
+/// first step from rest, which began at `workspace.trial`.
 fn softening(it: &mut Iteration<'_>) -> f64 {
     /// Length of the differences relative to the height of the strip: strains and rotations of this order.
     const STEP: f64 = 1e-3;
@@ -480,12 +480,11 @@ impl Method for Newton {
 
 /// Returns `true` if a body softens; see [`softening`].
 pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
-    // Without a displacement it is not a number: nothing softens.
     softening(it) > MAX_SOFTENING
 }
 
-/// Returns `true` if a displacement is so much larger than that of linear theory, whose norm is `linear`, m, that the body
-/// may have softened.
+/// Returns `true` if a displacement is so much larger than that of linear theory, whose norm is `linear`, m, that the
+/// body may have softened.
 pub(super) fn grows(state: &State, linear: f64) -> bool {
     size(&state.displacement) > MAX_GROWTH * linear
 }

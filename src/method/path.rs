@@ -42,8 +42,9 @@ impl<'a> StaticEquations<'a> {
 impl StaticEquations<'_> {
     /// Writes ∂(f_ext − f_int)/∂λ at constant free unknowns into `rate`.
     fn load_rate(&mut self, state: &State, factor: f64, rate: &mut [f64]) {
-        /// Largest motion of a support in the central differences, relative to the height of the strip, and rotation, rad:
-        /// their relative error is about its square, and that of rounding the unit roundoff over it.
+        /// Step of the central differences: largest motion of a support relative to the height of the strip, and
+        /// largest rotation, rad. Their relative error is about the square of the step plus the unit roundoff over the
+        /// step.
         const STEP: f64 = 1e-4;
         let Self { problem, forces, workspace, .. } = self;
         let system = problem.system();
@@ -293,7 +294,7 @@ pub enum PathEndReason {
     Interrupted,
 }
 
-/// PathPiece of a path between two points of it.
+/// Piece of a path between two of its points.
 #[derive(Clone, Debug)]
 struct PathPiece {
     from: ContinuationPoint<State>,
@@ -304,7 +305,7 @@ struct PathPiece {
 #[derive(Clone, Debug)]
 pub(crate) struct PathFollower {
     path: Continuation<State>,
-    /// Pieces of the last step that were not searched for the goal.
+    /// Pieces of the last step that are not yet searched for the goal.
     pieces: Vec<PathPiece>,
     /// Limit point from which the body has jumped, until the path is stable again at its load.
     limit: Option<ContinuationPoint<State>>,
@@ -312,13 +313,13 @@ pub(crate) struct PathFollower {
     landing: Option<ContinuationPoint<State>>,
     /// Last point before the last bifurcation.
     crossing: Option<ContinuationPoint<State>>,
-    /// Number of unstable modes that the path has got at bifurcations.
+    /// Number of unstable modes that the path has gained at bifurcations.
     unstable_modes: usize,
     /// Number of linearizations since the limit point.
     since_limit: u32,
     /// Last equilibrium without other unstable modes than those of bifurcations.
     last: ContinuationPoint<State>,
-    /// `true` while the energy descends from the limit point.
+    /// `true` during the descent of the energy from the limit point.
     descends: bool,
     descent_steps: u32,
     /// Critical points so far.
@@ -332,9 +333,9 @@ pub(crate) struct PathFollower {
 pub(crate) enum PathProgress {
     /// The goal is not reached yet.
     Continue,
-    /// [`PathFollower::last`] is the equilibrium at the goal, but for corrections smaller than those of the path.
+    /// [`PathFollower::last`] is the equilibrium at the goal, to the accuracy of the path.
     Reached,
-    /// The path ends.
+    /// The path ended before the goal.
     Ended(PathEndReason),
 }
 
@@ -460,7 +461,7 @@ impl PathFollower {
             Ok(None) => self.pieces.push(PathPiece { from, to }),
             Ok(Some((Critical::Bifurcation(modes), crossing))) => {
                 if self.limit.is_none() {
-                    // The smallest load factor beyond it.
+                    // Smallest number above the load factor of the crossing.
                     let factor = crossing.factor.next_up();
                     self.crossing = Some(crossing);
                     let drive = Drive::of(equations.problem);
@@ -487,8 +488,8 @@ impl PathFollower {
         PathProgress::Continue
     }
 
-    /// Searches a piece of the path for the state at `goal`, and for the state in which a jump ends; returns `true` if the
-    /// former is found.
+    /// Searches a piece of the path for the state at `goal`, and for the state in which a jump ends; returns `true` if
+    /// the former is found.
     fn search(&mut self, equations: &mut StaticEquations<'_>, piece: &PathPiece, goal: f64) -> bool {
         let rises = piece.from.factor < piece.to.factor;
         let stable = |p: &ContinuationPoint<State>| p.modes == self.unstable_modes;
@@ -558,8 +559,8 @@ impl PathFollower {
     }
 }
 
-/// Returns the root mean square displacement that counts as much as the whole load in the norm of a path: a tenth of the
-/// body's size, at which slender bodies deform nonlinearly.
+/// Returns the root mean square displacement that counts as much as the whole load in the norm of a path: a tenth of
+/// the body's size, at which slender bodies deform nonlinearly.
 fn unit(problem: &Problem) -> f64 {
     0.1 * problem.system().size()
 }

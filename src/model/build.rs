@@ -302,7 +302,7 @@ impl Scene {
     /// Sets the components of a force, N.
     ///
     /// # Errors
-    /// If there is no such force. Values out of range are rejected when the scene is simulated.
+    /// [`Invalid`] if this is not a force of the scene. Values out of range are rejected when the scene is simulated.
     pub fn set_force(&mut self, load: LoadId, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
         match self.loads.get_mut(load.0) {
             Some(Load::Force { force, .. }) => *force = new.into().into(),
@@ -338,7 +338,7 @@ impl Scene {
     /// Sets the prescribed displacement, m, and rotation, rad, of a support.
     ///
     /// # Errors
-    /// If there is no such support. Values out of range are rejected when the scene is simulated.
+    /// [`Invalid`] if this is not a support of the scene. Values out of range are rejected when the scene is simulated.
     pub fn move_support(
         &mut self,
         support: SupportId,
@@ -396,19 +396,26 @@ impl Scene {
         beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
     }
 
-    /// Returns warnings about pulses that are shorter than a time step.
+    /// Returns warnings about pulses that are shorter than a time step, or outside the motion.
     #[must_use]
     pub fn unresolved_pulses(&self) -> Vec<String> {
         let step = self.dynamics.time_step;
         let pulses = self.loads.iter().enumerate().filter_map(|(i, load)| Some((i, load.pulse()?)));
-        let short = pulses.filter(|(_, pulse)| pulse.duration < step);
-        short
-            .map(|(i, pulse)| {
-                let [duration, step] = [pulse.duration, step].map(|time| engineering(time, "s"));
-                format!(
-                    "the pulse of load.{i} lasts {duration}, less than a time step of {step}: its impulse is exact, \
-                     its shape is not resolved"
-                )
+        pulses
+            .filter_map(|(i, pulse)| {
+                let times = [pulse.start, pulse.end(), self.dynamics.duration, pulse.duration, step];
+                let [start, end, whole, duration, step] = times.map(|time| engineering(time, "s"));
+                if pulse.end() <= 0.0 || pulse.start >= self.dynamics.duration {
+                    return Some(format!(
+                        "the pulse of load.{i}, from {start} to {end}, is outside the motion, which lasts {whole}"
+                    ));
+                }
+                (pulse.duration < self.dynamics.time_step).then(|| {
+                    format!(
+                        "the pulse of load.{i} lasts {duration}, less than a time step of {step}: its impulse is \
+                         exact, its shape is not resolved"
+                    )
+                })
             })
             .collect()
     }

@@ -106,7 +106,7 @@ pub const KEYS: &[Key] = keys! {
     "mesh": Table, Optional("Either [beam] or [mesh] is required"), "",
         "Mesh from a Gmsh file.";
     "mesh.file": Text, Required("the name of a mesh file"), r#""bracket.msh""#,
-        "Path of a file in the format MSH 4.1, ASCII, relative to the scene file. Its physical curves name the edges.";
+        "Path of a file in the format MSH 4.1, ASCII, relative to the scene file. Its physical curves name the edges. If there is no such file, ../meshes/clip.msh, bracket.msh and cook.msh there are those of the built-in scenes, and a warning says so.";
     "mesh.element": Choice(ELEMENTS), Optional("the element of the file"), r#""t6""#,
         "Element type. Nodes in the middle of sides are added or left out; triangles and quadrilaterals are not exchanged.";
     "mesh.scale": Number(limits::MESH_SCALE), Optional("1: the file is in metres"), "0.001",
@@ -136,7 +136,7 @@ pub const KEYS: &[Key] = keys! {
     "support.displacement": Pair(limits::COORDINATE), Default("[0.0, 0.0]"), r#"[0.0, "-3 mm"]"#,
         "Prescribed displacement, in the directions of fix. Static scenes only.";
     "support.turn": Number(limits::ROTATION), Default("0.0"), r#""30°""#,
-        "Prescribed rotation of an edge about its middle, counter-clockwise; needs edge, and fix = [\"x\", \"y\"]. Static scenes only.";
+        "Prescribed rotation of an edge about its middle, counter-clockwise; a number without unit is in rad. Needs edge, and fix = [\"x\", \"y\"]. Static scenes only.";
 
     "load": Tables, Default("[]"), "",
         "Forces, moments and gravity.";
@@ -153,7 +153,7 @@ pub const KEYS: &[Key] = keys! {
     "load.moment": Number(limits::MOMENT), Optional("required for a moment"), r#""2 kN m""#,
         "Moment, counter-clockwise.";
     "load.pulse": Table, Optional("a constant load"), "{ start = 0.2, duration = 0.1 }",
-        "Makes the load act for a time: times sin²(π (t − start)/duration) during the pulse, and 0 otherwise. Dynamic scenes only.";
+        "Makes the load act for a time: times sin²(π (t − start)/duration) during the pulse, and 0 otherwise. The load is the peak; its impulse is half of load times duration. Dynamic scenes only.";
     "load.pulse.start": Number(limits::PULSE_START), Required(""), "0.2",
         "Start of the pulse.";
     "load.pulse.duration": Number(limits::PULSE_DURATION), Required(""), r#""100 ms""#,
@@ -161,7 +161,7 @@ pub const KEYS: &[Key] = keys! {
 
     "probe": Tables, Default("[]"), "",
         "Places whose displacements are printed, plotted and compared with the reference solution.";
-    "probe.name": Text, Required("what it is called in results"), r#""tip""#,
+    "probe.name": Text, Required("a name for its results"), r#""tip""#,
         "Name in results; each probe has its own.";
     "probe.edge": Text, Optional("edge or at is required"), r#""right""#,
         "Edge over which the displacement is averaged.";
@@ -186,7 +186,7 @@ pub const KEYS: &[Key] = keys! {
     "dynamics.integrator": Choice(&["implicit-euler", "tr-bdf2", "energy-momentum", "symplectic-euler"]), Default(r#""tr-bdf2""#), r#""energy-momentum""#,
         "Time integration method.";
     "dynamics.time_step": Number(limits::TIME_STEP), Default("0.016666666666666666"), r#""5 ms""#,
-        "Time step h.";
+        "Time step h. For a pulse at most a twentieth of its duration, for a vibration at most a twentieth of its period.";
     "dynamics.duration": Number(limits::DURATION), Default("10.0"), "2.0",
         "Time after which a run without a window ends.";
     "dynamics.iterations": Integer(limits::STEP_ITERATIONS), Default("1"), "0",

@@ -208,16 +208,18 @@ pub enum Plane {
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct SolverSettings {
-    /// Method.
+    /// Method that finds the equilibrium, or solves the time steps.
     pub method: MethodKind,
-    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve has converged.
+    /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ below which the solve has converged, with fₑ the nodal forces of
+    /// element e.
     pub tolerance: f64,
-    /// Number of iterations after which the solve fails.
+    /// Number of linear solves after which the search ends without convergence.
     pub max_iterations: u32,
     /// Number of iterations after which the result is accepted without convergence; 0 accepts converged results only.
     #[serde(skip_serializing_if = "is_off")]
     pub accept_after: u32,
-    /// Requested error for `auto`, percent of the exact displacement.
+    /// Largest error that the method `auto` allows itself, percent of the displacement at equilibrium on the scene's
+    /// own mesh; the error of the mesh is not included.
     pub max_error_percent: f64,
 }
 

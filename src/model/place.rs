@@ -166,9 +166,9 @@ impl Support {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
-    /// Along the beam at rest.
+    /// x: horizontal, along a beam at rest.
     X,
-    /// Across the beam at rest.
+    /// y: vertical, across a beam at rest.
     Y,
 }
 

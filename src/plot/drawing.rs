@@ -100,12 +100,40 @@ impl Shape {
     }
 }
 
+impl Item {
+    /// Moves the item down.
+    fn lower(&mut self, by: f64) {
+        match self {
+            Self::Shape(Shape { outline: Outline::Line(points) | Outline::Polygon(points), .. }) => {
+                points.iter_mut().for_each(|point| point[1] += by);
+            }
+            Self::Shape(Shape { outline: Outline::Rect([at, _]) | Outline::Circle(at, _), .. })
+            | Self::Text(Text { at, .. })
+            | Self::Clip([at, _]) => at[1] += by,
+            Self::EndClip => {}
+        }
+    }
+}
+
 impl Drawing {
     /// White paper.
     pub(super) fn new(size: [f64; 2]) -> Self {
         let mut drawing = Self { size, items: Vec::new() };
         drawing.rect([[0.0; 2], size], WHITE);
         drawing
+    }
+
+    /// Returns drawings one below the other.
+    #[must_use]
+    pub fn stacked(drawings: impl IntoIterator<Item = Self>) -> Self {
+        let mut stack = Self { size: [0.0; 2], items: Vec::new() };
+        for mut drawing in drawings {
+            let by = stack.size[1];
+            drawing.items.iter_mut().for_each(|item| item.lower(by));
+            stack.items.append(&mut drawing.items);
+            stack.size = [stack.size[0].max(drawing.size[0]), by + drawing.size[1]];
+        }
+        stack
     }
 
     pub(super) fn add(&mut self, shape: Shape) {

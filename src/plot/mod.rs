@@ -4,10 +4,12 @@ mod atlas;
 mod axes;
 mod drawing;
 mod figure;
+mod limits;
 mod raster;
 mod trade;
 
 pub use atlas::{atlas, motion_atlas};
 pub use drawing::Drawing;
 pub use figure::figure;
+pub use limits::limits;
 pub use trade::{drawn_error, motion_study, scaling, study};

@@ -3,6 +3,7 @@
 //! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`] and every name
 //! against the existing ones; its errors contain the expected value.
 
+mod kinds;
 mod mesh;
 mod open;
 pub mod registry;

@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::mesh::read_mesh;
-use super::{Invalid, ReadError, Scene, SceneError, registry, required, units};
+use super::{Invalid, ReadError, Scene, SceneError, kinds, registry, required, units};
 
 /// Largest accepted scene file, bytes; checked before reading.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -156,9 +156,12 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
         let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
         match toml::from_str(text).ok().and_then(required::missing) {
             Some(invalid) => SceneError::Invalid { file, line, invalid },
-            None => SceneError::Syntax { file, line, message: e.message().trim().replace('\n', ", ") },
+            None => SceneError::Syntax { file, line, message: syntax_message(text, &e) },
         }
     };
+    if let Some(invalid) = toml::from_str(text).ok().and_then(|table| kinds::wrong_kind(&table)) {
+        return Err(located(text, file, invalid));
+    }
     // Parse the file without assignments first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     if !assignments.is_empty() {
@@ -166,6 +169,12 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
         for assignment in assignments {
             let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
             let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
+            if let Some(invalid) = kinds::wrong_kind(&table) {
+                return Err(failed(match same_key(&key, &invalid.key) {
+                    true => invalid.message(),
+                    false => invalid.to_string(),
+                }));
+            }
             scene = Scene::deserialize_table(&table).map_err(|e| {
                 let missing = required::missing(table.clone()).map(|invalid| invalid.to_string());
                 let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
@@ -176,6 +185,20 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| blame(text, file, assignments, invalid))?;
     Ok(scene)
+}
+
+/// Returns the message of a syntax error in one line; a key or table that is given twice is named.
+fn syntax_message(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().trim().replace('\n', ", ");
+    if message != "duplicate key" {
+        return message;
+    }
+    let Some(span) = error.span() else { return message };
+    let name = text.get(span.clone()).unwrap_or_default().trim();
+    match text.get(..span.start).is_some_and(|before| before.trim_end().ends_with('[')) {
+        true => format!("a second table [{name}]; several are written [[{name}]]"),
+        false => format!("a second `{name}` in the same table"),
+    }
 }
 
 /// Returns an error that names the `--set` assignment of the invalid key, or else its line.

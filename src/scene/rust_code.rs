@@ -14,7 +14,7 @@ const LINE: usize = 100;
 
 const HEADER: &str = "\
 // Save as src/main.rs of a new project (`cargo new beam`), then:
-// cargo add warpbeam --no-default-features && cargo run --release
+// cargo add --git URL warpbeam --no-default-features && cargo run --release
 ";
 
 const SOLVE: &str = "    simulation.solve();\n    println!(\"{}\", simulation.status().word());\n";

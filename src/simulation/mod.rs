@@ -28,6 +28,7 @@ mod motion;
 mod point;
 mod results;
 mod search;
+mod section;
 mod status;
 mod view;
 
@@ -49,7 +50,7 @@ pub use status::Status;
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The scene has no valid equations.
+    /// The equations of the scene could not be set up.
     System(#[from] SystemError),
     /// Not enough memory.
     Solver(#[from] SolverError),
@@ -84,7 +85,8 @@ pub struct Solution {
     pub iterations: u32,
     /// Number of load steps.
     pub load_steps: u32,
-    /// Fraction of loads and prescribed displacements that the state belongs to: below 1 if the search ended on the way.
+    /// Fraction of loads and prescribed displacements that the state belongs to: below 1 if the search ended on the
+    /// way.
     pub load_factor: f64,
     /// Relative residual ‖f_ext − f_int‖ / ‖Σ|fₑ|‖.
     pub residual: f64,
@@ -445,8 +447,9 @@ impl Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// The spring's stiffness is the larger of that for which the body's mass vibrates at 5 Hz and ten times the body's
-    /// stiffness at the point; its force is capped at an elongation of a quarter of the body's size.
+    /// The stiffness of the spring is the larger of two values: the one at which the body's mass on the spring vibrates
+    /// at 5 Hz, and ten times the body's stiffness at the point; its force is capped at an elongation of a quarter of
+    /// the body's size.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
         let Body { scene, problem, state } = &mut self.body;
         let mass = Mass::new(problem.system(), scene.material.area_density()).total();
@@ -545,7 +548,7 @@ impl Simulation {
         &self.status
     }
 
-    /// Steps as [`Self::solve`], and asks `watch` before each step; ends early if it breaks.
+    /// Steps as [`Self::solve`], calls `watch` before each step, and ends early if it breaks.
     pub(crate) fn solve_watched(&mut self, watch: &mut dyn FnMut(&Self) -> ControlFlow<()>) -> ControlFlow<()> {
         while self.status == Status::Running {
             watch(self)?;
@@ -564,8 +567,8 @@ impl Simulation {
     }
 
     /// Computes properties of the final state that do not depend on the method, at the cost of some solves; the result
-    /// is kept until the next change. All properties are `None` for linear theory, before the end, for motions, and
-    /// with a mouse spring.
+    /// is kept until the next change. All properties are `None` for linear theory, while the search is running, for
+    /// motions, and with a mouse spring.
     ///
     /// ```
     /// use warpbeam::{Scene, Simulation};
@@ -652,7 +655,9 @@ impl Simulation {
         if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
-    /// Computes a field at every quadrature point; see [`Field::values`].
+    /// Replaces `values` by the field at every quadrature point, in [`Field::unit`]: element by element in the mesh's
+    /// order, one point per `t3`, three per `t6`, four per `q4`. `None` if a value is not finite, and for the Cauchy
+    /// stress in an inverted element. [`Field::MeshError`] has the element's value at each of its points.
     pub fn field(&self, field: Field, values: &mut Vec<Option<f64>>) {
         field.values(&self.body.problem, &self.body.state, self.kinematics(), values);
     }
@@ -756,6 +761,14 @@ impl Simulation {
     /// Returns the current position x of every node, m.
     pub fn positions(&self) -> impl ExactSizeIterator<Item = Vector2<f64>> + '_ {
         self.mesh().nodes().iter().zip(self.displacement()).map(|(x, u)| x + u)
+    }
+
+    /// Returns `true` if the body passes through itself in the current state: contact is not modelled. Takes a sweep over
+    /// the outline.
+    #[must_use]
+    pub fn passes_through_itself(&self) -> bool {
+        let positions: Vec<Vector2<f64>> = self.positions().collect();
+        self.mesh().passes_through_itself(&self.mesh().outline(), &positions)
     }
 
     /// Returns the mesh: nodes at rest, elements and named edges.

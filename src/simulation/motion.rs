@@ -148,7 +148,8 @@ impl TimeStepping {
         body.state.copy_from(state);
         self.linear.invalidate();
         self.linear.set_in_use(*is_linear);
-        // Recomputed edge angles would differ by rounding errors.
+        // Only for another method: recomputed edge angles differ by rounding errors, and the same steps would not
+        // repeat exactly.
         if *method != body.scene.solver.method {
             body.problem.system().update_rotations(&mut body.state, self.kinematics());
         }
@@ -328,8 +329,8 @@ impl TimeStepping {
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
             0 => Solves::Tolerance(scene.solver.tolerance),
-            // A single solve leaves a residual where the force of the spring bends at its cap; the work of this residual
-            // would be energy that the integrator adds.
+            // A single solve leaves a residual where the force of the spring bends at its cap; the work of this
+            // residual would be energy that the integrator adds.
             _ if problem.mouse_spring().is_some() => Solves::Tolerance(scene.solver.tolerance.max(GRABBED)),
             n => Solves::Times(n),
         };
@@ -378,7 +379,7 @@ impl TimeStepping {
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
-    /// Returns `true` if the method decides how steps are solved.
+    /// Returns `true` if the method is `auto`, which chooses how each step is solved.
     fn decides(&self, scene: &Scene) -> bool {
         self.method == MotionMethod::Adaptive && !entry(scene).is_explicit()
     }

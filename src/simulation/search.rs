@@ -32,9 +32,9 @@ pub(super) struct Search {
     certificate: Option<Certificate>,
     timings: Timings,
     last_iteration: Timings,
-    /// Figures of the method, if the iterations were made by another instance of the search.
+    /// Results for display, taken over from the instance that made the iterations; `None` if this one made them.
     figures: Option<Figures>,
-    /// Critical points of the path, in the same case.
+    /// Critical points of the path, taken over likewise.
     path_events: Option<PathEvents>,
 }
 
@@ -99,7 +99,7 @@ impl Search {
         }
     }
 
-    /// Returns the search of what another instance of it has found, and its state.
+    /// Returns a search with the results that another instance has found, and its state.
     pub fn of(scene: &Scene, found: Found) -> (Self, State) {
         let mut search = Self::unmeasured(scene, found.forces);
         search.residual = found.residual;

@@ -43,7 +43,7 @@ impl Status {
         }
     }
 
-    /// Returns the word for display.
+    /// Returns the status in English for display, such as `not converged`.
     #[must_use]
     pub fn word(&self) -> String {
         self.id().replace('_', " ")

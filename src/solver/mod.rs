@@ -19,7 +19,7 @@ use crate::sentence::{Sentence, sentence};
 
 pub(crate) mod lanczos;
 
-/// Reason why there is no factor.
+/// Reason why a matrix could not be factorized.
 ///
 /// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -79,9 +79,9 @@ impl std::fmt::Debug for Symbolic {
 
 impl Symbolic {
     /// Orders (AMD: Amestoy, Davis and Duff 1996) and analyses the lower triangle of a symmetric matrix, in compressed
-    /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices` the
-    /// row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own
-    /// choice is up to 2.6 times slower on these meshes.
+    /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices`
+    /// the row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond;
+    /// faer's own choice is up to 2.6 times slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
@@ -149,9 +149,9 @@ fn operations(symbolic: &SymbolicCholesky<usize>) -> [f64; 2] {
 
 /// Computes [`Factor::price`] from the sparsity, not from measured times.
 fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
-    // `least`: fixed cost of a factorization, in multiples of the cost of a back substitution; `operation`: cost of an operation of the
-    // factorization relative to one of a back substitution, which is limited by memory bandwidth. Fitted to beams:
-    // simplicial with 100 to 1 200 unknowns, supernodal with 40 to 33 000.
+    // `least`: fixed cost of a factorization, in multiples of the cost of a back substitution; `operation`: cost of an
+    // operation of the factorization relative to one of a back substitution, which is limited by memory bandwidth.
+    // Fitted to beams: simplicial with 100 to 1 200 unknowns, supernodal with 40 to 33 000.
     let (least, operation) = match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(_) => (4.2, 0.9),
         SymbolicCholeskyRaw::Supernodal(_) => (1.5, 0.25),

@@ -39,7 +39,7 @@ pub struct PlaneTensor {
 }
 
 impl PlaneTensor {
-    /// Returns xx, yy, zz, xy.
+    /// Returns xx, yy, zz and xy; xy is the tensor component, half of the engineering shear strain.
     #[must_use]
     pub fn components(&self) -> [f64; 4] {
         [self.plane.m11, self.plane.m22, self.zz, self.plane.m12]
@@ -182,7 +182,9 @@ pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, vi
     });
 }
 
-/// Stress and strain of a state at the nodes of its mesh; see [`Recovery`].
+/// Stress and strain of a state at the nodes of its mesh, recovered by patches (Zienkiewicz and Zhu 1992).
+///
+/// See [`Simulation::nodal_stress`](crate::Simulation::nodal_stress).
 ///
 /// The components of ε and of R are recovered, because they are smooth wherever the body is; the stresses are computed
 /// from the recovered ε and R. So all values at a node belong to one deformation.

@@ -5,8 +5,8 @@ pub(super) fn at_most(measured: f64, own: f64) -> f64 {
     measured + own
 }
 
-/// Returns for every pair of a time and a measured error `true` if it is undecided whether a faster setting is as
-/// accurate: the closest errors of faster settings differ by less than `own`, the reference's own error.
+/// Returns for every pair of a time and a measured error `true` if its rank is undecided: its error and the smallest
+/// error of the pairs that are not slower differ by less than `own`, the reference's own error.
 pub(super) fn undecided(pairs: &[(f64, f64)], own: f64) -> Vec<bool> {
     let is_undecided = |i: usize, &(time, error): &(f64, f64)| {
         let faster = pairs.iter().enumerate().filter(|&(j, &(t, _))| j != i && t <= time).map(|(_, &(_, e))| e);

@@ -63,7 +63,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// `true` if the points are joined.
+    /// Returns `true` if the points are joined.
     #[must_use]
     pub fn is_line(self) -> bool {
         matches!(self, Self::Line | Self::Dashes | Self::Dots)
@@ -158,19 +158,19 @@ impl Figure {
         Some([value(self.axes[0])?, value(self.axes[1])?])
     }
 
-    /// `true` if both axes are displacements: the picture then has one scale.
+    /// Returns `true` if both axes are displacements: the picture then has one scale.
     #[must_use]
     pub fn has_one_scale(&self) -> bool {
         let unit = |axis| self.quantity(axis).map(|quantity| quantity.unit);
         unit(0) == Some("m") && unit(1) == Some("m")
     }
 
-    /// Lower left and upper right corner of the picture: around the origin and all points, of which those that may leave it
-    /// count up to a third beyond the others.
+    /// Returns the lower left and upper right corner of the picture, around the origin and all points. Points that may
+    /// leave it extend it by at most 35 % of the extent of the others.
     #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 2] {
         const LEAVES: f64 = 0.35;
-        /// Space around the points, parts of the picture.
+        /// Margin around the points, as a fraction of the picture.
         const SPACE: f64 = 0.05;
         if let Some(corners) = self.bounds {
             return corners;
@@ -195,7 +195,7 @@ impl Figure {
             whole = clamped.fold(whole, around);
         }
         let [mut low, mut high] = grown(whole, SPACE);
-        // A load begins at the edge of the picture.
+        // An axis of loads begins at the edge of the picture, without a margin.
         if self.axes[0] == 0 && whole[0][0] == 0.0 {
             low[0] = 0.0;
         }
@@ -218,7 +218,7 @@ impl Figure {
         head.extend(has_errors.then(|| format!("{} (%)", self.error_name)));
         head.extend(has_states.then(|| "state".to_owned()));
         let mut text = csv_row(&head);
-        // A sum with 0 has no sign of its own.
+        // Adding 0 turns −0 into 0.
         let value = |v: Option<f64>| v.filter(|v| v.is_finite()).map_or_else(String::new, |v| (v + 0.0).to_string());
         for series in &self.series {
             for point in &series.points {
@@ -250,7 +250,8 @@ pub struct LoadAxis {
 }
 
 impl LoadAxis {
-    /// Returns the axis of the only load, or of the first of several with the same unit; otherwise that of the load factor.
+    /// Returns the axis of the only load, or of the first of several with the same unit; otherwise that of the load
+    /// factor.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let pulling: Vec<(&'static str, &'static str, f64)> =
@@ -266,7 +267,7 @@ impl LoadAxis {
     }
 }
 
-/// Name, unit and size of a load.
+/// Returns name, unit and size of a load.
 fn kind(load: &Load) -> (&'static str, &'static str, f64) {
     match load {
         Load::Force { force: [x, y], .. } => ("force", "N", x.hypot(*y)),

@@ -185,7 +185,7 @@ pub(super) fn fine(
         }
     }
     let simulation = finest.ok_or(StudyError::NoReference)?;
-    // Elements turned inside out are no solution of the continuous problem.
+    // A state with inverted elements is not a solution of the continuous problem.
     let is_inverted = simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0;
     if is_inverted || !stands(&simulation)? {
         return Err(StudyError::NoReference);

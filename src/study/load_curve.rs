@@ -74,9 +74,9 @@ pub struct LoadCurve {
 const LARGEST_FACTOR: f64 = 1.25;
 /// Number of samples: enough for a smooth line and for limits accurate to a percent of their load.
 const SAMPLES: u32 = 50;
-/// Number of samples below a limit of linear theory with which its load is interpolated between them.
+/// Smallest number of samples below a limit of linear theory with which the load at the limit is interpolated.
 const MIN_BELOW: usize = 10;
-/// Largest number of times that the first part of the samples is sampled again.
+/// Largest number of times that the part below a limit is sampled again.
 const MAX_ZOOMS: u32 = 4;
 /// Error limits of linear theory, percent; the article states that it is good to 3–5 %.
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
@@ -113,7 +113,7 @@ impl LoadCurve {
         };
         let sampled = |percent: f64| {
             let mut samples = samples.clone();
-            // Linear theory may fail in the first part of the samples: these are sampled again.
+            // With too few samples below the limit, the part up to it is sampled again.
             for _ in 0..MAX_ZOOMS {
                 let first = samples.iter().skip(1).position(|s| s.linear_error_percent() > percent)?;
                 let Some(end) = samples.get(first + 1).filter(|_| first < MIN_BELOW) else { break };
@@ -134,7 +134,8 @@ impl LoadCurve {
     }
 }
 
-/// Returns the load at which the error of linear theory first exceeds `percent`, in samples that are fine enough for it.
+/// Returns the load at which the error of linear theory first exceeds `percent`, in samples that are fine enough for
+/// it.
 fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Option<Departure> {
     let samples = sampled(percent)?;
     let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;

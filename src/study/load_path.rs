@@ -58,7 +58,7 @@ impl std::fmt::Display for PathEnd {
     }
 }
 
-/// Another equilibrium than the result to which loading from rest leads.
+/// Equilibrium at the end of the load path from rest, if it differs from the result.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Elsewhere {
     /// Largest distance of a node from the result, m.
@@ -152,7 +152,8 @@ const INTEGRATED: u32 = 60;
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
 const MAX_UNKNOWNS: usize = 6000;
-/// Largest distance from the end of the path, relative to the largest displacement, at which a result is that end.
+/// Largest distance between a result and the end of the path, relative to the largest displacement, at which both count
+/// as the same equilibrium.
 const SAME: f64 = 0.02;
 
 impl LoadPath {
@@ -210,8 +211,8 @@ impl LoadPath {
         Some(PathFromRest { summary, end: follower.displacement().to_vec() })
     }
 
-    /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or is cancelled, or the model
-    /// is too large.
+    /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or is cancelled, or the
+    /// model is too large.
     #[must_use]
     pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
@@ -253,7 +254,7 @@ struct Tracer {
     path: Vec<PathState>,
     /// Derivative of the work of moving supports with respect to the load factor at the last state, J.
     power: f64,
-    /// Load factor until which the work is integrated.
+    /// Load factor up to which the work is integrated.
     reached: f64,
     work: f64,
     /// Last equilibrium, and its stability under force control.
@@ -354,16 +355,16 @@ impl Tracer {
         StaticEquations::new(&self.problem, &mut self.forces, &mut self.workspace, &mut self.timings)
     }
 
-    /// Adds an equilibrium to the states; before it the state in which the reaction of the moving support is largest, if
-    /// the body loses or regains its stability under force control in between. `works` if the supports do work on the
-    /// way to it.
+    /// Records an equilibrium. If the body loses or regains its stability under force control since the last one, the
+    /// state between them at which this happens is recorded first. `works` is `true` if the supports do work between
+    /// the two.
     fn record(&mut self, point: ContinuationPoint<State>, works: bool) {
         self.visit(&point, works);
         self.push(&point);
     }
 
-    /// Integrates the work of moving supports to an equilibrium, and records the change of stability under force control
-    /// on the way to it.
+    /// Integrates the work of moving supports to an equilibrium, and records the change of stability under force
+    /// control on the way to it.
     fn visit(&mut self, point: &ContinuationPoint<State>, works: bool) {
         let stable = self.is_stable(point);
         if let Some((last, Some(before))) = self.last.take()

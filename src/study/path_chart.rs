@@ -26,7 +26,8 @@ pub enum Ordinate {
 /// Function that renders a name.
 type Render<'a> = &'a dyn Fn(&Sentence) -> String;
 
-/// Draws the path over the displacement or angle of the moving support, or over the load; `render` translates its names.
+/// Draws the path over the displacement or angle of the moving support, or over the load; `render` translates its
+/// names.
 #[must_use]
 pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Render<'_>) -> Figure {
     let probe = match ordinate {
@@ -138,7 +139,7 @@ impl Abscissa {
 enum PathLine {
     /// Equilibria that are stable under force control too.
     Stable,
-    /// Equilibria that are stable only as supports hold them.
+    /// Equilibria that are unstable, or stable only while the supports are held.
     Unstable,
     /// No equilibria: from where the body jumps to where it comes to rest.
     Jump,
@@ -155,7 +156,7 @@ impl PathLine {
     }
 }
 
-/// The lines of a path.
+/// Returns the lines of a path, each of one kind.
 fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, PathLine)> {
     let stable: Vec<bool> = path.states.iter().map(|s| s.stable != Some(false)).collect();
     let Some(cut) = path.states_before_jump.filter(|cut| (1..points.len()).contains(cut)) else {
@@ -170,7 +171,7 @@ fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Pat
     pieces
 }
 
-/// Lines of neighbouring points that are of one kind; they share their ends.
+/// Joins neighbouring points of one kind to lines, which share their ends.
 fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, PathLine)> {
     let mut branches: Vec<(Vec<FigurePoint>, PathLine)> = Vec::new();
     for (pair, stable) in points.windows(2).zip(stable.windows(2)) {
@@ -184,7 +185,7 @@ fn branches(points: &[FigurePoint], stable: &[bool]) -> Vec<(Vec<FigurePoint>, P
     branches
 }
 
-/// Places where the path loses or regains its stability without a jump, each with its label.
+/// Returns the places where the path loses or regains its stability without a jump, each with its label.
 fn bifurcations<'a>(
     path: &'a LoadPath,
     points: &'a [FigurePoint],
@@ -204,13 +205,14 @@ fn bifurcations<'a>(
     })
 }
 
-/// Name of the unstable part of a path with a moving support: stable while the support is held, if no mode is unstable.
+/// Returns the name of the unstable part of a path. "Under force control" is added if a support moves and the body is
+/// stable while the supports are held.
 pub(crate) fn unstable_text(path: &LoadPath) -> &'static str {
     let is_held = path.states.iter().all(|state| state.unstable_modes == 0);
     if path.driven.is_some() && is_held { "unstable under force control" } else { "unstable" }
 }
 
-/// Name of a state of a path for tables; empty if it is stable.
+/// Returns the name of a state of a path for tables; empty if it is stable.
 #[must_use]
 pub fn stability_text(state: &PathState) -> &'static str {
     match state.stable {

@@ -1,5 +1,6 @@
-//! Reference solutions: displacements that errors are measured against, each with a bound of its own error. The exact
-//! beam of [`crate::reference`] if solutions on fine meshes confirm it, else the finest of these.
+//! Reference solutions: displacements that errors are measured against, each with a bound of its own error. The
+//! reference is the exact beam ([`crate::exact_beam`]) if solutions on fine meshes confirm it, else the finest of
+//! these.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -64,7 +65,7 @@ pub struct ProbeReference {
     pub displacement: Vector2<f64>,
     /// Bound of the reference's own error, percent of its length.
     pub own_error_percent: f64,
-    /// Origin.
+    /// Origin: exact beam or fine mesh.
     pub source: ReferenceSource,
 }
 
@@ -311,8 +312,8 @@ impl Reference {
 /// than the solve or its reference.
 pub(crate) const MAX_CERTIFIED: usize = 100_000;
 
-/// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has not
-/// been.
+/// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has
+/// not been.
 fn is_unstable(simulation: &Simulation) -> bool {
     let is_small = simulation.system().dofs() <= MAX_CERTIFIED;
     let examine =
@@ -320,8 +321,8 @@ fn is_unstable(simulation: &Simulation) -> bool {
     is_unstable_by(simulation, examine)
 }
 
-/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite. It has no reference
-/// solution: a solution on another mesh leaves it.
+/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite. Such a state has no
+/// reference solution, because a solve on another mesh leads to another equilibrium.
 #[cfg(feature = "app")]
 pub(crate) fn is_known_unstable(simulation: &Simulation) -> bool {
     is_unstable_by(simulation, |search| search.certificate())

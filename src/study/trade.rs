@@ -46,7 +46,8 @@ impl Setting {
         Self { element: scene.element(), cells, method: scene.solver.method, iterations }
     }
 
-    /// Returns the scene with this mesh and method, solved to its end.
+    /// Returns the scene with this mesh and method and `accept_after = 0`, so that a solve ends at convergence.
+    /// [`Measurement::apply`] also limits the iterations.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();

@@ -821,6 +821,8 @@ fn the_reference_of_results_has_every_column_of_csv() {
         .into_iter()
         .chain(first_cells(&text, "CSV of solve, in motion"))
         .chain(first_cells(&text, "CSV of curve"))
+        .chain(first_cells(&text, "JSON and CSV of section"))
+        .chain(first_cells(&text, "JSON and CSV of limits"))
         .chain(first_cells(&text, "CSV of study, tune and extremes"))
         .collect::<BTreeSet<_>>();
     let missing: Vec<_> = columns.difference(&documented).collect();

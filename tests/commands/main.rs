@@ -1,5 +1,5 @@
-//! Tests of the command line, of the Rust programs that it prints, of the examples and of the documents. `cargo test --test commands
-//! TOPIC` runs one file.
+//! Tests of the command line, of the Rust programs that it prints, of the examples and of the documents. `cargo test
+//! --test commands TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 #[path = "../common/mod.rs"]
@@ -9,10 +9,12 @@ mod cli;
 #[cfg(feature = "app")]
 mod docs;
 mod examples;
+mod limits;
 mod packages;
 mod programs;
 #[cfg(feature = "app")]
 mod record;
+mod section;
 #[cfg(target_os = "linux")]
 mod statements;
 #[cfg(target_os = "linux")]

@@ -19,6 +19,37 @@ fn solve_object(args: &[&str]) -> (Option<i32>, serde_json::Value) {
     (output.status.code(), json)
 }
 
+/// A scene file whose mesh does not exist is solved on the built-in mesh of that name, and the command says so.
+#[test]
+fn a_built_in_mesh_in_place_of_a_missing_file_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string("assets/scenes/bracket.toml").unwrap();
+    let scene = folder.path().join("alone.toml");
+    fs::write(&scene, &text).unwrap();
+    let output = warpbeam(&["solve", scene.to_str().unwrap(), "--reference", "none"]);
+    assert!(stderr(&output).contains("../meshes/bracket.msh does not exist"), "{}", stderr(&output));
+    assert!(!stderr(&warpbeam(&["solve", "bracket", "--reference", "none"])).contains("does not exist"));
+}
+
+#[test]
+fn a_pulse_outside_the_motion_gives_a_note() {
+    for (start, is_outside) in [("5", true), ("-1", true), ("0.1", false)] {
+        let pulse = format!("load.0.pulse={{start={start},duration=0.05}}");
+        let set = ["swing", "--set", &pulse, "--set", "dynamics.duration=0.3"];
+        let said = solve(&set).1;
+        assert_eq!(said.contains("is outside the motion, which lasts 300 ms"), is_outside, "{start}: {said}");
+    }
+}
+
+/// `clip` under 2 N passes through itself, as the window says.
+#[test]
+fn a_body_that_passes_through_itself_gives_a_note() {
+    const NOTE: &str = "the body passes through itself: contact is not modelled";
+    assert!(warnings(&solve_object(&["clip", "--reference", "none"]).1).contains(&NOTE));
+    let half = ["clip", "--set", "load.0.force=[0, -1]", "--reference", "none"];
+    assert!(!warnings(&solve_object(&half).1).contains(&NOTE));
+}
+
 fn warnings(json: &serde_json::Value) -> Vec<&str> {
     json["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap()).collect()
 }

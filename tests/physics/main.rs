@@ -31,6 +31,7 @@ mod reference;
 #[cfg(feature = "rivals")]
 mod rivals;
 mod rotation;
+mod sections;
 mod stress;
 mod study;
 mod supports;

@@ -1,5 +1,5 @@
 // Save as src/main.rs of a new project (`cargo new beam`), then:
-// cargo add warpbeam --no-default-features && cargo run --release
+// cargo add --git URL warpbeam --no-default-features && cargo run --release
 
 use std::error::Error;
 

@@ -21,7 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("scene files", &["scene"]),
     ("solver", &["solver"]),
     ("assembly", &["assembly"]),
-    ("methods", &["method", "dynamics", "stress"]),
+    ("methods", &["method", "dynamics", "stress", "section"]),
     ("simulation", &["simulation"]),
     ("study", &["export", "study"]),
     ("plot", &["plot"]),

@@ -420,6 +420,26 @@ const TESTS = {
     });
   },
 
+  async "unsaved edits are asked about and offered at the next visit"(browser) {
+    await onPage(browser, "?scene=article&lang=en", async ({ page, until, still }) => {
+      const before = await still();
+      equal(before.offers_unsaved, false, "an offer at the first visit");
+      const [tip] = before.arrow_tips;
+      await page.mouse.move(tip.x, tip.y);
+      await page.mouse.down();
+      for (let i = 1; i <= 4; i += 1) await page.mouse.move(tip.x - 10 * i, tip.y - 8 * i);
+      await page.mouse.up();
+      await until((now) => JSON.stringify(now.loads) !== JSON.stringify(before.loads), "waited for another force");
+      await page.waitForFunction(() => Object.keys(localStorage).some((key) => key.startsWith("warpbeam.unsaved.")), null, { timeout: PATIENCE });
+      let asked = null;
+      page.once("dialog", (dialog) => { asked = dialog.type(); dialog.accept(); });
+      await page.reload();
+      equal(asked, "beforeunload", "question before the page is left");
+      await page.waitForFunction(() => document.body.className === "ready", null, { timeout: PATIENCE });
+      await until((now) => now.offers_unsaved, "waited for the offer");
+    });
+  },
+
   async "one finger drags the arrow, two fingers zoom"(browser) {
     const options = { hasTouch: true };
     await onPage(browser, "?scene=article&lang=en", async ({ page, context, until, still }) => {

@@ -239,6 +239,7 @@ const NOT_SHOWN: &[&str] = &[
     "wasm32",
     "Cmd+",
     "another program may have opened the file: {error}",
+    "the browser is set to keep nothing",
     ".toml,.msh",
     "scene=",
     "no document",

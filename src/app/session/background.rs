@@ -20,7 +20,8 @@ use crate::simulation::{Equilibrium, Simulation, Status};
 pub(super) struct Background {
     /// Models with more unknowns than this are solved in the background.
     most_unknowns: u64,
-    /// `true` if the wanted scene is larger: counting the unknowns of a mesh file takes too long for every frame.
+    /// `true` if the requested scene has more unknowns than `most_unknowns`. Stored, because counting those of a mesh
+    /// file takes too long for every frame.
     is_large: bool,
     work: SolveState,
     /// Model of a cancelled or rejected solve that is not displayed: the next solve continues with it.

@@ -7,12 +7,14 @@ use crate::format::two_digits;
 
 /// Displayed frames per second for which the costs of motions are stated.
 pub(crate) const FRAMES: f64 = 60.0;
-/// Largest time per frame for time steps; the rest of the frame is for drawing.
+/// Largest time for time steps per displayed frame. It is longer than a frame at 60 Hz: where it is used up, fewer
+/// frames are displayed.
 const WORK: Duration = Duration::from_millis(24);
 
 /// Lowest playback speed, simulated seconds per second.
 const SLOWEST: f64 = 1e-6;
-/// Slowest speed offered for every motion.
+/// Speed at which a motion counts as slow enough to follow, unless its frequency is above [`WATCHABLE`]; simulated
+/// seconds per second.
 const SLOW: f64 = 0.125;
 /// Highest frequency, Hz, that the user can follow on the screen.
 const WATCHABLE: f64 = 2.0;

@@ -50,8 +50,8 @@ impl ComparedMotion {
         self.simulation().is_some_and(|simulation| !simulation.is_at_rest())
     }
 
-    /// Applies a changed scene. Returns `true` if the motion has to restart, because integrator, element or mesh have
-    /// changed.
+    /// Applies a changed scene. Returns `true` if the motion has to restart, because beam, mesh or any `[dynamics]`
+    /// setting has changed.
     pub(crate) fn set_scene(&mut self, wanted: Scene) -> bool {
         if self.scene.as_ref() == Some(&wanted) {
             return false;

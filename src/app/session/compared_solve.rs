@@ -308,9 +308,10 @@ impl ComparedSolve {
         let request = SolveRequest { scene, model, start, iterations, residuals: Vec::new(), is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
             Ok(solve) => ComparedBody::Away(Box::new(Away { solve, since: Instant::now() })),
-            Err(error) => {
-                ComparedBody::Refused(sentence!("no thread for the solve: %{error}", error = error.to_string()))
-            }
+            Err(error) => ComparedBody::Refused(sentence!(
+                "the system starts no thread for the solve: %{error}",
+                error = error.to_string()
+            )),
         };
     }
 

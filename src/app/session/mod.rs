@@ -68,7 +68,7 @@ pub(crate) struct Changed {
 /// Message for the user about background work.
 #[derive(Debug)]
 pub(crate) enum Notice {
-    /// The scene of the last background solve has no model; `label` names the control that was edited.
+    /// The scene of the last background solve could not be set up; `label` names the control that was edited.
     Rejected {
         label: Option<&'static str>,
         message: Sentence,
@@ -104,7 +104,7 @@ pub(crate) struct Grab {
     pub release: bool,
 }
 
-/// Equilibrium with the numbers of its search.
+/// Equilibrium, with the times and residuals of its search.
 #[derive(Debug)]
 struct BeforeGrab {
     simulation: Simulation,
@@ -631,7 +631,8 @@ impl Session {
         }
     }
 
-    /// Grabs the body at a material point. A body in equilibrium is replaced by a copy, and kept.
+    /// Grabs the body at a material point. If the body is in equilibrium, a copy is grabbed and the original is kept
+    /// for the release.
     fn start_grab(&mut self, point: MaterialPoint) {
         let is_final = self.simulation.status().is_success();
         match self.simulation.equilibrium().filter(|_| is_final).map(Equilibrium::snapshot) {
@@ -676,8 +677,8 @@ impl Session {
         }
     }
 
-    /// Makes the current state the one that a reset returns to, or makes it the start again. Returns `true` in the
-    /// first case.
+    /// Marks the current state as the one that a reset returns to, or removes the mark. Returns `true` if a state is
+    /// marked now.
     pub(crate) fn toggle_mark(&mut self) -> bool {
         self.playback.mark(&self.simulation);
         self.playback.is_marked()

@@ -1,9 +1,9 @@
-//! Copy of unsaved edits in the settings folder. It survives a crash, and the next window offers to restore it.
+//! Copy of unsaved edits in the settings folder, on a page in the storage of the browser. It survives a crash, and the
+//! next window offers to restore it.
 //!
 //! Every window locks a numbered file of its own, so that several open windows do not overwrite each other's copies. A
-//! copy that is not locked belongs to a window that has crashed.
+//! copy that is not locked belongs to a window that has crashed. A page has an item for each visit.
 
-use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use web_time::{Duration, Instant};
 
-use crate::app::platform::files;
+use crate::app::platform::copies::CopyPlace;
 use crate::app::session::document::Document;
 use crate::scene::{Scene, SceneError, Source};
 
@@ -54,13 +54,15 @@ struct Copy {
     file: Option<String>,
 }
 
-/// Writes an edited scene and its document to a file.
+/// Writes an edited scene and its document to a copy.
 ///
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
-fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
+fn write(document: &Document, scene: &Scene, place: &CopyPlace) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
-    let name = if document.path().is_some() { std::path::absolute(name)? } else { name.clone() };
+    // On a page there are no absolute paths.
+    let absolute = document.path().and_then(|_| std::path::absolute(name).ok());
+    let name = absolute.unwrap_or_else(|| name.clone());
     let copy = Copy {
         name: name.to_string_lossy().into_owned(),
         assignments: assignments.clone(),
@@ -68,13 +70,13 @@ fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
         scene: scene.to_toml().map_err(io::Error::other)?,
         file: document.text().map(str::to_owned),
     };
-    files::save_without_sync(file, toml::to_string(&copy).map_err(io::Error::other)?.as_bytes())
+    place.write(&toml::to_string(&copy).map_err(io::Error::other)?)
 }
 
 impl Unsaved {
-    /// Reads edits from a file.
-    fn read(file: &Path) -> Result<Self, CopyError> {
-        let copy: Copy = toml::from_str(&std::fs::read_to_string(file)?)?;
+    /// Reads edits from a copy.
+    fn read(place: &CopyPlace) -> Result<Self, CopyError> {
+        let copy: Copy = toml::from_str(&place.read()?)?;
         let name = PathBuf::from(copy.name);
         let folder = name.parent().unwrap_or(Path::new("")).to_owned();
         let original = Scene::from_toml_in(&copy.original, &folder)?;
@@ -88,36 +90,16 @@ impl Unsaved {
 /// File for this window's copy, and the copy left by a crashed window.
 #[derive(Debug)]
 pub struct RecoveryCopies {
-    place: LockedFile,
+    place: CopyPlace,
     /// Edits that the file contains.
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
-    left: Option<LockedFile>,
+    left: Option<CopyPlace>,
     /// Copies that cannot be read, and the reasons. They are kept: the user may repair them by hand.
     unreadable: Vec<(PathBuf, String)>,
     /// `true` if the copy of the crashed window is no longer needed.
     discards_left: bool,
-}
-
-/// Numbered file, locked during the lifetime of this value.
-#[derive(Debug)]
-struct LockedFile {
-    file: PathBuf,
-    _lock: File,
-}
-
-impl LockedFile {
-    /// Locks the file with this number; `None` if another window has locked it.
-    fn lock(folder: &Path, number: usize) -> io::Result<Option<Self>> {
-        let lock = folder.join(format!("{number}.lock"));
-        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(lock)?;
-        match lock.try_lock() {
-            Ok(()) => Ok(Some(Self { file: folder.join(format!("{number}.toml")), _lock: lock })),
-            Err(std::fs::TryLockError::WouldBlock) => Ok(None),
-            Err(std::fs::TryLockError::Error(error)) => Err(error),
-        }
-    }
 }
 
 impl RecoveryCopies {
@@ -127,18 +109,17 @@ impl RecoveryCopies {
     /// # Errors
     /// Error of the operating system, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
-        std::fs::create_dir_all(folder)?;
         let (mut left, mut unreadable) = (None, Vec::new());
         for number in 0..PLACES {
-            let Some(place) = LockedFile::lock(folder, number)? else { continue };
-            if !place.file.exists() {
+            let Some(place) = CopyPlace::lock(folder, number)? else { continue };
+            if place.is_empty() {
                 let (left, edits) = left.unzip();
                 return Ok((Self { place, written: None, last: None, left, unreadable, discards_left: false }, edits));
             }
             if left.is_none() {
-                match Unsaved::read(&place.file) {
+                match Unsaved::read(&place) {
                     Ok(edits) => left = Some((place, edits)),
-                    Err(error) => unreadable.push((place.file, error.to_string())),
+                    Err(error) => unreadable.push((place.file().to_owned(), error.to_string())),
                 }
             }
         }
@@ -164,8 +145,8 @@ impl RecoveryCopies {
             // After a failure the next attempt waits.
             self.last = Some(Instant::now() + AFTER_FAILURE);
             match edits {
-                Some((document, scene)) => write(document, scene, &self.place.file)?,
-                None => remove(&self.place.file)?,
+                Some((document, scene)) => write(document, scene, &self.place)?,
+                None => self.place.remove()?,
             }
             self.last = Some(Instant::now());
             self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
@@ -173,7 +154,7 @@ impl RecoveryCopies {
         if self.discards_left
             && let Some(place) = self.left.take()
         {
-            remove(&place.file)?;
+            place.remove()?;
         }
         Ok(None)
     }
@@ -190,14 +171,6 @@ impl RecoveryCopies {
     /// Lets the next [`Self::keep`] remove the copy left by a crashed window, once this window's own edits are written.
     pub fn discard_left(&mut self) {
         self.discards_left = true;
-    }
-}
-
-/// Removes a file if it exists.
-fn remove(file: &Path) -> io::Result<()> {
-    match std::fs::remove_file(file) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
     }
 }
 
@@ -250,13 +223,13 @@ mod tests {
         let (mut window, _) = RecoveryCopies::open(folder.path()).unwrap();
         window.keep(edits("article", -3.0).parts()).unwrap();
         assert!(window.keep(edits("article", -4.0).parts()).unwrap().is_some());
-        let file = window.place.file.clone();
-        assert_eq!(Unsaved::read(&file).unwrap(), edits("article", -3.0));
+        let file = window.place.file().to_owned();
+        assert_eq!(Unsaved::read(&window.place).unwrap(), edits("article", -3.0));
         drop(window);
         std::fs::write(&file, "name = 3").unwrap();
         let (window, left) = RecoveryCopies::open(folder.path()).unwrap();
         assert_eq!(left, None);
-        assert!(file.exists() && window.place.file != file);
+        assert!(file.exists() && window.place.file() != file);
         assert!(window.unreadable[0].0 == file && window.unreadable[0].1.contains("name"), "{:?}", window.unreadable);
     }
 }

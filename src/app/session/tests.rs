@@ -237,7 +237,7 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     assert!(session.facts().reference.get(session.scene()).is_some());
 }
 
-/// Where a scene is saved is no edit: undo after "Save as" keeps the new file and everything that belongs to it.
+/// Saving is not an edit: undo after "Save as" keeps the new file and everything that belongs to it.
 #[test]
 fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     let folder = tempfile::tempdir().unwrap();

@@ -26,6 +26,11 @@ impl Lab {
         self.left = Some(left);
     }
 
+    /// Returns `true` while edits of an earlier window wait for an answer.
+    pub(crate) fn offers_unsaved(&self) -> bool {
+        self.left.is_some()
+    }
+
     /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits or
     /// a recording, and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
@@ -137,10 +142,7 @@ impl Lab {
     pub(super) fn offer_unsaved(&mut self, ui: &mut Ui, requests: &mut Vec<Request>) {
         // The edits are restored to the user's own scene, which Learn puts aside.
         let Some(left) = self.left.as_ref().filter(|_| self.lesson.is_none()) else { return };
-        let text = fill!(
-            "Unsaved changes to “%{scene}” were found: warpbeam ended unexpectedly.",
-            scene = tr(&left.scene.name)
-        );
+        let text = fill!("Unsaved changes to “%{scene}” were found.", scene = tr(&left.scene.name));
         let (mut restore, mut discard) = (false, false);
         banner(ui, |ui| {
             ui.label(text);

@@ -3,7 +3,6 @@
 pub(crate) mod arrow;
 pub(crate) mod body_mesh;
 pub(crate) mod camera_controller;
-pub(crate) mod crossing;
 pub(crate) mod handle;
 pub(crate) mod moment_arrow;
 pub(crate) mod overlay;

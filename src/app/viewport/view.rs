@@ -9,7 +9,6 @@ use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
-use crate::app::viewport::crossing::passes_through_itself;
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
@@ -574,7 +573,7 @@ impl BodyView {
         }
         (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp());
         self.crossing.is_reported =
-            passes_through_itself(content.mesh(), &session.geometry().boundary, &self.body.nodes);
+            content.mesh().passes_through_itself(&session.geometry().boundary, &self.body.nodes);
         self.crossing.is_reported
     }
 }

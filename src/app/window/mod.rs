@@ -157,7 +157,7 @@ impl App {
         lab.set_settings(&ctx, settings.clone());
         lab.set_easing(true);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
-        let folder = file.as_deref().and_then(Path::parent).filter(|_| !IS_PAGE).map(|folder| folder.join("unsaved"));
+        let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
             Ok((recovery, left)) => {
                 left.into_iter().for_each(|left| lab.offer(left));
@@ -308,6 +308,7 @@ impl App {
         open.graphics.gpu.queue.present(texture);
         open.graphics.stage.free_textures(&mut output.textures_delta);
         platform::page::set_title(&open.bare.window, &self.lab.title());
+        platform::page::ask_before_leaving(self.lab.unsaved().is_some());
         platform::page::drawn(|frames| report::json(&self.lab, frames));
 
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);

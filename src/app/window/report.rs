@@ -48,6 +48,7 @@ pub(super) fn json(lab: &Lab, frames: u64) -> String {
         "points": study.map(|study| study.measurements.len()),
         "is_measuring": is_measuring,
         "is_computing": lab.is_computing(),
+        "offers_unsaved": lab.offers_unsaved(),
         "arrow_tips": tips.collect::<Vec<_>>(),
         "scale": number(lab.camera().scale),
         "view": [view.left(), view.top(), view.right(), view.bottom()],

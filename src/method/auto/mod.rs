@@ -39,10 +39,10 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
 
 /// Fraction of the requested error that the estimates may reach; the rest is a margin for what they omit.
 const USABLE: f64 = 0.5;
-/// Largest rotation, rad, beyond which linear theory is not tried: a cantilever's error is then 10 %.
+/// Rotation, rad, beyond which linear theory is not tried; its error for a cantilever is then 10 %.
 const LARGEST_LINEAR_ROTATION: f64 = 0.25;
-/// Largest ratio of successive steps with an old factor; beyond it a new factor gains a few digits at the cost of a few
-/// steps.
+/// Largest ratio of successive steps with which an old factor is used again; beyond it a new factor gains a few digits
+/// at the cost of a few steps.
 const SERVES: f64 = 0.3;
 /// Relative residual below which the tangent of a state is reused. The tangent of the linear solution is not: its
 /// spurious tension stiffens it, so that its steps are short although the solution is far away.
@@ -208,8 +208,8 @@ impl Auto {
         }
     }
 
-    /// Returns `true` if the forces of the current state balance in total as well as the requested error: a small error
-    /// of the displacement of a slender body does not imply it.
+    /// Returns `true` if the resultant of the residual force is within the requested error, relative to that of the
+    /// loads. On a slender body a small error of the displacement does not imply this.
     fn is_balanced(it: &Iteration<'_>) -> bool {
         let pattern = it.system().pattern();
         let Forces { external, residual, .. } = &*it.forces;
@@ -219,7 +219,7 @@ impl Auto {
         };
         let tolerance = USABLE * it.tolerances.error;
         let all = pattern.norm(external);
-        // Loads without a resultant, as a moment, leave nothing to compare with.
+        // A load without a resultant, such as a moment, gives nothing to compare with.
         let resultant = total(external);
         resultant <= MIN_RESULTANT * all || total(residual) <= tolerance * resultant
     }

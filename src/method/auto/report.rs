@@ -15,7 +15,7 @@ pub struct AutoReport {
     /// Number of factorized matrices.
     pub factorizations: u32,
     /// Estimated error of the method (without that of the mesh) relative to the displacement; after load stepping, the
-    /// relative residual. Infinite before the end.
+    /// relative residual. Infinite until the method has finished.
     pub estimated_error: f64,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Plan {
     most_samples: f64,
     /// Longest time step relative to the scene's.
     coarsest: f64,
-    /// Numbers of steps in the longest step.
+    /// Numbers of time steps per sampling interval, which is the longest time step.
     steps: &'static [u32],
     /// Numbers of solves per step; 0 iterates to the tolerance.
     solves: &'static [u32],

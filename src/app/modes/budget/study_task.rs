@@ -59,8 +59,9 @@ impl BackgroundStudy {
     /// # Errors
     /// The system cannot start another thread.
     pub(crate) fn start(scene: Scene, extent: Extent) -> Result<Self, Sentence> {
-        let task = Task::run(StudyWork(SentScene(scene), extent))
-            .map_err(|error| sentence!("no thread for the study: %{error}", error = error.to_string()))?;
+        let task = Task::run(StudyWork(SentScene(scene), extent)).map_err(|error| {
+            sentence!("the system starts no thread for the study: %{error}", error = error.to_string())
+        })?;
         Ok(Self { task, fraction: 0.0, now: Sentence::default() })
     }
 

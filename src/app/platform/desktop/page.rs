@@ -7,6 +7,9 @@ pub(crate) fn set_title(window: &Window, title: &str) {
     window.set_title(title);
 }
 
+/// Does nothing: a window asks before it closes.
+pub(crate) fn ask_before_leaving(_: bool) {}
+
 /// Does nothing: a program draws its frame again for an image.
 pub(crate) fn save_frame(_: &Window, _: &str) -> Result<(), String> {
     Ok(())

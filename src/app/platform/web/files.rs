@@ -73,14 +73,6 @@ pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(browser::message(&error)))
 }
 
-/// A page keeps no copies of unsaved edits.
-///
-/// # Errors
-/// Always.
-pub(crate) fn save_without_sync(_: &Path, _: &[u8]) -> std::io::Result<()> {
-    Err(std::io::ErrorKind::Unsupported.into())
-}
-
 /// Offers data as a download.
 ///
 /// # Errors

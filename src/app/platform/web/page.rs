@@ -9,7 +9,7 @@ use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::{DecompressError, decompress_to_vec_with_limit};
 use thiserror::Error;
 use wasm_bindgen::prelude::*;
-use web_sys::{Blob, DragEvent, UrlSearchParams};
+use web_sys::{Blob, DragEvent, Event, UrlSearchParams};
 use winit::event_loop::EventLoopProxy;
 use winit::platform::web::WindowExtWebSys as _;
 use winit::window::Window;
@@ -28,6 +28,10 @@ thread_local! {
     static FRAMES: Cell<u64> = const { Cell::new(0) };
     /// State of the window after the last frame, JSON.
     static REPORT: RefCell<String> = RefCell::default();
+    /// `true` if the browser asks before the page is left.
+    static ASKS: Cell<bool> = const { Cell::new(false) };
+    /// `true` once the page listens for the event before it is left.
+    static LISTENS: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Reason for which the scene in a link cannot be read.
@@ -127,6 +131,25 @@ pub(super) fn listen(proxy: EventLoopProxy<()>) {
 pub(crate) fn set_title(_: &Window, title: &str) {
     if let Some(document) = browser::document().filter(|document| document.title() != title) {
         document.set_title(title);
+    }
+}
+
+/// Lets the browser ask before the page is left, or not.
+pub(crate) fn ask_before_leaving(asks: bool) {
+    ASKS.set(asks);
+    if !asks || LISTENS.replace(true) {
+        return;
+    }
+    let ask = Closure::<dyn Fn(Event)>::new(|event: Event| {
+        if ASKS.get() {
+            event.prevent_default();
+        }
+    });
+    if let Some(window) = web_sys::window()
+        && window.add_event_listener_with_callback("beforeunload", ask.as_ref().unchecked_ref()).is_ok()
+    {
+        // The page listens until it is left.
+        ask.forget();
     }
 }
 

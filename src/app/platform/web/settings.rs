@@ -52,6 +52,6 @@ pub(crate) fn set_aside(file: &Path) -> io::Result<PathBuf> {
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.
-fn storage() -> Option<Storage> {
+pub(super) fn storage() -> Option<Storage> {
     web_sys::window()?.local_storage().ok().flatten()
 }

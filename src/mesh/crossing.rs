@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::mesh::{Mesh, Segment};
+use super::{Mesh, Segment};
 
 /// Fraction of the distance to the centres of its elements by which a node is moved inwards, so that overlaps that are
 /// smaller count as contact.
@@ -17,9 +17,11 @@ struct OutlinePiece {
     to: f64,
 }
 
-/// Returns `true` if a body with its nodes at `positions` passes through itself.
-pub(crate) fn passes_through_itself(mesh: &Mesh, outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
-    crosses_itself(outline, &moved_inwards(mesh, positions))
+impl Mesh {
+    /// Returns `true` if a body with its nodes at `positions` passes through itself; `outline` is [`Self::outline`].
+    pub(crate) fn passes_through_itself(&self, outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
+        crosses_itself(outline, &moved_inwards(self, positions))
+    }
 }
 
 /// Returns the positions of the nodes of a slightly smaller body.
@@ -84,7 +86,6 @@ impl OutlinePiece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::display_geometry::DisplayGeometry;
     use crate::{ElementKind, Scene, Simulation};
 
     /// Bends a beam of 10 m × 0.1 m with 60 × 1 cells into an arc of `angle`, rad, and returns `true` if it passes
@@ -99,7 +100,7 @@ mod tests {
             Vector2::new((radius - x.y) * sin, radius - (radius - x.y) * cos)
         };
         let positions: Vec<_> = mesh.nodes().iter().map(place).collect();
-        passes_through_itself(mesh, &DisplayGeometry::new(mesh).boundary, &positions)
+        mesh.passes_through_itself(&mesh.outline(), &positions)
     }
 
     #[test]
@@ -119,7 +120,7 @@ mod tests {
         let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left");
         let simulation = Simulation::new(&scene).unwrap();
         let mesh = simulation.system().mesh();
-        let outline = DisplayGeometry::new(mesh).boundary;
+        let outline = mesh.outline();
         // The body is folded about its middle, and the two halves overlap by a fraction of an element's height.
         let folded = |pressed: f64| -> Vec<_> {
             let fold = |x: &Vector2<f64>| {
@@ -132,9 +133,9 @@ mod tests {
             };
             mesh.nodes().iter().map(fold).collect()
         };
-        assert!(!passes_through_itself(mesh, &outline, &folded(0.0)));
-        assert!(!passes_through_itself(mesh, &outline, &folded(0.01)));
-        assert!(passes_through_itself(mesh, &outline, &folded(0.3)));
-        assert!(!passes_through_itself(mesh, &outline, &vec![Vector2::repeat(f64::NAN); mesh.nodes().len()]));
+        assert!(!mesh.passes_through_itself(&outline, &folded(0.0)));
+        assert!(!mesh.passes_through_itself(&outline, &folded(0.01)));
+        assert!(mesh.passes_through_itself(&outline, &folded(0.3)));
+        assert!(!mesh.passes_through_itself(&outline, &vec![Vector2::repeat(f64::NAN); mesh.nodes().len()]));
     }
 }

@@ -1,0 +1,115 @@
+//! Command `limits`: the loads up to which each method and element holds.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
+
+use super::args::LimitsArgs;
+use super::progress::Watch;
+use super::{CliError, check_suffix, commands, json, named, simulate, text};
+use crate::export;
+use crate::format::{engineering, three_digits};
+use crate::plot;
+use crate::scene;
+use crate::study::limits::{GOOD, LimitPoint, Limits, Strip, USABLE};
+
+/// Runs the command.
+pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
+    let LimitsArgs { scene, json, out, picture } = args;
+    let source = scene::Source::from(scene);
+    // Report a wrong file name before solving.
+    let is_png = picture.as_deref().map(commands::is_png).transpose()?;
+    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let (scene, _) = simulate(&source)?;
+    let watch = Watch::new();
+    let limits = Limits::of(&scene, &|progress| watch.observe(progress));
+    drop(watch);
+    let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
+    if let Some(out) = out {
+        export::write_text(&out, &table(&limits))?;
+    }
+    if let (Some(picture), Some(is_png)) = (picture, is_png) {
+        commands::write_drawing(&plot::limits(&limits), &picture, is_png)?;
+    }
+    text::print(&if json { as_json(&limits) } else { summary(&limits) })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn summary(limits: &Limits) -> String {
+    let load = |factor: f64| engineering(three_digits(factor * limits.axis.full), limits.axis.unit);
+    let ends = [limits.reference.first(), limits.reference.last()].map(|end| end.map_or(0.0, |(factor, _)| *factor));
+    let [from, to] = ends.map(load);
+    let known = limits.reference.iter().filter(|(_, u)| u.is_some()).count();
+    let mut text = format!(
+        "{}: {} from {from} to {to}, {} in the scene; the reference solution is known at {known} of {} loads\n\n",
+        limits.scene,
+        limits.axis.name,
+        load(1.0),
+        limits.reference.len()
+    );
+    let head =
+        [format!("within {GOOD} %"), format!("within {USABLE} %"), "converges to".into(), "strains > 10 %".into()];
+    let _ = write!(text, "{:<11}", "");
+    head.iter().for_each(|head| _ = write!(text, "  {head:>15}"));
+    text.push('\n');
+    for strip in &limits.strips {
+        let within = |percent: f64| match (strip.within(percent), strip.last_known()) {
+            (Some(0.0), _) => format!("not at {from}"),
+            (Some(factor), _) => load(factor),
+            (None, Some((factor, _))) => format!("at least {}", load(factor)),
+            (None, None) => "not known".to_owned(),
+        };
+        let converges = match strip.ends_at {
+            Some(0.0) => "nowhere".to_owned(),
+            Some(factor) => load(factor),
+            None => format!("at least {to}"),
+        };
+        let law = strip.law_ends_at().map_or_else(|| "–".to_owned(), |factor| format!("from {}", load(factor)));
+        let _ = write!(text, "{:<11}", format!("{} {}", strip.element.id(), strip.method.id()));
+        [within(GOOD), within(USABLE), converges, law].iter().for_each(|cell| _ = write!(text, "  {cell:>15}"));
+        text.push('\n');
+    }
+    text
+}
+
+/// Formats every result as CSV.
+fn table(limits: &Limits) -> String {
+    let mut text =
+        "element,method,load_factor,displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n"
+            .to_owned();
+    for Strip { element, method, points, .. } in &limits.strips {
+        for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements } in points {
+            let error = error_percent.map_or_else(String::new, |error| error.to_string());
+            let (element, method) = (element.id(), method.id());
+            let [x, y] = [displacement.x, displacement.y];
+            let _ = writeln!(text, "{element},{method},{factor},{x},{y},{error},{max_strain},{inverted_elements}");
+        }
+    }
+    text
+}
+
+fn as_json(limits: &Limits) -> String {
+    let strip = |strip: &Strip| {
+        let within = |percent: f64| strip.within(percent).map(json::number);
+        json!({
+            "element": strip.element.id(),
+            "method": strip.method.id(),
+            "within_1_percent": within(GOOD),
+            "within_5_percent": within(USABLE),
+            "error_known_to": strip.last_known().map(|(factor, _)| json::number(factor)),
+            "converges_to": strip.ends_at.map(json::number),
+            "law_ends_at": strip.law_ends_at().map(json::number),
+        })
+    };
+    let reference = |(factor, u): &(f64, Option<nalgebra::Vector2<f64>>)| json!({ "load_factor": json::number(*factor), "displacement": u.map(json::pair) });
+    let object = json!({
+        "scene": limits.scene,
+        "load": limits.axis.name.to_string(),
+        "unit": limits.axis.unit,
+        "full_load": json::number(limits.axis.full),
+        "reference": limits.reference.iter().map(reference).collect::<Value>(),
+        "strips": limits.strips.iter().map(strip).collect::<Value>(),
+    });
+    format!("{object:#}\n")
+}

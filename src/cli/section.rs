@@ -1,0 +1,241 @@
+//! Command `section`: section forces, and the stress along a cut.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use nalgebra::Vector2;
+use serde_json::{Value, json};
+
+use super::args::SectionArgs;
+use super::progress::Watch;
+use super::{CliError, check_suffix, commands, exit_code, json, named, simulate, text};
+use crate::export;
+use crate::format::{Context, engineering_pair, number, prefix, three_digits};
+use crate::plot::{self, Drawing};
+use crate::scene::{self, Analysis, Scene};
+use crate::section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
+use crate::simulation::{Simulation, Status};
+use crate::study::section_chart;
+
+/// Runs the command.
+pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
+    let SectionArgs { scene, at, angle, along, json, out, picture } = args;
+    let source = scene::Source::from(scene);
+    // Report a wrong file name before solving.
+    let is_png = picture.as_deref().map(commands::is_png).transpose()?;
+    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let (scene, mut simulation) = simulate(&source)?;
+    let refused = |error: SectionError| CliError::Section { scene: named(&source), error };
+    let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });
+    // A line that misses the body is refused before the solve.
+    line.map_or(Ok(()), |line| simulation.section(line).map(|_| ())).map_err(refused)?;
+    let watch = Watch::new();
+    match scene.analysis {
+        Analysis::Static => watch.solve(&mut simulation),
+        Analysis::Dynamic => commands::march(&mut simulation, None, &watch)?,
+    }
+    drop(watch);
+    let status = simulation.status().clone();
+    if matches!(status, Status::Diverged(_)) {
+        eprintln!("warpbeam: {}: {}", named(&source), status.failure().unwrap_or_default());
+        return Ok(exit_code(&status));
+    }
+    let sections = match (line, along) {
+        (Some(line), _) => vec![simulation.section(line).map_err(refused)?],
+        (None, count) => simulation.sections(usize::from(count.unwrap_or(2))).map_err(refused)?,
+    };
+    let of_one = sections.first().filter(|_| line.is_some());
+    if let Some(out) = out {
+        export::write_text(&out, &of_one.map_or_else(|| forces_table(&sections), stress_table))?;
+    }
+    if let (Some(picture), Some(is_png)) = (picture, is_png) {
+        let drawing = match of_one {
+            Some(section) => plot::figure(&section_chart::stress(section, &scene)),
+            None => Drawing::stacked(section_chart::forces(&sections, &scene).iter().map(plot::figure)),
+        };
+        commands::write_drawing(&drawing, &picture, is_png)?;
+    }
+    text::print(&match (json, of_one) {
+        (true, _) => as_json(&scene, &simulation, &sections),
+        (false, Some(section)) => heading(&scene, &simulation) + &of_cut(section, &simulation),
+        (false, None) => heading(&scene, &simulation) + &along_beam(&sections, &simulation),
+    })?;
+    Ok(exit_code(&status))
+}
+
+/// Returns the point of a line through x; without y at half the height of the body's bounding box.
+fn point_of(simulation: &Simulation, x: f64, y: Option<f64>) -> Vector2<f64> {
+    let (low, high) = simulation.mesh().bounds();
+    Vector2::new(x, y.unwrap_or(0.5 * (low.y + high.y)))
+}
+
+fn heading(scene: &Scene, simulation: &Simulation) -> String {
+    let factor = simulation.equilibrium().map_or(1.0, |equilibrium| equilibrium.load_factor());
+    let part = if factor < 1.0 {
+        format!(", at {} % of the load", number(three_digits(100.0 * factor)))
+    } else {
+        String::new()
+    };
+    format!("{}: element {}, {}{part}\n", scene.name, scene.element().id(), simulation.status().word())
+}
+
+/// Contexts of forces and moments: results below the rounding errors of the solve are 0.
+fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 2] {
+    let size = simulation.system().size();
+    let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
+    let forces = || sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
+    [Context::of_inexact(forces(), inexact), Context::of_inexact(forces().map(|force| force * size), inexact)]
+}
+
+fn of_cut(section: &Section, simulation: &Simulation) -> String {
+    let [force, moment] = contexts(std::slice::from_ref(section), simulation);
+    let pair = |v: Vector2<f64>| engineering_pair(v.into(), "m");
+    let [[from, to], [now_from, now_to]] = [section.rest, section.ends].map(|ends| ends.map(pair));
+    let mut text = format!("cut from {from} to {to} at rest, now from {now_from} to {now_to}\n");
+    let rows = [
+        ("normal force N", force, "N", section.forces.normal, section.stress_forces.normal),
+        ("shear force V", force, "N", section.forces.shear, section.stress_forces.shear),
+        ("bending moment M", moment, "N m", section.forces.moment, section.stress_forces.moment),
+    ];
+    for (name, within, unit, value, of_stress) in rows {
+        let [value, of_stress] = [value, of_stress].map(|value| within.engineering(digits_of(value, 4), unit));
+        let _ = writeln!(text, "{name:<17} {value:>12}   of the recovered stress {of_stress}");
+    }
+    let stresses: Vec<f64> =
+        section.points.iter().flat_map(|point| point.stress.into_iter().flatten().chain(point.beam)).collect();
+    let ((power, symbol), within) = (prefix(&stresses, "Pa"), Context::of(stresses));
+    let (along_power, along_symbol) = prefix(&section.points.iter().map(|point| point.along).collect::<Vec<_>>(), "m");
+    let _ = writeln!(
+        text,
+        "\nstress, {symbol}Pa (beam theory: of a rectangular section)\n{:>10}  {:>12} {:>12}  {:>12} {:>12}",
+        format!("η, {along_symbol}m"),
+        "normal",
+        "beam theory",
+        "shear",
+        "beam theory"
+    );
+    let short = |value: f64, power: i32| number(digits_of(within.rounded(value) / 10f64.powi(power), 4));
+    for point in shown(&section.points) {
+        let [normal, shear] = match point.stress {
+            Some(stress) => stress.map(|value| short(value, power)),
+            None => [(); 2].map(|()| "–".to_owned()),
+        };
+        let [beam_normal, beam_shear] = point.beam.map(|value| short(value, power));
+        let along = number(digits_of(point.along / 10f64.powi(along_power), 4));
+        let _ = writeln!(text, "{along:>10}  {normal:>12} {beam_normal:>12}  {shear:>12} {beam_shear:>12}");
+    }
+    text
+}
+
+/// Returns at most about a dozen of the values, the first and the last among them.
+fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
+    const MAX_ROWS: usize = 13;
+    let rows = values.len().min(MAX_ROWS);
+    (0..rows).filter_map(move |row| values.get(row * (values.len() - 1) / (rows - 1).max(1)))
+}
+
+/// Rounds to a number of significant digits.
+fn digits_of(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
+    let within = contexts(sections, simulation);
+    let [force, moment] = within;
+    let values = |of: fn(&SectionForces) -> f64| sections.iter().map(|section| of(&section.forces)).collect::<Vec<_>>();
+    let columns = [
+        ("N", force, "N", values(|forces| forces.normal)),
+        ("V", force, "N", values(|forces| forces.shear)),
+        ("M", moment, "N m", values(|forces| forces.moment)),
+    ];
+    let scales = columns.each_ref().map(|(_, within, unit, values)| {
+        prefix(&values.iter().map(|value| within.rounded(*value)).collect::<Vec<_>>(), unit)
+    });
+    let mut text = format!("{:>10}", "x, m");
+    for ((name, _, unit, _), (_, symbol)) in columns.iter().zip(scales) {
+        let _ = write!(text, "  {:>14}", format!("{name}, {symbol}{unit}"));
+    }
+    text.push('\n');
+    for (i, section) in sections.iter().enumerate() {
+        let _ = write!(text, "{:>10}", number(digits_of(section.line.at.x, 5)));
+        for ((_, within, _, values), (power, _)) in columns.iter().zip(scales) {
+            let value = within.rounded(values[i]) / 10f64.powi(power);
+            let _ = write!(text, "  {:>14}", number(digits_of(value, 4)));
+        }
+        text.push('\n');
+    }
+    text.push('\n');
+    for (name, within, unit, values) in &columns {
+        let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        if let Some((i, value)) = largest {
+            let (value, x) =
+                (within.engineering(digits_of(*value, 4), unit), number(digits_of(sections[i].line.at.x, 5)));
+            let _ = writeln!(text, "largest {name}: {value}, at x = {x} m");
+        }
+    }
+    text
+}
+
+fn as_json(scene: &Scene, simulation: &Simulation, sections: &[Section]) -> String {
+    let ends = |ends: [Vector2<f64>; 2]| json!(ends.map(json::pair));
+    let forces = |forces: &SectionForces| {
+        json!({
+            "normal_force": json::number(forces.normal),
+            "shear_force": json::number(forces.shear),
+            "moment": json::number(forces.moment),
+        })
+    };
+    let point = |point: &SectionPoint| {
+        json!({
+            "rest": json::pair(point.rest),
+            "along": json::number(point.along),
+            "normal_stress": point.stress.map(|stress| json::number(stress[0])),
+            "shear_stress": point.stress.map(|stress| json::number(stress[1])),
+            "beam_normal_stress": json::number(point.beam[0]),
+            "beam_shear_stress": json::number(point.beam[1]),
+        })
+    };
+    let section = |section: &Section| {
+        let mut object = forces(&section.forces);
+        object["at"] = json::pair(section.line.at);
+        object["angle"] = json::number(section.line.angle);
+        object["rest"] = ends(section.rest);
+        object["ends"] = ends(section.ends);
+        object["normal"] = json::pair(section.normal());
+        object["force"] = json::pair(section.force);
+        object["of_stress"] = forces(&section.stress_forces);
+        object["points"] = section.points.iter().map(point).collect::<Value>();
+        object
+    };
+    let object = json!({
+        "scene": scene.name,
+        "status": simulation.status().id(),
+        "load_fraction": simulation.equilibrium().map(|equilibrium| json::number(equilibrium.load_factor())),
+        "sections": sections.iter().map(section).collect::<Value>(),
+    });
+    format!("{object:#}\n")
+}
+
+/// Formats the stress along a cut as CSV.
+fn stress_table(section: &Section) -> String {
+    let mut text = "rest_x,rest_y,along,normal_stress,shear_stress,beam_normal_stress,beam_shear_stress\n".to_owned();
+    for SectionPoint { rest, along, stress, beam } in &section.points {
+        let [normal, shear] = [0, 1].map(|i| stress.map_or_else(String::new, |stress| stress[i].to_string()));
+        let _ = writeln!(text, "{},{},{along},{normal},{shear},{},{}", rest.x, rest.y, beam[0], beam[1]);
+    }
+    text
+}
+
+/// Formats N, V and M along a beam as CSV.
+fn forces_table(sections: &[Section]) -> String {
+    let mut text =
+        "x,y,normal_force,shear_force,moment,stress_normal_force,stress_shear_force,stress_moment\n".to_owned();
+    for Section { line, forces, stress_forces, .. } in sections {
+        let _ = write!(text, "{},{}", line.at.x, line.at.y);
+        for SectionForces { normal, shear, moment } in [forces, stress_forces] {
+            let _ = write!(text, ",{normal},{shear},{moment}");
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,247 @@
+//! Section forces: normal force, shear force and bending moment in a cut through the body.
+//!
+//! They come from the nodal forces of the elements that the line crosses, not from a recovered stress. Let A be the
+//! nodes in front of the line and fₑ the nodal forces of an element e. Elements with all nodes in A are in equilibrium,
+//! so that
+//!
+//! G = Σ fₑ,ₐ,  M = Σ (xₐ − c) × fₑ,ₐ  over a ∈ A and the elements e with nodes on both sides
+//!
+//! are force and moment of the part in front on the part behind, on every mesh and for every line. They balance the
+//! loads on the nodes in front; `load.rs` adds the distributed loads between these nodes and the line.
+
+mod cut;
+mod load;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+pub use cut::SectionLine;
+
+use crate::assembly::{Kinematics, Problem};
+use crate::element::Rotations;
+use crate::rotation::Rotation;
+use crate::scene::Plane;
+use crate::state::State;
+use crate::stress::NodalStress;
+use cut::{Cut, CutPoint};
+use load::{Shape, Wrench, beyond_nodes};
+
+/// Reason why a line has no section.
+///
+/// See [`Simulation::section`](crate::Simulation::section) for an example.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SectionError {
+    /// The line does not cross the body.
+    #[error("expected a line that crosses the body at rest")]
+    Missed,
+    /// The line crosses the body in several places, and its point is in none of them.
+    #[error("expected a point of the body, got one outside it; the line crosses the body in {0} places")]
+    Several(usize),
+    /// The body has no axis.
+    #[error("expected a scene with [beam], which has an axis")]
+    NoAxis,
+    /// The forces leave the range of f64.
+    #[error("the section forces are not finite")]
+    NotFinite,
+}
+
+/// Normal force, shear force and bending moment.
+///
+/// See [`Simulation::section`](crate::Simulation::section) for an example.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SectionForces {
+    /// Normal force N along the normal, N; positive in tension.
+    pub normal: f64,
+    /// Shear force V along the tangent, N.
+    pub shear: f64,
+    /// Bending moment M about the middle of the cut, N m, counter-clockwise.
+    pub moment: f64,
+}
+
+/// Stress at a point of a cut.
+///
+/// See [`Simulation::section`](crate::Simulation::section) for an example.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionPoint {
+    /// Rest position, m.
+    pub rest: Vector2<f64>,
+    /// Distance η from the middle of the cut along the tangent, in the current state, m.
+    pub along: f64,
+    /// Recovered Cauchy stress, Pa: normal stress n·σn and shear stress t·σn; `None` where it is undefined.
+    pub stress: Option<[f64; 2]>,
+    /// Stresses of beam theory for a rectangular section, Pa: N/A − M η/I and V Q/(I t).
+    pub beam: [f64; 2],
+}
+
+/// Forces in a cut through the body: those that the part in front exerts on the part behind.
+///
+/// See [`Simulation::section`](crate::Simulation::section) for an example.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Section {
+    /// Line of the cut.
+    pub line: SectionLine,
+    /// Ends of the cut at rest, m, in the order of the tangent.
+    pub rest: [Vector2<f64>; 2],
+    /// Ends of the cut in the current state, m; those at rest in linear theory.
+    pub ends: [Vector2<f64>; 2],
+    /// Force, N.
+    pub force: Vector2<f64>,
+    /// Components of the force in the axes of the current cut, and the moment.
+    pub forces: SectionForces,
+    /// Forces of the recovered stress; their difference from [`Self::forces`] is the error of this stress.
+    pub stress_forces: SectionForces,
+    /// Stress along the cut, in the order of the tangent.
+    pub points: Vec<SectionPoint>,
+}
+
+impl Section {
+    /// Returns the middle of the cut in the current state, m.
+    #[must_use]
+    pub fn middle(&self) -> Vector2<f64> {
+        (self.ends[0] + self.ends[1]) * 0.5
+    }
+
+    /// Returns the unit tangent in the current state, from the first end to the second.
+    #[must_use]
+    pub fn tangent(&self) -> Vector2<f64> {
+        (self.ends[1] - self.ends[0]).normalize()
+    }
+
+    /// Returns the unit normal in the current state: the tangent, rotated clockwise by 90°.
+    #[must_use]
+    pub fn normal(&self) -> Vector2<f64> {
+        let tangent = self.tangent();
+        Vector2::new(tangent.y, -tangent.x)
+    }
+
+    /// Computes the section of a state along a line. `load_factor` is that of an equilibrium, `None` in a motion;
+    /// `nodal` is the recovered stress of the state.
+    pub(crate) fn of(
+        problem: &Problem,
+        state: &State,
+        kinematics: Kinematics,
+        load_factor: Option<f64>,
+        nodal: &NodalStress,
+        line: SectionLine,
+    ) -> Result<Self, SectionError> {
+        let system = problem.system();
+        let mesh = system.mesh();
+        let mut cuts = Cut::all(mesh, system.size(), line);
+        let count = cuts.len();
+        let chosen = match cuts.iter().position(|cut| cut.contains(0.0, system.size())) {
+            Some(chosen) => chosen,
+            None if count == 1 => 0,
+            None if count == 0 => return Err(SectionError::Missed),
+            None => return Err(SectionError::Several(count)),
+        };
+        let cut = cuts.swap_remove(chosen);
+        let positions: Vec<Vector2<f64>> = match kinematics {
+            Kinematics::Linear => mesh.nodes().to_vec(),
+            Kinematics::Corotated => mesh.nodes().iter().zip(state.displacement()).map(|(x, u)| x + u).collect(),
+        };
+        let mean = |of: &[Vector2<f64>], point: &CutPoint| -> Vector2<f64> {
+            point.weights.iter().map(|&(node, weight)| of[node as usize] * weight).sum()
+        };
+        let [Some(first), Some(last)] = [cut.points.first(), cut.points.last()] else {
+            return Err(SectionError::Missed);
+        };
+        let mut section = Self {
+            line,
+            rest: [first, last].map(|point| mean(mesh.nodes(), point)),
+            ends: [first, last].map(|point| mean(&positions, point)),
+            force: Vector2::zeros(),
+            forces: SectionForces::default(),
+            stress_forces: SectionForces::default(),
+            points: Vec::new(),
+        };
+        let middle = section.middle();
+        let shape = Shape { mesh, positions: &positions };
+        let mut sum = load_factor.map(|factor| beyond_nodes(problem, &shape, &cut, factor, middle)).unwrap_or_default();
+        for (node, force) in element_forces(problem, state, &cut) {
+            sum.add(positions[node as usize] - middle, force);
+        }
+        section.force = sum.force;
+        section.forces = section.components(sum);
+        section.add_stress(&cut, nodal, problem, |point| mean(&positions, point));
+        let forces = section.forces;
+        let is_finite = [forces.normal, forces.shear, forces.moment].iter().all(|v| v.is_finite());
+        if is_finite { Ok(section) } else { Err(SectionError::NotFinite) }
+    }
+
+    fn components(&self, Wrench { force, moment }: Wrench) -> SectionForces {
+        SectionForces { normal: force.dot(&self.normal()), shear: force.dot(&self.tangent()), moment }
+    }
+
+    /// Sets the stresses along the cut, and their forces.
+    fn add_stress(
+        &mut self,
+        cut: &Cut,
+        nodal: &NodalStress,
+        problem: &Problem,
+        position: impl Fn(&CutPoint) -> Vector2<f64>,
+    ) {
+        let (middle, tangent, normal) = (self.middle(), self.tangent(), self.normal());
+        let (material, mesh) = (problem.material(), problem.system().mesh());
+        let height = (self.ends[1] - self.ends[0]).norm();
+        let area = height * material.thickness;
+        let SectionForces { normal: force, shear, moment } = self.forces;
+        let mut sum = Wrench::default();
+        // Arm and traction per length, stress times thickness, at the point before; `None` after an undefined stress.
+        let mut before: Option<(Vector2<f64>, [Vector2<f64>; 2])> = None;
+        for point in &cut.points {
+            let at = position(point);
+            let along = tangent.dot(&(at - middle));
+            let local = nodal.mean(&point.weights);
+            let stress = local.cauchy(material, nodal.kinematics()).map(|stress| stress.plane);
+            let eta = 2.0 * along / height;
+            self.points.push(SectionPoint {
+                rest: point.weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum(),
+                along,
+                stress: stress.map(|stress| [normal, tangent].map(|axis| axis.dot(&(stress * normal)))),
+                beam: [
+                    force / area - 12.0 * moment * along / (area * height * height),
+                    1.5 * shear / area * (1.0 - eta * eta),
+                ],
+            });
+            let thickness = match (material.plane, nodal.kinematics()) {
+                (Plane::Stress, Kinematics::Corotated) => material.thickness * (1.0 + local.strain(material).zz),
+                _ => material.thickness,
+            };
+            let columns = stress.map(|stress| [stress.column(0) * thickness, stress.column(1) * thickness]);
+            if let (Some((last, [x, y])), Some(now)) = (before, &columns) {
+                // Traction times length: σ times the normal of this piece of the cut. Arms and tractions are linear.
+                let piece = at - last;
+                let traction = |x: &Vector2<f64>, y: &Vector2<f64>| x * piece.y - y * piece.x;
+                let (a, b) = (traction(&x, &y), traction(&now[0], &now[1]));
+                let [from, to] = [last, at].map(|at| at - middle);
+                sum.force += (a + b) * 0.5;
+                sum.moment += (from.perp(&a) + to.perp(&b)) / 3.0 + (from.perp(&b) + to.perp(&a)) / 6.0;
+            }
+            before = columns.map(|columns| (at, columns));
+        }
+        self.stress_forces = self.components(sum);
+    }
+}
+
+/// Returns the nodes in front with the forces of the cut's elements on them, N.
+fn element_forces(problem: &Problem, state: &State, cut: &Cut) -> Vec<(u32, Vector2<f64>)> {
+    let system = problem.system();
+    let mesh = system.mesh();
+    let connectivity: Vec<u32> =
+        cut.elements.iter().filter_map(|&element| mesh.elements().nth(element)).flatten().copied().collect();
+    let elements = (mesh.entry().loops)(mesh.nodes(), &connectivity);
+    let each = system.elements().rotation_count() / mesh.element_count().max(1);
+    let own = |&element: &usize| state.rotations().iter().skip(element * each).take(each).copied();
+    let rotations: Vec<Rotation> = cut.elements.iter().flat_map(own).collect();
+    let mut forces = vec![Vector2::zeros(); mesh.nodes().len()];
+    let mut magnitude = forces.clone();
+    let moduli = problem.material().membrane();
+    elements.linearize(moduli, state.compensated(), Rotations::Given(&rotations), &mut forces, &mut magnitude, None);
+    let mut nodes = connectivity;
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes.retain(|&node| cut.side().is_in_front(mesh.node(node)));
+    nodes.into_iter().map(|node| (node, forces[node as usize])).collect()
+}

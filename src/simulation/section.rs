@@ -1,0 +1,53 @@
+//! Sections of the current state.
+
+use super::{Equilibrium, Simulation};
+use crate::mesh::bent;
+use crate::section::{Section, SectionError, SectionLine};
+use crate::stress::NodalStress;
+
+impl Simulation {
+    /// Computes the section forces of the current state along a line: those that the part of the body in front of the
+    /// line exerts on the part behind. Takes a loop over the whole body.
+    ///
+    /// At rest they balance the loads and reactions on the part in front, also those between the line and the nodes. In
+    /// a motion, loads and inertia act on the nodes. Reactions always do.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, SectionLine, Simulation};
+    ///
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]))?;
+    /// beam.solve();
+    /// let forces = beam.section(SectionLine { at: [4.0, 0.0].into(), angle: 0.0 })?.forces;
+    /// assert!((forces.shear + 1.0).abs() < 1e-3 && (forces.moment + 6.0).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SectionError::Missed`], [`SectionError::Several`], [`SectionError::NotFinite`].
+    pub fn section(&self, line: SectionLine) -> Result<Section, SectionError> {
+        self.section_of(line, &self.nodal_stress())
+    }
+
+    fn section_of(&self, line: SectionLine, nodal: &NodalStress) -> Result<Section, SectionError> {
+        let load_factor = self.equilibrium().map(Equilibrium::load_factor);
+        Section::of(self.problem(), self.state(), self.kinematics(), load_factor, nodal, line)
+    }
+
+    /// Computes as [`Self::section`] the sections normal to the axis of a beam at `count` points, evenly spaced from
+    /// its left end to its right end.
+    ///
+    /// # Errors
+    /// [`SectionError::NoAxis`] for a body from a mesh file or a given mesh, and the errors of [`Self::section`].
+    pub fn sections(&self, count: usize) -> Result<Vec<Section>, SectionError> {
+        let beam = self.system().beam().ok_or(SectionError::NoAxis)?;
+        let nodal = self.nodal_stress();
+        let intervals = count.saturating_sub(1).max(1) as f64;
+        let line = |i: usize| {
+            let along = i as f64 / intervals;
+            let [at, above] = [0.0, beam.height].map(|across| bent(beam, along, across));
+            let up = above - at;
+            SectionLine { at, angle: (-up.x).atan2(up.y) }
+        };
+        (0..count).map(|i| self.section_of(line(i), &nodal)).collect()
+    }
+}

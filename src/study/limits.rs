@@ -1,0 +1,228 @@
+//! Limits of every method and element on a scene: up to which load each is within 1 % and 5 % of the reference solution,
+//! where it stops to converge, and where strains leave the linear law.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::figure::LoadAxis;
+use super::progress::{StudyError, all_done};
+use super::{Effort, Reference, parallel};
+use crate::assembly::System;
+use crate::exact_beam::error_percent;
+use crate::method::METHODS;
+use crate::progress::{Observer, Progress};
+use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
+use crate::sentence::sentence;
+use crate::simulation::{Deformation, Simulation, SimulationError, Status};
+use crate::stress::LAW_HOLDS;
+
+/// Smallest and largest part of the scene's loads and prescribed displacements.
+const RANGE: [f64; 2] = [0.01, 10.0];
+/// Loads per decade.
+const PER_DECADE: i32 = 6;
+/// Error, percent, up to which a result counts as good.
+pub const GOOD: f64 = 1.0;
+/// Error, percent, up to which a result counts as usable.
+pub const USABLE: f64 = 5.0;
+/// Bisections of the load at which a method stops to converge: to 1 % of the load.
+const BISECTIONS: u32 = 6;
+
+/// Result of a method at a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitPoint {
+    /// Part of the scene's loads and prescribed displacements.
+    pub factor: f64,
+    /// Displacement of the first probe, m.
+    pub displacement: Vector2<f64>,
+    /// Largest error against the reference solution, percent of its displacement, its own error included; `None` if the
+    /// reference solution is not known.
+    pub error_percent: Option<f64>,
+    /// Largest strain.
+    pub max_strain: f64,
+    /// Number of inverted elements.
+    pub inverted_elements: usize,
+}
+
+impl LimitPoint {
+    /// Returns `true` if elements are inverted, or strains are beyond those of the linear law.
+    #[must_use]
+    pub fn is_beyond_law(&self) -> bool {
+        self.inverted_elements > 0 || self.max_strain > LAW_HOLDS
+    }
+}
+
+/// Results of a method with an element, from small to large loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip {
+    /// Element.
+    pub element: ElementKind,
+    /// Method.
+    pub method: MethodKind,
+    /// Results, in the order of their loads.
+    pub points: Vec<LimitPoint>,
+    /// Part of the load beyond which the method does not converge; `None` if it converges at the largest load.
+    pub ends_at: Option<f64>,
+}
+
+impl Strip {
+    /// Returns the part of the load up to which the error is at most `percent`, interpolated between two loads: 0 if it is
+    /// larger at the smallest load, and `None` if it is not larger at any load at which the error is known.
+    #[must_use]
+    pub fn within(&self, percent: f64) -> Option<f64> {
+        let known = self.points.iter().filter_map(|p| Some((p.factor, p.error_percent?)));
+        let mut before: Option<(f64, f64)> = None;
+        for (factor, error) in known {
+            if error > percent {
+                let Some((from, small)) = before else { return Some(0.0) };
+                // Errors are powers of the load in between.
+                let t = if small > 0.0 { (percent / small).ln() / (error / small).ln() } else { 0.5 };
+                return Some(from * (factor / from).powf(t.clamp(0.0, 1.0)));
+            }
+            before = Some((factor, error));
+        }
+        None
+    }
+
+    /// Returns the largest part of the load at which the error is known, and the error; `None` if there is none.
+    #[must_use]
+    pub fn last_known(&self) -> Option<(f64, f64)> {
+        self.points.iter().rev().find_map(|point| Some((point.factor, point.error_percent?)))
+    }
+
+    /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
+    #[must_use]
+    pub fn law_ends_at(&self) -> Option<f64> {
+        self.points.iter().find(|point| point.is_beyond_law()).map(|point| point.factor)
+    }
+}
+
+/// Limits of all methods and elements on a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Title of the scene.
+    pub scene: String,
+    /// Quantity and unit of the load.
+    pub axis: LoadAxis,
+    /// Reference displacement of the first probe, m, at every load; `None` if it is not known.
+    pub reference: Vec<(f64, Option<Vector2<f64>>)>,
+    /// Strips, by element and method.
+    pub strips: Vec<Strip>,
+}
+
+impl Limits {
+    /// Computes the limits of a static scene with a probe, on the scene's cells. The reference solution is that of
+    /// [`Reference`] at every load.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the scene is in motion, has no probe or cannot be simulated, or `observe` cancelled the computation.
+    pub fn of(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
+        if scene.analysis == Analysis::Dynamic {
+            return Err(StudyError::InMotion);
+        }
+        if scene.probes.is_empty() {
+            return Err(StudyError::NoProbe);
+        }
+        Simulation::new(scene)?;
+        let factors = factors();
+        let now = [sentence!("reference solutions"), sentence!("following each method")];
+        let settings: Vec<(ElementKind, MethodKind)> = (scene.elements())
+            .flat_map(|element| METHODS.iter().map(move |method| (element, method.kind)))
+            .filter(|(_, method)| *method != MethodKind::Auto)
+            .collect();
+        let all = (factors.len() + settings.len()) as f64;
+        let solved = all_done(parallel::map(
+            &factors,
+            |&factor, observe| match Reference::find(&at(scene, factor), None, Effort::Bounded, observe) {
+                Err(StudyError::Cancelled) => Err(StudyError::Cancelled),
+                // Without a reference solution the error is not known.
+                found => Ok(found.ok().and_then(|reference| reference.first())),
+            },
+            |done| observe(Progress { fraction: done as f64 / all, now: Some(&now[0]) }),
+        ))?;
+        let known = |i: usize, u: Vector2<f64>| {
+            let reference = solved.get(i).copied().flatten()?;
+            Some(error_percent(u, reference.displacement)? + reference.own_error_percent)
+        };
+        let strips = all_done(parallel::map(
+            &settings,
+            |&(element, method), observe| strip(scene, element, method, &factors, &known, observe),
+            |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
+        ))?;
+        Ok(Self {
+            scene: scene.name.clone(),
+            axis: LoadAxis::of(scene),
+            reference: factors
+                .iter()
+                .zip(&solved)
+                .map(|(&f, known)| (f, known.map(|known| known.displacement)))
+                .collect(),
+            strips,
+        })
+    }
+}
+
+/// Returns the parts of the load, evenly spaced in their logarithm.
+fn factors() -> Vec<f64> {
+    let decades = (RANGE[1] / RANGE[0]).log10();
+    let count = (f64::from(PER_DECADE) * decades).round() as i32;
+    (0..=count).map(|i| RANGE[0] * 10f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect()
+}
+
+/// Returns the scene under a part of its loads and prescribed displacements.
+fn at(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.scale_loads(factor);
+    scene.solver.accept_after = 0;
+    scene
+}
+
+/// Solves with a method and an element from load to load until it does not converge. Each solve starts from rest, as
+/// `warpbeam solve` does.
+fn strip(
+    scene: &Scene,
+    element: ElementKind,
+    method: MethodKind,
+    factors: &[f64],
+    error: &dyn Fn(usize, Vector2<f64>) -> Option<f64>,
+    observe: Observer<'_>,
+) -> Result<Strip, StudyError> {
+    let mut own = scene.clone().with_method(method);
+    own.set_element(element);
+    let system = Arc::new(System::new(&own).map_err(SimulationError::from)?);
+    let solve = |factor: f64| {
+        let mut simulation = Simulation::with_system(&at(&own, factor), system.clone())?;
+        let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
+        match flow.is_break() {
+            true => Err(StudyError::Cancelled),
+            false => Ok(Some(simulation).filter(|simulation| *simulation.status() == Status::Converged)),
+        }
+    };
+    let mut strip = Strip { element, method, points: Vec::new(), ends_at: None };
+    for (i, &factor) in factors.iter().enumerate() {
+        let Some(solved) = solve(factor)? else {
+            let reached = strip.points.last().map_or(0.0, |point| point.factor);
+            strip.ends_at = Some(end_between([reached, factor], &|factor| Ok(solve(factor)?.is_some()))?);
+            break;
+        };
+        let problem = solved.problem();
+        let displacement = problem.probes().first().map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
+        let Deformation { max_strain, inverted_elements, .. } =
+            Deformation::of(problem, solved.state(), &solved.nodal_stress());
+        let error_percent = error(i, displacement);
+        strip.points.push(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements });
+    }
+    Ok(strip)
+}
+
+/// Returns the load between two parts beyond which the method does not converge.
+fn end_between(
+    [mut reached, mut failed]: [f64; 2],
+    converges: &dyn Fn(f64) -> Result<bool, StudyError>,
+) -> Result<f64, StudyError> {
+    for _ in 0..BISECTIONS {
+        let middle = if reached > 0.0 { (reached * failed).sqrt() } else { 0.5 * failed };
+        *(if converges(middle)? { &mut reached } else { &mut failed }) = middle;
+    }
+    Ok(reached)
+}

@@ -1,0 +1,83 @@
+//! Section forces as figures: the stress along a cut, and N, V and M along a beam.
+
+use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
+use crate::format::{engineering, three_digits};
+use crate::scene::Scene;
+use crate::section::{Section, SectionForces};
+
+/// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle.
+#[must_use]
+pub fn stress(section: &Section, scene: &Scene) -> Figure {
+    let recovered = |i: usize| section.points.iter().map(move |p| (p.stress.map(|stress| stress[i]), p.along));
+    let beam = |i: usize| section.points.iter().map(move |p| (Some(p.beam[i]), p.along));
+    let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| FigureSeries {
+        name: name.to_owned(),
+        ink,
+        mark,
+        may_leave: false,
+        points: points
+            .into_iter()
+            .map(|(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() })
+            .collect(),
+    };
+    let method = Ink::Method(scene.solver.method);
+    let series = vec![
+        series("normal stress, recovered", method, Mark::Line, recovered(0).collect()),
+        series("normal stress, beam theory", Ink::Exact, Mark::Dashes, beam(0).collect()),
+        series("shear stress, recovered", method, Mark::Dots, recovered(1).collect()),
+        series("shear stress, beam theory", Ink::Exact, Mark::Dots, beam(1).collect()),
+    ];
+    let SectionForces { normal, shear, moment } = section.forces;
+    let mut rows: Vec<FigureRow> =
+        series.iter().map(|series| row(&series.name, series.ink, series.mark, String::new())).collect();
+    rows.extend(
+        [("N", normal, "N"), ("V", shear, "N"), ("M", moment, "N m")]
+            .map(|(name, value, unit)| row(name, Ink::Scene, Mark::Disc, engineering(three_digits(value), unit))),
+    );
+    Figure {
+        title: format!("{}: stress in a cut", scene.name),
+        quantities: vec![Quantity::new("stress", "Pa"), Quantity::new("distance from the middle", "m")],
+        axes: [0, 1],
+        series,
+        rows,
+        ..Figure::default()
+    }
+}
+
+/// Draws N, V and M along a beam, each with its largest value.
+#[must_use]
+pub fn forces(sections: &[Section], scene: &Scene) -> [Figure; 3] {
+    type Component = fn(&SectionForces) -> f64;
+    let of: [(&str, &str, Component); 3] = [
+        ("normal force N", "N", |forces| forces.normal),
+        ("shear force V", "N", |forces| forces.shear),
+        ("bending moment M", "N m", |forces| forces.moment),
+    ];
+    of.map(|(name, unit, value)| {
+        let ink = Ink::Method(scene.solver.method);
+        let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
+        let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));
+        let largest = largest.map(|section| {
+            let at = engineering(three_digits(section.line.at.x), "m");
+            row(&format!("largest, at {at}"), ink, Mark::Line, engineering(three_digits(value(&section.forces)), unit))
+        });
+        Figure {
+            title: format!("{}: {name}", scene.name),
+            quantities: vec![Quantity::new("x at rest", "m"), Quantity::new(name, unit)],
+            axes: [0, 1],
+            series: vec![FigureSeries {
+                name: name.to_owned(),
+                ink,
+                mark: Mark::Line,
+                may_leave: false,
+                points: points.collect(),
+            }],
+            rows: largest.into_iter().collect(),
+            ..Figure::default()
+        }
+    })
+}
+
+fn row(name: &str, ink: Ink, mark: Mark, value: String) -> FigureRow {
+    FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false }
+}

@@ -1,0 +1,83 @@
+//! Tests of `warpbeam limits`: its numbers are those of `solve`.
+
+use std::fs;
+
+use crate::common::{solve_json, stderr, stdout, warpbeam, warpbeam_in};
+
+/// Errors and displacements at the scene's own load are those of `solve`, and `warped` stops where `solve` stops.
+#[test]
+fn limits_are_those_of_solve() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = warpbeam_in(folder.path(), &["limits", "article", "--json", "--out", "t.csv", "--picture", "t.svg"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let strips = json["strips"].as_array().unwrap();
+    assert_eq!(strips.len(), 9, "three elements, each with three methods");
+    let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    let force = json["full_load"].as_f64().unwrap();
+    for strip in strips {
+        let (element, method) = (strip["element"].as_str().unwrap(), strip["method"].as_str().unwrap());
+        let set = [format!("beam.element=\"{element}\""), format!("solver.method=\"{method}\"")];
+        let end = strip["converges_to"].as_f64();
+        let own = |row: &&str| {
+            row.starts_with(&format!("{element},{method},")) && {
+                let factor: f64 = row.split(',').nth(2).unwrap().parse().unwrap();
+                (factor - 1.0).abs() < 1e-9
+            }
+        };
+        let row = rows.lines().find(own);
+        assert_eq!(row.is_none(), end.is_some_and(|end| end < 1.0), "{element} {method} at the scene's load: {end:?}");
+        if let Some(row) = row {
+            let solved = solve_json(&["article", "--set", &set[0], "--set", &set[1]]);
+            let probe = &solved["probes"][0];
+            let wanted = probe["error_percent"].as_f64().unwrap() + probe["reference_error_percent"].as_f64().unwrap();
+            let values: Vec<f64> = row.split(',').skip(2).map(|v| v.parse().unwrap()).collect();
+            let off = (values[3] / wanted - 1.0).abs();
+            assert!(off < 1e-6, "{element} {method}: error {}, solve says {wanted}", values[3]);
+            assert!((values[2] - probe["u"][1].as_f64().unwrap()).abs() < 1e-6, "{row}: {probe}");
+        }
+        if let Some(end) = end {
+            assert_eq!(method, "warped", "newton solves every load");
+            let converges = |factor: f64| {
+                let load = format!("load.0.force=[0, {}]", -factor * force);
+                warpbeam(&["solve", "article", "--set", &set[0], "--set", &set[1], "--set", &load]).status.code()
+                    == Some(0)
+            };
+            assert!(converges(0.99 * end) && !converges(1.03 * end), "{element}: {end}");
+        }
+        // More load makes the error of linear theory larger.
+        if method == "linear" {
+            assert!(strip["within_1_percent"].as_f64() <= strip["within_5_percent"].as_f64(), "{strip}");
+        }
+    }
+    assert!(strips.iter().any(|strip| strip["method"] == "warped" && strip["converges_to"].is_f64()));
+    let picture = fs::read_to_string(folder.path().join("t.svg")).unwrap();
+    assert!(picture.contains("does not converge") && picture.contains("q4 newton"));
+}
+
+/// The load at which linear theory is 5 % off the exact beam is that of `curve`.
+#[test]
+fn the_limit_of_linear_theory_is_that_of_the_exact_beam() {
+    let text = stdout(&warpbeam(&["curve", "elastica"]));
+    let line = text.lines().find(|line| line.starts_with("linear theory differs by 5 %")).unwrap();
+    let percent: f64 = line.split(" at ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+    let json = stdout(&warpbeam(&["limits", "elastica", "--json"]));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let strips = json["strips"].as_array().unwrap();
+    let linear = strips.iter().find(|s| s["element"] == "t6" && s["method"] == "linear").unwrap();
+    let factor = linear["within_5_percent"].as_f64().unwrap();
+    assert!((factor / (0.01 * percent) - 1.0).abs() < 0.1, "{factor}, curve: {percent} %");
+}
+
+#[test]
+fn scenes_without_limits_are_refused() {
+    for (args, message) in [
+        (&["swing"][..], "analysis = \"static\""),
+        (&["nosuch"], "nosuch"),
+        (&["article", "--picture", "x.gif"], ".svg or .png"),
+    ] {
+        let output = warpbeam(&[&["limits"], args].concat());
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&output).contains(message), "{args:?}: {}", stderr(&output));
+    }
+}

@@ -1,0 +1,90 @@
+//! Tests of `warpbeam section`.
+
+use std::fs;
+
+use crate::common::{stderr, stdout, warpbeam, warpbeam_in};
+
+/// Returns the JSON object of `section --json`.
+fn sections(args: &[&str]) -> serde_json::Value {
+    let output = warpbeam(&[&["section", "--json"], args].concat());
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// In text, JSON and files, along the beam and in one cut.
+#[test]
+fn forces_of_a_cantilever_are_those_of_statics() {
+    // A force of 1 kN down at the end of 10 m: M = -(10 m - x) kN m but for the bending.
+    let small = ["cantilever", "--set", "load.0.force=[0, \"-1 mN\"]"];
+    let json = sections(&[&small[..], &["--along", "5"]].concat());
+    let all = json["sections"].as_array().unwrap();
+    assert_eq!(all.len(), 5);
+    for (i, section) in all.iter().enumerate() {
+        let x = 2.5 * i as f64;
+        assert!((section["at"][0].as_f64().unwrap() - x).abs() < 1e-12);
+        assert!((section["shear_force"].as_f64().unwrap() + 1e-3).abs() < 1e-9, "{section}");
+        assert!((section["moment"].as_f64().unwrap() + 1e-3 * (10.0 - x)).abs() < 1e-8, "{section}");
+    }
+    let one = &sections(&[&small[..], &["--at", "2500 mm"]].concat())["sections"][0];
+    assert_eq!(one["moment"], all[1]["moment"]);
+    // The same cut from the other side.
+    let back = &sections(&[&small[..], &["--at", "2.5,0.1", "--angle", "180deg"]].concat())["sections"][0];
+    let sum = one["moment"].as_f64().unwrap() + back["moment"].as_f64().unwrap();
+    assert!(sum.abs() < 1e-11, "{sum}");
+    assert_eq!(back["angle"].as_f64(), Some(std::f64::consts::PI));
+    let text = stdout(&warpbeam(&[&["section"], &small[..], &["--at", "2.5"]].concat()));
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("shear force V -1 mN") && words.contains("bending moment M -7.5 mN m"), "{text}");
+    let text = stdout(&warpbeam(&[&["section"], &small[..], &["--along", "3"]].concat()));
+    assert!(text.contains("largest M: -10 mN m, at x = 0 m"), "{text}");
+}
+
+#[test]
+fn tables_and_pictures_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |args: &[&str]| {
+        let output = warpbeam_in(folder.path(), &[&["section", "snap"], args].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    run(&["--at", "0.05", "--out", "cut.csv", "--picture", "cut.svg"]);
+    run(&["--along", "21", "--out", "along.csv", "--picture", "along.png"]);
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(read("cut.csv").starts_with("rest_x,rest_y,along,normal_stress,"));
+    assert!(read("cut.svg").contains("normal stress, beam theory"));
+    let along = read("along.csv");
+    assert_eq!(along.lines().count(), 22);
+    let columns = along.lines().next().unwrap().split(',').count();
+    for line in along.lines().skip(1) {
+        assert!(line.split(',').count() == columns && line.split(',').all(|v| v.parse::<f64>().unwrap().is_finite()));
+    }
+    // Width and height follow the header of a PNG file.
+    let png = fs::read(folder.path().join("along.png")).unwrap();
+    let [width, height] = [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()));
+    assert!(height > width, "three figures, one below the other: {width}×{height}");
+}
+
+#[test]
+fn wrong_lines_are_refused_with_one_message() {
+    for (args, message) in [
+        (&["article", "--at", "99"][..], "article: expected a line that crosses the body at rest"),
+        (
+            &["clip", "--at", "0"],
+            "clip: expected a point of the body, got one outside it; the line crosses the body in",
+        ),
+        (&["clip", "--along", "5"], "clip: expected a scene with [beam]"),
+        (&["article"], "--at"),
+        (&["article", "--at", "1", "--along", "3"], "cannot be used with"),
+        (&["article", "--at", "1 kg"], "expected a length (m)"),
+        (&["article", "--at", "1", "--angle", "1 m"], "expected an angle"),
+        (&["article", "--along", "1"], "2..=1000"),
+        (&["article", "--at", "1", "--picture", "cut.gif"], ".svg or .png"),
+    ] {
+        let output = warpbeam(&[&["section"], args].concat());
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(output.stdout.is_empty() && stderr(&output).contains(message), "{args:?}: {}", stderr(&output));
+    }
+    // A load that is not reached: the forces are those of the part reached.
+    let args = ["section", "article", "--at", "1", "--set", "solver.method=warped", "--set", "load.0.force=[0,-1e6]"];
+    let output = warpbeam(&args);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+}

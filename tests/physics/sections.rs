@@ -1,0 +1,278 @@
+//! Tests of section forces: the equilibrium of the part cut off, beam theory, and rotating and falling bodies.
+
+use crate::common::random::{self, Random};
+use warpbeam::nalgebra::Vector2;
+use warpbeam::scene::{Load, Place};
+use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Section, SectionLine, Simulation, Status};
+
+/// Returns the part of a polygon on the side of a line to which its normal points.
+fn clipped(polygon: &[Vector2<f64>], line: SectionLine) -> Vec<Vector2<f64>> {
+    let distance = |x: &Vector2<f64>| line.normal().dot(&(x - line.at));
+    let mut part = Vec::new();
+    for (i, a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (from, to) = (distance(a), distance(&b));
+        if from > 0.0 {
+            part.push(*a);
+        }
+        if (from > 0.0) != (to > 0.0) {
+            part.push(a + (b - a) * (from / (from - to)));
+        }
+    }
+    part
+}
+
+/// Returns area and centroid of a polygon.
+fn area_of(polygon: &[Vector2<f64>]) -> (f64, Vector2<f64>) {
+    let (mut area, mut first) = (0.0, Vector2::zeros());
+    for (i, a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        area += 0.5 * a.perp(&b);
+        first += (a + b) * (a.perp(&b) / 6.0);
+    }
+    (area, first / area)
+}
+
+/// Returns the rectangle of a straight beam, and the ends of a named edge.
+fn rectangle(scene: &Scene) -> ([Vector2<f64>; 4], impl Fn(&str) -> [Vector2<f64>; 2]) {
+    let beam = scene.beam.as_ref().unwrap();
+    let (l, h) = (beam.length, 0.5 * beam.height);
+    let corners = [[0.0, -h], [l, -h], [l, h], [0.0, h]].map(Vector2::from);
+    let edge = move |name: &str| match name {
+        "bottom" => [corners[0], corners[1]],
+        "right" => [corners[1], corners[2]],
+        "top" => [corners[2], corners[3]],
+        _ => [corners[3], corners[0]],
+    };
+    (corners, edge)
+}
+
+/// Returns the force on the part of a rectangle in front of a line, N: point loads and reactions by their nodes, edge
+/// loads and weight by length and area.
+fn force_in_front(simulation: &Simulation, line: SectionLine) -> Vector2<f64> {
+    let (scene, mesh) = (simulation.scene(), simulation.mesh());
+    let size = scene.beam.as_ref().map_or(1.0, |beam| beam.length.hypot(beam.height));
+    let is_in_front = |x: Vector2<f64>| line.normal().dot(&(x - line.at)) > 1e-9 * size;
+    let (corners, edge) = rectangle(scene);
+    let mut force = Vector2::zeros();
+    for load in &scene.loads {
+        match load {
+            Load::Gravity { acceleration, .. } => {
+                let area = area_of(&clipped(&corners, line)).0;
+                force += Vector2::from(*acceleration)
+                    * (scene.material.area_density() * if area > 0.0 { area } else { 0.0 });
+            }
+            Load::Force { place: Place::Edge(name), force: total, .. } => {
+                let [a, b] = edge(name);
+                let [from, to] = [a, b].map(|x| line.normal().dot(&(x - line.at)));
+                let share = match [from > 0.0, to > 0.0] {
+                    [true, true] => 1.0,
+                    [false, false] => 0.0,
+                    [true, false] => from / (from - to),
+                    [false, true] => to / (to - from),
+                };
+                force += Vector2::from(*total) * share;
+            }
+            Load::Force { place: Place::At(at), force: total, .. } => {
+                let node = mesh.nodes()[mesh.nearest_node((*at).into()) as usize];
+                force += if is_in_front(node) { Vector2::from(*total) } else { Vector2::zeros() };
+            }
+            _ => {}
+        }
+    }
+    // Reactions are minus the residual of fixed unknowns; moments act on the nodes of their edges.
+    let (forces, mask) = (simulation.forces(), simulation.system().pattern().mask());
+    let dead = simulation.problem().loads().dead_force();
+    for (i, _) in mesh.nodes().iter().enumerate().filter(|(_, x)| is_in_front(**x)) {
+        force -= forces.residual()[i].component_mul(&mask[i].map(|free| 1.0 - free));
+        force += forces.external()[i] - dead[i];
+    }
+    force
+}
+
+fn solved(scene: &Scene) -> Option<Simulation> {
+    let mut scene = scene.clone();
+    scene.solver.tolerance = 1e-13;
+    let mut simulation = Simulation::new(&scene).ok()?;
+    (*simulation.solve() == Status::Converged).then_some(simulation)
+}
+
+/// Returns the largest force of the elements on a node, N: rounding errors are relative to it.
+fn largest_force(simulation: &Simulation) -> f64 {
+    simulation.forces().magnitude().iter().map(|f| f.norm()).fold(0.0, f64::max)
+}
+
+/// The force balances loads and reactions in front, and the section seen from the other side has the opposite force and
+/// moment.
+#[test]
+fn sections_of_random_scenes_balance_the_part_cut_off() {
+    let mut checked = 0;
+    for seed in crate::common::sampled(500..600, 4) {
+        let Some(simulation) = solved(&random::scene(seed)) else { continue };
+        let mut random = Random(seed);
+        let beam = simulation.scene().beam.clone().unwrap();
+        let scale = largest_force(&simulation);
+        for _ in 0..3 {
+            let at = Vector2::new(random.between(0.0, beam.length), random.between(-0.5, 0.5) * beam.height);
+            let line = SectionLine { at, angle: random.between(-3.0, 3.0) };
+            let back = SectionLine { angle: line.angle + std::f64::consts::PI, ..line };
+            let [section, behind] = [line, back].map(|line| simulation.section(line).unwrap());
+            let height = (section.ends[1] - section.ends[0]).norm();
+            let off = (section.force - force_in_front(&simulation, line)).norm();
+            assert!(off < 1e-8 * scale, "seed {seed}, {line:?}: {off} N off, largest force {scale} N");
+            let off = (section.force + behind.force).norm();
+            assert!(off < 1e-8 * scale, "seed {seed}, {line:?}: {off} N from the other side, largest force {scale} N");
+            let off = (section.forces.moment + behind.forces.moment).abs();
+            let arm = height.max(beam.length);
+            assert!(
+                off < 1e-8 * scale * arm,
+                "seed {seed}, {line:?}: {off} N m from the other side, {scale} N, {arm} m"
+            );
+            let same = (section.forces.normal - behind.forces.normal).abs()
+                + (section.forces.shear - behind.forces.shear).abs();
+            assert!(same < 1e-8 * scale, "seed {seed}, {line:?}: N and V differ by {same} N");
+            checked += 1;
+        }
+    }
+    assert!(checked > 50, "{checked}");
+}
+
+/// Under linear theory the moments of a cantilever are those of statics, for every element and inclined lines too.
+#[test]
+fn moments_under_weight_and_edge_loads_are_those_of_statics() {
+    let (l, h, weight, total, tip) = (10.0, 1.0, -3.0, Vector2::new(2.0, -7.0), Vector2::new(5.0, 4.0));
+    for element in ElementKind::all() {
+        let scene = Scene::beam(l, h)
+            .with_element(element)
+            .with_cells(7, 2)
+            .clamp("left")
+            .force("top", total)
+            .force("right", tip)
+            .gravity([0.0, weight])
+            .with_method(MethodKind::Linear);
+        let simulation = solved(&scene).unwrap();
+        let mass = simulation.scene().material.area_density();
+        let scale = mass * -weight * l * h * l;
+        for (x, y, angle) in [(3.0, 0.1, 0.0), (5.0, 0.0, 0.0), (4.1, -0.2, 0.6), (7.7, 0.3, -0.9), (0.0, 0.0, 0.0)] {
+            let line = SectionLine { at: [x, y].into(), angle };
+            let section = simulation.section(line).unwrap();
+            let (corners, _) = rectangle(&scene);
+            let part = clipped(&corners, line);
+            let (area, centroid) = area_of(&part);
+            // The top runs from its crossing to the end.
+            let from = x - (0.5 * h - y) * angle.tan();
+            let top = (total * ((l - from) / l), Vector2::new(0.5 * (from + l), 0.5 * h));
+            let own = (Vector2::new(0.0, weight) * (mass * area), centroid);
+            let middle = section.middle();
+            let wanted: f64 = [top, own, (tip, Vector2::new(l, 0.0))].iter().map(|(f, at)| (at - middle).perp(f)).sum();
+            let off = (section.forces.moment - wanted).abs();
+            assert!(off < 1e-8 * scale, "{element:?} {line:?}: {} N m, statics {wanted} N m", section.forces.moment);
+            let force = top.0 + own.0 + tip;
+            assert!((section.force - force).norm() < 1e-8 * scale / l, "{element:?} {line:?}: {:?}", section.force);
+        }
+    }
+}
+
+/// N, V and M of beam theory, and stresses that integrate to them, along a cantilever that hardly bends.
+#[test]
+fn stresses_along_a_section_are_those_of_beam_theory() {
+    for element in ElementKind::all() {
+        let scene =
+            Scene::beam(10.0, 1.0).with_element(element).with_cells(80, 8).clamp("left").force("right", [0.0, -1.0]);
+        let simulation = solved(&scene).unwrap();
+        let sections = simulation.sections(11).unwrap();
+        assert_eq!(sections.len(), 11);
+        for (i, Section { forces, stress_forces, points, rest, .. }) in sections.iter().enumerate() {
+            assert!((rest[0].x - i as f64).abs() < 1e-9 && (rest[1] - rest[0]).norm() > 0.999, "{i}: {rest:?}");
+            assert!(
+                (forces.shear + 1.0).abs() < 1e-6 && (forces.moment + 10.0 - i as f64).abs() < 1e-3,
+                "{i} {forces:?}"
+            );
+            // The recovered stress is not that of beam theory near the ends.
+            if (2..9).contains(&i) {
+                let (off, shear) =
+                    ((stress_forces.moment / forces.moment - 1.0).abs(), (stress_forces.shear + 1.0).abs());
+                assert!(off < 0.03 && shear < 0.05, "{element:?} {i}: {stress_forces:?}");
+                for point in points {
+                    let [normal, shear] = point.stress.unwrap();
+                    let (largest, mean) = (6.0 * forces.moment.abs(), 1.0);
+                    assert!((normal - point.beam[0]).abs() < 0.04 * largest, "{element:?} {i}: {point:?}");
+                    assert!((shear - point.beam[1]).abs() < 0.5 * mean, "{element:?} {i}: {point:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Sections of bodies from mesh files, each cut seen from both sides.
+#[test]
+fn sections_of_mesh_files_are_opposite_from_both_sides() {
+    for (id, at, angle) in [("bracket", [0.05, 0.05], 0.0), ("clip", [0.0, 0.0], 0.0), ("cook", [20.0, 20.0], 0.3)] {
+        let simulation = solved(&crate::common::scene(id)).unwrap();
+        let (low, high) = simulation.mesh().bounds();
+        let middle = (low + high) * 0.5 + Vector2::from(at) * 1e-3;
+        let lines = (0..20)
+            .map(|i| SectionLine { at: middle + (high - low) * (0.04 * (f64::from(i) - 10.0)), angle: angle + 0.3 });
+        let (mut found, scale) = (0, largest_force(&simulation));
+        for line in lines {
+            let back = SectionLine { angle: line.angle + std::f64::consts::PI, ..line };
+            let (Ok(section), Ok(behind)) = (simulation.section(line), simulation.section(back)) else { continue };
+            found += 1;
+            let off = section.force + behind.force;
+            assert!(off.norm() < 1e-8 * scale, "{id} {line:?}: {off:?} of {:?}, {scale} N", section.force);
+            assert!(
+                (section.forces.moment + behind.forces.moment).abs() < 1e-8 * scale * simulation.system().size(),
+                "{id}"
+            );
+        }
+        assert!(found > 3, "{id}: {found}");
+    }
+}
+
+/// In motion the section carries the inertia of the part in front: nothing in free fall, ½ ρ ω² (L²/4 − x²) in
+/// rotation.
+#[test]
+fn sections_in_motion_carry_the_inertia() {
+    let mut spin = Simulation::new(&crate::common::scene("spin")).unwrap();
+    let (material, beam, omega) = (spin.scene().material, spin.scene().beam.clone().unwrap(), spin.scene().start.spin);
+    // The bar vibrates along its axis about the steady rotation.
+    let mut means = [0.0; 5];
+    const STEPS: u32 = 400;
+    for _ in 0..STEPS {
+        spin.step();
+        for (mean, section) in means.iter_mut().zip(&spin.sections(9).unwrap()[2..7]) {
+            *mean += section.forces.normal / f64::from(STEPS);
+        }
+    }
+    for (i, mean) in means.iter().enumerate() {
+        let x = beam.length * (0.125 * (i as f64 + 2.0) - 0.5);
+        let wanted = 0.5 * material.area_density() * beam.height * omega.powi(2) * (0.25 * beam.length.powi(2) - x * x);
+        assert!((mean / wanted - 1.0).abs() < 0.05, "{x} m: {mean} N, {wanted} N");
+    }
+    let mut falling = Scene::beam(4.0, 1.0).with_cells(8, 2).gravity([0.0, -9.81]).moving(IntegratorKind::TrBdf2, 0.01);
+    falling.dynamics.duration = 0.2;
+    let mut falling = Simulation::new(&falling).unwrap();
+    falling.solve();
+    let weight = 9.81 * 4.0 * falling.scene().material.area_density();
+    for section in falling.sections(5).unwrap() {
+        assert!(section.force.norm() < 1e-6 * weight, "{:?}", section.forces);
+    }
+}
+
+#[test]
+fn lines_that_miss_a_body_or_cross_it_in_several_places_are_refused() {
+    use warpbeam::SectionError;
+    let bracket = Simulation::new(&crate::common::scene("article")).unwrap();
+    let (low, high) = bracket.mesh().bounds();
+    let line = |at: Vector2<f64>, angle| SectionLine { at, angle };
+    let far = high + (high - low);
+    assert_eq!(bracket.section(line(far, 0.0)).unwrap_err(), SectionError::Missed);
+    // A point outside, on a line that crosses the body once.
+    assert!(bracket.section(line(Vector2::new(0.5 * (low.x + high.x), far.y), 0.0)).is_ok());
+    let mut arch = Scene::beam(10.0, 0.2).with_cells(40, 2).clamp("left");
+    arch.beam.as_mut().unwrap().rise = 3.0;
+    let arch = Simulation::new(&arch).unwrap();
+    let across = line(Vector2::new(5.0, 1.0), std::f64::consts::FRAC_PI_2);
+    assert_eq!(arch.section(across).unwrap_err(), SectionError::Several(2));
+    assert!(arch.sections(7).unwrap().iter().all(|section| (section.ends[1] - section.ends[0]).norm() < 0.201));
+}
