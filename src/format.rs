@@ -244,6 +244,17 @@ impl Context {
     }
 }
 
+/// Formats a value of a table with four significant digits, in units of the power of ten of its heading; see [`prefix`].
+///
+/// ```
+/// use warpbeam::format::in_power;
+/// assert_eq!([in_power(1234.5678, 3), in_power(-0.5, -3)], ["1.235", "-500"]);
+/// ```
+#[must_use]
+pub fn in_power(value: f64, power: i32) -> String {
+    significant(scaled(value, power), DIGITS)
+}
+
 /// Formats both components of a vector with one prefix: `(1.5, -0.02) mm`. A component at rounding level of the other
 /// is 0.
 ///

@@ -203,7 +203,7 @@ pub(super) struct SectionArgs {
     pub scene: RequiredSceneArgs,
     /// Point of the cut on the body at rest: X and Y, or X alone if the line crosses the body in one place. Numbers are
     /// in m, or have units: --at "30 mm,2 mm".
-    #[arg(long, value_name = "X[,Y]", value_parser = parse_place, required_unless_present = "along")]
+    #[arg(long, value_name = "X[,Y]", value_parser = parse_place, required_unless_present = "along", allow_hyphen_values = true)]
     pub at: Option<(f64, Option<f64>)>,
     /// Direction of the cut's normal, counter-clockwise from the x axis: 30deg, or a number of radians. The normal
     /// points to the part in front.

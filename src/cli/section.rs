@@ -10,7 +10,7 @@ use super::args::SectionArgs;
 use super::progress::Watch;
 use super::{CliError, check_suffix, commands, exit_code, json, named, simulate, text};
 use crate::export;
-use crate::format::{Context, engineering_pair, number, prefix, three_digits};
+use crate::format::{Context, engineering, engineering_pair, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
@@ -98,13 +98,14 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
         ("bending moment M", moment, "N m", section.forces.moment, section.stress_forces.moment),
     ];
     for (name, within, unit, value, of_stress) in rows {
-        let [value, of_stress] = [value, of_stress].map(|value| within.engineering(digits_of(value, 4), unit));
+        let [value, of_stress] = [value, of_stress].map(|value| within.engineering(value, unit));
         let _ = writeln!(text, "{name:<17} {value:>12}   of the recovered stress {of_stress}");
     }
     let stresses: Vec<f64> =
         section.points.iter().flat_map(|point| point.stress.into_iter().flatten().chain(point.beam)).collect();
     let ((power, symbol), within) = (prefix(&stresses, "Pa"), Context::of(stresses));
-    let (along_power, along_symbol) = prefix(&section.points.iter().map(|point| point.along).collect::<Vec<_>>(), "m");
+    let along: Vec<f64> = section.points.iter().map(|point| point.along).collect();
+    let ((along_power, along_symbol), along_within) = (prefix(&along, "m"), Context::of_inexact(along, 1e-6));
     let _ = writeln!(
         text,
         "\nstress, {symbol}Pa (beam theory: of a rectangular section)\n{:>10}  {:>12} {:>12}  {:>12} {:>12}",
@@ -114,14 +115,14 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
         "shear",
         "beam theory"
     );
-    let short = |value: f64, power: i32| number(digits_of(within.rounded(value) / 10f64.powi(power), 4));
+    let short = |value: f64| in_power(within.rounded(value), power);
     for point in shown(&section.points) {
         let [normal, shear] = match point.stress {
-            Some(stress) => stress.map(|value| short(value, power)),
+            Some(stress) => stress.map(short),
             None => [(); 2].map(|()| "–".to_owned()),
         };
-        let [beam_normal, beam_shear] = point.beam.map(|value| short(value, power));
-        let along = number(digits_of(point.along / 10f64.powi(along_power), 4));
+        let [beam_normal, beam_shear] = point.beam.map(short);
+        let along = in_power(along_within.rounded(point.along), along_power);
         let _ = writeln!(text, "{along:>10}  {normal:>12} {beam_normal:>12}  {shear:>12} {beam_shear:>12}");
     }
     text
@@ -132,11 +133,6 @@ fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
     const MAX_ROWS: usize = 13;
     let rows = values.len().min(MAX_ROWS);
     (0..rows).filter_map(move |row| values.get(row * (values.len() - 1) / (rows - 1).max(1)))
-}
-
-/// Rounds to a number of significant digits.
-fn digits_of(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
@@ -151,16 +147,17 @@ fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
     let scales = columns.each_ref().map(|(_, within, unit, values)| {
         prefix(&values.iter().map(|value| within.rounded(*value)).collect::<Vec<_>>(), unit)
     });
-    let mut text = format!("{:>10}", "x, m");
+    let x: Vec<f64> = sections.iter().map(|section| section.line.at.x).collect();
+    let (x_power, x_symbol) = prefix(&x, "m");
+    let mut text = format!("{:>10}", format!("x, {x_symbol}m"));
     for ((name, _, unit, _), (_, symbol)) in columns.iter().zip(scales) {
         let _ = write!(text, "  {:>14}", format!("{name}, {symbol}{unit}"));
     }
     text.push('\n');
-    for (i, section) in sections.iter().enumerate() {
-        let _ = write!(text, "{:>10}", number(digits_of(section.line.at.x, 5)));
+    for (i, x) in x.iter().enumerate() {
+        let _ = write!(text, "{:>10}", in_power(*x, x_power));
         for ((_, within, _, values), (power, _)) in columns.iter().zip(scales) {
-            let value = within.rounded(values[i]) / 10f64.powi(power);
-            let _ = write!(text, "  {:>14}", number(digits_of(value, 4)));
+            let _ = write!(text, "  {:>14}", in_power(within.rounded(values[i]), power));
         }
         text.push('\n');
     }
@@ -168,9 +165,8 @@ fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
     for (name, within, unit, values) in &columns {
         let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         if let Some((i, value)) = largest {
-            let (value, x) =
-                (within.engineering(digits_of(*value, 4), unit), number(digits_of(sections[i].line.at.x, 5)));
-            let _ = writeln!(text, "largest {name}: {value}, at x = {x} m");
+            let (value, x) = (within.engineering(*value, unit), engineering(x[i], "m"));
+            let _ = writeln!(text, "largest {name}: {value}, at x = {x}");
         }
     }
     text

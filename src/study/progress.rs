@@ -52,8 +52,8 @@ impl From<&StudyError> for Sentence {
     fn from(error: &StudyError) -> Self {
         match error {
             StudyError::Simulation(error) => error.into(),
-            StudyError::InMotion => "expected a scene with analysis = \"static\": the study measures solves for an \
-                                     equilibrium, and this scene is in motion"
+            StudyError::InMotion => "expected a scene with analysis = \"static\": equilibria are compared, and this \
+                                     scene is in motion; `warpbeam study` compares motions"
                 .into(),
             StudyError::AtRest => "expected a scene with analysis = \"dynamic\": the study measures the path of a \
                                    motion, and this scene is at rest"

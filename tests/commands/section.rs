@@ -48,6 +48,9 @@ fn tables_and_pictures_are_written() {
     };
     run(&["--at", "0.05", "--out", "cut.csv", "--picture", "cut.svg"]);
     run(&["--along", "21", "--out", "along.csv", "--picture", "along.png"]);
+    // The back of the ring, at a negative coordinate: the hand calculation of the guide has 68.7 N mm at the support's side.
+    let clip = &sections(&["clip", "--at", "-6 mm,0 mm", "--angle", "90deg"])["sections"][0];
+    assert!((clip["moment"].as_f64().unwrap().abs() - 0.0687).abs() < 0.002, "{clip}");
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     assert!(read("cut.csv").starts_with("rest_x,rest_y,along,normal_stress,"));
     assert!(read("cut.svg").contains("normal stress, beam theory"));
