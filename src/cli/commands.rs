@@ -243,7 +243,8 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
     match supports.clone().position(|support| support == name) {
         Some(i) => Ok(Ordinate::Reaction(i)),
         None => {
-            let known = scene.probes.iter().map(|p| p.name.clone()).chain(supports).collect();
+            let of_probe = |name: &String| ["", ".x", ".y", ".path"].map(|part| format!("{name}{part}"));
+            let known = scene.probes.iter().flat_map(|probe| of_probe(&probe.name)).chain(supports).collect();
             Err(CliError::NoOrdinate { name, known })
         }
     }

@@ -73,7 +73,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let _ = match &solution.motion {
         Some(MotionResult { time, counts, .. }) => writeln!(
             text,
-            "{word} at {} after {} and {}",
+            "{word} at {} after {} and {}; the numbers below are those of this instant",
             engineering(*time, "s"),
             steps_text(scene, counts.steps, *time),
             count(counts.solves, "solve"),

@@ -835,7 +835,10 @@ fn curve_prints_linear_theory_the_reference_and_every_method() {
     for (args, why) in [
         (&["curve", "swing"][..], "expected a static scene"),
         (&["curve", "shear", "--set", "solver.method=linear"], "expected a static scene"),
-        (&["curve", "snap", "--picture", "x.png", "--of", "nobody"], "expected one of quarter, crown, support.0"),
+        (
+            &["curve", "snap", "--picture", "x.png", "--of", "nobody"],
+            "expected one of quarter, quarter.x, quarter.y, quarter.path, crown",
+        ),
         (&["curve", "snap", "--picture", "x.pdf"], "expected a name that ends in .svg or .png"),
     ] {
         let none = warpbeam(args);
