@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::memory::PeakMemory;
+use super::outputs::Outputs;
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
@@ -184,8 +185,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = simulate(&source)?;
     // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
-    let is_png = picture.as_deref().map(self::is_png).transpose()?;
-    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let outputs = Outputs::new(out, picture)?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
     let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
@@ -200,32 +200,13 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
         (None, None) => return Err(CliError::NoPath(named(&source))),
     };
-    if let Some(out) = out {
-        export::write_text(&out, &table)?;
-    }
-    if let (Some(picture), Some(is_png)) = (picture, is_png) {
+    outputs.write_table(|| table)?;
+    outputs.write_picture(|| {
         let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
-        let drawing = plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string));
-        write_drawing(&drawing, &picture, is_png)?;
-    }
+        Ok(plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)))
+    })?;
     text::print(&summary)?;
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
-}
-
-/// Returns `true` for the name of a PNG file, `false` for that of an SVG file; refuses others.
-pub(super) fn is_png(path: &Path) -> Result<bool, CliError> {
-    check_suffix(path, &[".svg", ".png"], ".svg or .png")?;
-    Ok(check_suffix(path, &[".png"], ".png").is_ok())
-}
-
-/// Writes a drawing to a PNG or an SVG file.
-pub(super) fn write_drawing(drawing: &Drawing, path: &Path, is_png: bool) -> Result<(), CliError> {
-    if is_png {
-        drawing.picture()?.write_png(path)?;
-    } else {
-        export::write_text(path, &drawing.svg())?;
-    }
-    Ok(())
 }
 
 /// Parses the name of the quantity to be drawn.

@@ -6,37 +6,31 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
+use super::outputs::Outputs;
 use super::progress::Watch;
-use super::{CliError, check_suffix, commands, json, named, simulate, text};
-use crate::export;
+use super::{CliError, json, named, simulate, text};
 use crate::format::{engineering, three_digits};
 use crate::plot;
 use crate::scene;
-use crate::study::limits::{GOOD, LimitPoint, Limits, Strip, USABLE};
+use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE};
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let LimitsArgs { scene, json, out, picture } = args;
     let source = scene::Source::from(scene);
-    // Report a wrong file name before solving.
-    let is_png = picture.as_deref().map(commands::is_png).transpose()?;
-    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let outputs = Outputs::new(out, picture)?;
     let (scene, _) = simulate(&source)?;
     let watch = Watch::new();
-    let limits = Limits::of(&scene, &|progress| watch.observe(progress));
+    let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
-    if let Some(out) = out {
-        export::write_text(&out, &table(&limits))?;
-    }
-    if let (Some(picture), Some(is_png)) = (picture, is_png) {
-        commands::write_drawing(&plot::limits(&limits), &picture, is_png)?;
-    }
+    outputs.write_table(|| table(&limits))?;
+    outputs.write_picture(|| Ok(plot::limits(&limits)))?;
     text::print(&if json { as_json(&limits) } else { summary(&limits) })?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn summary(limits: &Limits) -> String {
+fn summary(limits: &MethodLimits) -> String {
     let load = |factor: f64| engineering(three_digits(factor * limits.axis.full), limits.axis.unit);
     let ends = [limits.reference.first(), limits.reference.last()].map(|end| end.map_or(0.0, |(factor, _)| *factor));
     let [from, to] = ends.map(load);
@@ -74,7 +68,7 @@ fn summary(limits: &Limits) -> String {
 }
 
 /// Formats every result as CSV.
-fn table(limits: &Limits) -> String {
+fn table(limits: &MethodLimits) -> String {
     let mut text =
         "element,method,load_factor,displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n"
             .to_owned();
@@ -89,7 +83,7 @@ fn table(limits: &Limits) -> String {
     text
 }
 
-fn as_json(limits: &Limits) -> String {
+fn as_json(limits: &MethodLimits) -> String {
     let strip = |strip: &Strip| {
         let within = |percent: f64| strip.within(percent).map(json::number);
         json!({

@@ -32,6 +32,7 @@ mod json;
 mod limits;
 mod manual;
 mod memory;
+mod outputs;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
@@ -207,8 +208,7 @@ fn warn_of_millimetres(scene: &Scene, size: f64) {
 /// used.
 fn warn_of_built_in_mesh(source: &scene::Source, scene: &Scene) {
     if let Some(file) = scene.mesh.as_ref().map(|mesh| &mesh.file)
-        && scene::registry::mesh(file).is_some()
-        && !source.folder().join(file).is_file()
+        && scene::built_in_mesh(file, &source.folder()).is_some()
     {
         eprintln!(
             "warpbeam: warning: {file} does not exist in the folder of the scene; the built-in mesh of this name is used"

@@ -7,23 +7,21 @@ use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use super::args::SectionArgs;
+use super::outputs::Outputs;
 use super::progress::Watch;
-use super::{CliError, check_suffix, commands, exit_code, json, named, simulate, text};
-use crate::export;
+use super::{CliError, commands, exit_code, json, named, simulate, text};
 use crate::format::{Context, engineering, engineering_pair, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
 use crate::simulation::{Simulation, Status};
-use crate::study::section_chart;
+use crate::study::section_chart::{self, COMPONENTS, SectionComponent};
 
 /// Runs the command.
 pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     let SectionArgs { scene, at, angle, along, json, out, picture } = args;
     let source = scene::Source::from(scene);
-    // Report a wrong file name before solving.
-    let is_png = picture.as_deref().map(commands::is_png).transpose()?;
-    out.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+    let outputs = Outputs::new(out, picture)?;
     let (scene, mut simulation) = simulate(&source)?;
     let refused = |error: SectionError| CliError::Section { scene: named(&source), error };
     let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });
@@ -45,16 +43,13 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         (None, count) => simulation.sections(usize::from(count.unwrap_or(2))).map_err(refused)?,
     };
     let of_one = sections.first().filter(|_| line.is_some());
-    if let Some(out) = out {
-        export::write_text(&out, &of_one.map_or_else(|| forces_table(&sections), stress_table))?;
-    }
-    if let (Some(picture), Some(is_png)) = (picture, is_png) {
-        let drawing = match of_one {
+    outputs.write_table(|| of_one.map_or_else(|| forces_table(&sections), stress_table))?;
+    outputs.write_picture(|| {
+        Ok(match of_one {
             Some(section) => plot::figure(&section_chart::stress(section, &scene)),
             None => Drawing::stacked(section_chart::forces(&sections, &scene).iter().map(plot::figure)),
-        };
-        commands::write_drawing(&drawing, &picture, is_png)?;
-    }
+        })
+    })?;
     text::print(&match (json, of_one) {
         (true, _) => as_json(&scene, &simulation, &sections),
         (false, Some(section)) => heading(&scene, &simulation) + &of_cut(section, &simulation),
@@ -79,27 +74,23 @@ fn heading(scene: &Scene, simulation: &Simulation) -> String {
     format!("{}: element {}, {}{part}\n", scene.name, scene.element().id(), simulation.status().word())
 }
 
-/// Contexts of forces and moments: results below the rounding errors of the solve are 0.
-fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 2] {
+/// Contexts of the [`COMPONENTS`]: results below the rounding errors of the solve are 0.
+fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
     let size = simulation.system().size();
     let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
     let forces = || sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
-    [Context::of_inexact(forces(), inexact), Context::of_inexact(forces().map(|force| force * size), inexact)]
+    let force = Context::of_inexact(forces(), inexact);
+    [force, force, Context::of_inexact(forces().map(|force| force * size), inexact)]
 }
 
 fn of_cut(section: &Section, simulation: &Simulation) -> String {
-    let [force, moment] = contexts(std::slice::from_ref(section), simulation);
     let pair = |v: Vector2<f64>| engineering_pair(v.into(), "m");
     let [[from, to], [now_from, now_to]] = [section.rest, section.ends].map(|ends| ends.map(pair));
     let mut text = format!("cut from {from} to {to} at rest, now from {now_from} to {now_to}\n");
-    let rows = [
-        ("normal force N", force, "N", section.forces.normal, section.stress_forces.normal),
-        ("shear force V", force, "N", section.forces.shear, section.stress_forces.shear),
-        ("bending moment M", moment, "N m", section.forces.moment, section.stress_forces.moment),
-    ];
-    for (name, within, unit, value, of_stress) in rows {
-        let [value, of_stress] = [value, of_stress].map(|value| within.engineering(value, unit));
-        let _ = writeln!(text, "{name:<17} {value:>12}   of the recovered stress {of_stress}");
+    for (component, within) in COMPONENTS.iter().zip(contexts(std::slice::from_ref(section), simulation)) {
+        let [value, of_stress] = [&section.forces, &section.stress_forces]
+            .map(|forces| within.engineering((component.of)(forces), component.unit));
+        let _ = writeln!(text, "{:<17} {value:>12}   of the recovered stress {of_stress}", component.name);
     }
     let stresses: Vec<f64> =
         section.points.iter().flat_map(|point| point.stress.into_iter().flatten().chain(point.beam)).collect();
@@ -136,37 +127,35 @@ fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
 }
 
 fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
-    let within = contexts(sections, simulation);
-    let [force, moment] = within;
-    let values = |of: fn(&SectionForces) -> f64| sections.iter().map(|section| of(&section.forces)).collect::<Vec<_>>();
-    let columns = [
-        ("N", force, "N", values(|forces| forces.normal)),
-        ("V", force, "N", values(|forces| forces.shear)),
-        ("M", moment, "N m", values(|forces| forces.moment)),
-    ];
-    let scales = columns.each_ref().map(|(_, within, unit, values)| {
-        prefix(&values.iter().map(|value| within.rounded(*value)).collect::<Vec<_>>(), unit)
-    });
+    let columns: Vec<(&SectionComponent, Vec<f64>)> = COMPONENTS
+        .iter()
+        .zip(contexts(sections, simulation))
+        .map(|(component, within)| {
+            let values = sections.iter().map(|section| within.rounded((component.of)(&section.forces)));
+            (component, values.collect())
+        })
+        .collect();
+    let scales: Vec<_> = columns.iter().map(|(component, values)| prefix(values, component.unit)).collect();
     let x: Vec<f64> = sections.iter().map(|section| section.line.at.x).collect();
     let (x_power, x_symbol) = prefix(&x, "m");
     let mut text = format!("{:>10}", format!("x, {x_symbol}m"));
-    for ((name, _, unit, _), (_, symbol)) in columns.iter().zip(scales) {
-        let _ = write!(text, "  {:>14}", format!("{name}, {symbol}{unit}"));
+    for ((component, _), (_, symbol)) in columns.iter().zip(&scales) {
+        let _ = write!(text, "  {:>14}", format!("{}, {symbol}{}", component.symbol, component.unit));
     }
     text.push('\n');
     for (i, x) in x.iter().enumerate() {
         let _ = write!(text, "{:>10}", in_power(*x, x_power));
-        for ((_, within, _, values), (power, _)) in columns.iter().zip(scales) {
-            let _ = write!(text, "  {:>14}", in_power(within.rounded(values[i]), power));
+        for ((_, values), (power, _)) in columns.iter().zip(&scales) {
+            let _ = write!(text, "  {:>14}", in_power(values[i], *power));
         }
         text.push('\n');
     }
     text.push('\n');
-    for (name, within, unit, values) in &columns {
+    for (component, values) in &columns {
         let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         if let Some((i, value)) = largest {
-            let (value, x) = (within.engineering(*value, unit), engineering(x[i], "m"));
-            let _ = writeln!(text, "largest {name}: {value}, at x = {x}");
+            let (value, x) = (engineering(*value, component.unit), engineering(x[i], "m"));
+            let _ = writeln!(text, "largest {}: {value}, at x = {x}", component.symbol);
         }
     }
     text

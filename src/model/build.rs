@@ -399,23 +399,28 @@ impl Scene {
     /// Returns warnings about pulses that are shorter than a time step, or outside the motion.
     #[must_use]
     pub fn unresolved_pulses(&self) -> Vec<String> {
-        let step = self.dynamics.time_step;
+        let DynamicsSettings { duration, time_step, .. } = self.dynamics;
         let pulses = self.loads.iter().enumerate().filter_map(|(i, load)| Some((i, load.pulse()?)));
         pulses
             .filter_map(|(i, pulse)| {
-                let times = [pulse.start, pulse.end(), self.dynamics.duration, pulse.duration, step];
-                let [start, end, whole, duration, step] = times.map(|time| engineering(time, "s"));
-                if pulse.end() <= 0.0 || pulse.start >= self.dynamics.duration {
-                    return Some(format!(
-                        "the pulse of load.{i}, from {start} to {end}, is outside the motion, which lasts {whole}"
-                    ));
+                let seconds = |time: f64| engineering(time, "s");
+                if pulse.end() <= 0.0 || pulse.start >= duration {
+                    Some(format!(
+                        "the pulse of load.{i}, from {} to {}, is outside the motion, which lasts {}",
+                        seconds(pulse.start),
+                        seconds(pulse.end()),
+                        seconds(duration)
+                    ))
+                } else if pulse.duration < time_step {
+                    Some(format!(
+                        "the pulse of load.{i} lasts {}, less than a time step of {}: its impulse is exact, its shape \
+                         is not resolved",
+                        seconds(pulse.duration),
+                        seconds(time_step)
+                    ))
+                } else {
+                    None
                 }
-                (pulse.duration < self.dynamics.time_step).then(|| {
-                    format!(
-                        "the pulse of load.{i} lasts {duration}, less than a time step of {step}: its impulse is \
-                         exact, its shape is not resolved"
-                    )
-                })
             })
             .collect()
     }

@@ -48,10 +48,15 @@ impl Decades {
         start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
+    /// Iterates over the positions and the values of the decades.
+    pub fn values(&self) -> impl Iterator<Item = (f64, f64)> {
+        let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
+        decades.map(|value| (self.place(value), value))
+    }
+
     /// Returns the position and the label of every decade.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
-        decades.map(|value| (self.place(value), number(value))).collect()
+        self.values().map(|(place, value)| (place, number(value))).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::axes::Decades;
 use super::drawing::{Anchor, Color, Drawing, GRID, INK, Item, Outline, Shape, Text, solid};
 use crate::format::engineering;
-use crate::study::limits::{GOOD, Limits, Strip, USABLE};
+use crate::study::limits::{GOOD, MethodLimits, Strip, USABLE};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
@@ -22,7 +22,7 @@ const UNKNOWN: Color = [0xc4, 0xc8, 0xcc];
 
 /// Draws the limits over the logarithm of the load.
 #[must_use]
-pub fn limits(limits: &Limits) -> Drawing {
+pub fn limits(limits: &MethodLimits) -> Drawing {
     let axis = Decades::new(limits.reference.iter().map(|(factor, _)| *factor), ACROSS);
     let top = CURVE[1] + 44.0;
     let bottom = top + ROW * limits.strips.len() as f64;
@@ -30,7 +30,7 @@ pub fn limits(limits: &Limits) -> Drawing {
     let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, limits.scene.as_str());
     drawing.items.push(Item::Text(Text { size: 16.0, ..title }));
     let load = |factor: f64| engineering(factor * limits.axis.full, limits.axis.unit);
-    for (x, factor) in axis.ticks().into_iter().map(|(x, _)| x).zip([0.01, 0.1, 1.0, 10.0]) {
+    for (x, factor) in axis.values() {
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
         drawing.text([x, bottom + 18.0], Anchor::Middle, load(factor));
     }
@@ -61,14 +61,13 @@ pub fn limits(limits: &Limits) -> Drawing {
 }
 
 /// Draws the length of the reference displacement over the load, both logarithmic.
-fn curve(drawing: &mut Drawing, limits: &Limits, axis: &Decades) {
+fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &Decades) {
     let lengths = limits.reference.iter().map(|(factor, u)| (*factor, u.map(|u| u.norm()).filter(|u| *u > 0.0)));
     let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
     let up = Decades::new(lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
-    for (y, text) in up.ticks() {
+    for (y, length) in up.values() {
         drawing.line(vec![[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
-        let value = text.parse::<f64>().map_or(text, |value| engineering(value, "m"));
-        drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, value);
+        drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, engineering(length, "m"));
     }
     for known in lengths.split(|(_, u)| u.is_none()) {
         let places = known.iter().filter_map(|(factor, u)| Some([axis.place(*factor), up.place((*u)?)]));
@@ -79,7 +78,7 @@ fn curve(drawing: &mut Drawing, limits: &Limits, axis: &Decades) {
 }
 
 /// Draws the bars of a strip, from each load to half way to the next one.
-fn bars(drawing: &mut Drawing, limits: &Limits, strip: &Strip, axis: &Decades, y: f64) {
+fn bars(drawing: &mut Drawing, limits: &MethodLimits, strip: &Strip, axis: &Decades, y: f64) {
     const HEIGHT: f64 = 18.0;
     let loads: Vec<f64> = limits.reference.iter().map(|(factor, _)| axis.place(*factor)).collect();
     let edge = |i: usize| match (i.checked_sub(1).and_then(|before| loads.get(before)), loads.get(i)) {

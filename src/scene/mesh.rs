@@ -40,15 +40,20 @@ impl Scene {
     }
 }
 
+/// Returns the mesh of a built-in scene that stands for a file that does not exist in `folder`; `None` if there is none.
+pub(crate) fn built_in_mesh(file: &str, folder: &Path) -> Option<&'static str> {
+    registry::mesh(file).filter(|_| !folder.join(file).is_file())
+}
+
 /// Reads the mesh file of a scene, relative to the folder of the scene file; meshes of built-in scenes are part of the
 /// library.
 pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid> {
     const KEY: &str = "mesh.file";
     let Some(mesh) = &mut scene.mesh else { return Ok(()) };
     let path = folder.join(&mesh.file);
-    let text = match (registry::mesh(&mesh.file), path.is_file()) {
-        (Some(text), false) => text.to_owned(),
-        _ => {
+    let text = match built_in_mesh(&mesh.file, folder) {
+        Some(text) => text.to_owned(),
+        None => {
             let failed = |reason: String| Invalid::new(KEY, Sentence::located(path.display().to_string(), reason));
             let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
             if size > MAX_MESH_BYTES {

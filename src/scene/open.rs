@@ -159,28 +159,26 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
             None => SceneError::Syntax { file, line, message: syntax_message(text, &e) },
         }
     };
-    if let Some(invalid) = toml::from_str(text).ok().and_then(|table| kinds::wrong_kind(&table)) {
+    let mut table: Table = toml::from_str(text).map_err(syntax)?;
+    if let Some(invalid) = kinds::wrong_kind(&table) {
         return Err(located(text, file, invalid));
     }
-    // Parse the file without assignments first, so that its own errors have lines.
+    // Read the file without assignments first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
-    if !assignments.is_empty() {
-        let mut table: Table = toml::from_str(text).map_err(syntax)?;
-        for assignment in assignments {
-            let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
-            let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
-            if let Some(invalid) = kinds::wrong_kind(&table) {
-                return Err(failed(match same_key(&key, &invalid.key) {
-                    true => invalid.message(),
-                    false => invalid.to_string(),
-                }));
-            }
-            scene = Scene::deserialize_table(&table).map_err(|e| {
-                let missing = required::missing(table.clone()).map(|invalid| invalid.to_string());
-                let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
-                failed(format!("{message} (got {key} = {value})"))
-            })?;
+    for assignment in assignments {
+        let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
+        let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
+        if let Some(invalid) = kinds::wrong_kind(&table) {
+            return Err(failed(match same_key(&key, &invalid.key) {
+                true => invalid.message(),
+                false => invalid.to_string(),
+            }));
         }
+        scene = Scene::deserialize_table(&table).map_err(|e| {
+            let missing = required::missing(table.clone()).map(|invalid| invalid.to_string());
+            let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
+            failed(format!("{message} (got {key} = {value})"))
+        })?;
     }
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| blame(text, file, assignments, invalid))?;

@@ -14,7 +14,7 @@ use crate::mesh::{MaterialPoint, Mesh};
 use crate::scene::{Load, Place, Pulse};
 
 /// Body in its current positions.
-pub(super) struct Shape<'a> {
+pub(super) struct PlacedMesh<'a> {
     pub mesh: &'a Mesh,
     /// Current positions of the nodes, m: those of rest in linear theory.
     pub positions: &'a [Vector2<f64>],
@@ -39,7 +39,7 @@ impl Wrench {
 /// in front: force, N, and moment about `middle`, N m.
 pub(super) fn beyond_nodes(
     problem: &Problem,
-    shape: &Shape<'_>,
+    shape: &PlacedMesh<'_>,
     cut: &Cut,
     load_factor: f64,
     middle: Vector2<f64>,
@@ -66,7 +66,7 @@ pub(super) fn beyond_nodes(
     sum
 }
 
-impl Shape<'_> {
+impl PlacedMesh<'_> {
     fn position(&self, weights: impl Iterator<Item = (u32, f64)>) -> Vector2<f64> {
         weights.map(|(node, weight)| self.positions[node as usize] * weight).sum()
     }
@@ -138,7 +138,11 @@ impl Shape<'_> {
 fn part_in_front(mesh: &Mesh, nodes: &[u32], side: Side) -> Vec<Vector2<f64>> {
     let outline: Vec<Vector2<f64>> = mesh
         .sides(nodes)
-        .flat_map(|segment| segment.nodes().iter().rev().skip(1).rev().map(|&node| mesh.node(node)).collect::<Vec<_>>())
+        .flat_map(|segment| {
+            // The last node of a side is the first of the next.
+            let (_, own) = segment.nodes().split_last().unwrap_or((&0, &[]));
+            own.iter().map(|&node| mesh.node(node)).collect::<Vec<_>>()
+        })
         .collect();
     let mut part = Vec::new();
     for (i, &from) in outline.iter().enumerate() {

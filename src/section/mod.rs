@@ -24,7 +24,7 @@ use crate::scene::Plane;
 use crate::state::State;
 use crate::stress::NodalStress;
 use cut::{Cut, CutPoint};
-use load::{Shape, Wrench, beyond_nodes};
+use load::{PlacedMesh, Wrench, beyond_nodes};
 
 /// Reason why a line has no section.
 ///
@@ -157,7 +157,7 @@ impl Section {
             points: Vec::new(),
         };
         let middle = section.middle();
-        let shape = Shape { mesh, positions: &positions };
+        let shape = PlacedMesh { mesh, positions: &positions };
         let mut sum = load_factor.map(|factor| beyond_nodes(problem, &shape, &cut, factor, middle)).unwrap_or_default();
         for (node, force) in element_forces(problem, state, &cut) {
             sum.add(positions[node as usize] - middle, force);

@@ -99,7 +99,7 @@ impl Strip {
 
 /// Limits of all methods and elements on a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limits {
+pub struct MethodLimits {
     /// Title of the scene.
     pub scene: String,
     /// Quantity and unit of the load.
@@ -110,7 +110,7 @@ pub struct Limits {
     pub strips: Vec<Strip>,
 }
 
-impl Limits {
+impl MethodLimits {
     /// Computes the limits of a static scene with a probe, on the scene's cells. The reference solution is that of
     /// [`Reference`] at every load.
     ///
@@ -123,12 +123,19 @@ impl Limits {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        Simulation::new(scene)?;
+        // Methods share the system of an element.
+        let systems = scene.elements().map(|element| {
+            let mut own = scene.clone();
+            own.set_element(element);
+            let system = System::new(&own).map_err(SimulationError::from)?;
+            Ok((own, Arc::new(system)))
+        });
+        let systems = systems.collect::<Result<Vec<_>, SimulationError>>()?;
         let factors = factors();
         let now = [sentence!("reference solutions"), sentence!("following each method")];
-        let settings: Vec<(ElementKind, MethodKind)> = (scene.elements())
-            .flat_map(|element| METHODS.iter().map(move |method| (element, method.kind)))
-            .filter(|(_, method)| *method != MethodKind::Auto)
+        let methods = || METHODS.iter().map(|method| method.kind).filter(|method| *method != MethodKind::Auto);
+        let settings: Vec<(Scene, &Arc<System>)> = (systems.iter())
+            .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)))
             .collect();
         let all = (factors.len() + settings.len()) as f64;
         let solved = all_done(parallel::map(
@@ -146,7 +153,7 @@ impl Limits {
         };
         let strips = all_done(parallel::map(
             &settings,
-            |&(element, method), observe| strip(scene, element, method, &factors, &known, observe),
+            |(own, system), observe| strip(own, system, &factors, &known, observe),
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
         ))?;
         Ok(Self {
@@ -177,27 +184,24 @@ fn at(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Solves with a method and an element from load to load until it does not converge. Each solve starts from rest, as
-/// `warpbeam solve` does.
+/// Solves a scene with its method and element from load to load until it does not converge. Each solve starts from
+/// rest, as `warpbeam solve` does.
 fn strip(
     scene: &Scene,
-    element: ElementKind,
-    method: MethodKind,
+    system: &Arc<System>,
     factors: &[f64],
     error: &dyn Fn(usize, Vector2<f64>) -> Option<f64>,
     observe: Observer<'_>,
 ) -> Result<Strip, StudyError> {
-    let mut own = scene.clone().with_method(method);
-    own.set_element(element);
-    let system = Arc::new(System::new(&own).map_err(SimulationError::from)?);
     let solve = |factor: f64| {
-        let mut simulation = Simulation::with_system(&at(&own, factor), system.clone())?;
+        let mut simulation = Simulation::with_system(&at(scene, factor), system.clone())?;
         let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
         match flow.is_break() {
             true => Err(StudyError::Cancelled),
             false => Ok(Some(simulation).filter(|simulation| *simulation.status() == Status::Converged)),
         }
     };
+    let (element, method) = (scene.element(), scene.solver.method);
     let mut strip = Strip { element, method, points: Vec::new(), ends_at: None };
     for (i, &factor) in factors.iter().enumerate() {
         let Some(solved) = solve(factor)? else {

@@ -5,6 +5,26 @@ use crate::format::{engineering, three_digits};
 use crate::scene::Scene;
 use crate::section::{Section, SectionForces};
 
+/// Component of section forces.
+#[derive(Clone, Copy, Debug)]
+pub struct SectionComponent {
+    /// Name with its symbol.
+    pub name: &'static str,
+    /// Symbol.
+    pub symbol: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Value, in this unit.
+    pub of: fn(&SectionForces) -> f64,
+}
+
+/// Normal force, shear force and bending moment.
+pub const COMPONENTS: [SectionComponent; 3] = [
+    SectionComponent { name: "normal force N", symbol: "N", unit: "N", of: |forces| forces.normal },
+    SectionComponent { name: "shear force V", symbol: "V", unit: "N", of: |forces| forces.shear },
+    SectionComponent { name: "bending moment M", symbol: "M", unit: "N m", of: |forces| forces.moment },
+];
+
 /// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle.
 #[must_use]
 pub fn stress(section: &Section, scene: &Scene) -> Figure {
@@ -27,13 +47,11 @@ pub fn stress(section: &Section, scene: &Scene) -> Figure {
         series("shear stress, recovered", method, Mark::Dots, recovered(1).collect()),
         series("shear stress, beam theory", Ink::Exact, Mark::Dots, beam(1).collect()),
     ];
-    let SectionForces { normal, shear, moment } = section.forces;
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(&series.name, series.ink, series.mark, String::new())).collect();
-    rows.extend(
-        [("N", normal, "N"), ("V", shear, "N"), ("M", moment, "N m")]
-            .map(|(name, value, unit)| row(name, Ink::Scene, Mark::Disc, engineering(three_digits(value), unit))),
-    );
+    rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
+        row(symbol, Ink::Scene, Mark::Disc, engineering(three_digits(of(&section.forces)), unit))
+    }));
     Figure {
         title: format!("{}: stress in a cut", scene.name),
         quantities: vec![Quantity::new("stress", "Pa"), Quantity::new("distance from the middle", "m")],
@@ -47,13 +65,7 @@ pub fn stress(section: &Section, scene: &Scene) -> Figure {
 /// Draws N, V and M along a beam, each with its largest value.
 #[must_use]
 pub fn forces(sections: &[Section], scene: &Scene) -> [Figure; 3] {
-    type Component = fn(&SectionForces) -> f64;
-    let of: [(&str, &str, Component); 3] = [
-        ("normal force N", "N", |forces| forces.normal),
-        ("shear force V", "N", |forces| forces.shear),
-        ("bending moment M", "N m", |forces| forces.moment),
-    ];
-    of.map(|(name, unit, value)| {
+    COMPONENTS.map(|SectionComponent { name, unit, of: value, .. }| {
         let ink = Ink::Method(scene.solver.method);
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
         let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));

@@ -3,9 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use web_sys::Storage;
-
-use crate::app::platform::web::{browser, settings};
+use crate::app::platform::web::settings;
 
 /// Item of the storage with a name of its own.
 #[derive(Debug)]
@@ -21,7 +19,7 @@ impl CopyPlace {
     /// The browser is set to keep nothing.
     pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<Self>> {
         let prefix = format!("warpbeam.{}.", folder.display());
-        let storage = storage()?;
+        let storage = settings::storage().ok_or_else(|| io::Error::other("the browser is set to keep nothing"))?;
         let keys = (0..storage.length().unwrap_or(0)).filter_map(|i| storage.key(i).ok().flatten());
         let mut earlier: Vec<String> = keys.filter(|key| key.starts_with(&prefix)).collect();
         earlier.sort();
@@ -60,11 +58,6 @@ impl CopyPlace {
     /// # Errors
     /// The browser refuses it.
     pub(crate) fn remove(&self) -> io::Result<()> {
-        let name = self.name.to_str().unwrap_or_default();
-        storage()?.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))
+        settings::remove(&self.name)
     }
-}
-
-fn storage() -> io::Result<Storage> {
-    settings::storage().ok_or_else(|| io::Error::other("the browser is set to keep nothing"))
 }

@@ -45,10 +45,17 @@ pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
 pub(crate) fn set_aside(file: &Path) -> io::Result<PathBuf> {
     let kept = file.with_extension("unreadable");
     write(&kept, &read(file)?)?;
-    if let Some((storage, name)) = storage().zip(file.to_str()) {
-        storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))?;
-    }
+    remove(file)?;
     Ok(kept)
+}
+
+/// Removes an item of the storage, if there is one.
+///
+/// # Errors
+/// The browser refuses it.
+pub(super) fn remove(name: &Path) -> io::Result<()> {
+    let Some((storage, name)) = storage().zip(name.to_str()) else { return Ok(()) };
+    storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.

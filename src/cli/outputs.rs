@@ -1,0 +1,49 @@
+//! Files that a command writes beside its text: a table and a picture.
+
+use std::path::PathBuf;
+
+use super::{CliError, check_suffix};
+use crate::export;
+use crate::plot::Drawing;
+
+/// Names of the files, whose endings are valid.
+pub(super) struct Outputs {
+    table: Option<PathBuf>,
+    picture: Option<PathBuf>,
+}
+
+impl Outputs {
+    /// Refuses names with another ending, so that nothing is computed in vain.
+    ///
+    /// # Errors
+    /// [`CliError::Suffix`].
+    pub fn new(table: Option<PathBuf>, picture: Option<PathBuf>) -> Result<Self, CliError> {
+        picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg", ".png"], ".svg or .png"))?;
+        table.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
+        Ok(Self { table, picture })
+    }
+
+    /// Writes the table, if one is wanted.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_table(&self, table: impl FnOnce() -> String) -> Result<(), CliError> {
+        let Some(path) = &self.table else { return Ok(()) };
+        Ok(export::write_text(path, &table())?)
+    }
+
+    /// Writes the picture, if one is wanted.
+    ///
+    /// # Errors
+    /// That of the drawing, or the file cannot be written.
+    pub fn write_picture(&self, drawing: impl FnOnce() -> Result<Drawing, CliError>) -> Result<(), CliError> {
+        let Some(path) = &self.picture else { return Ok(()) };
+        let drawing = drawing()?;
+        if check_suffix(path, &[".png"], ".png").is_ok() {
+            drawing.picture()?.write_png(path)?;
+        } else {
+            export::write_text(path, &drawing.svg())?;
+        }
+        Ok(())
+    }
+}
