@@ -91,7 +91,7 @@ impl Scene {
         Self { beam: Some(beam), ..Self::named("Beam") }
     }
 
-    /// Sets the metres per unit of the mesh file.
+    /// Sets the metres per unit of the mesh file. Does nothing if the scene has no mesh file.
     #[must_use]
     pub fn with_scale(mut self, scale: f64) -> Self {
         if let Some(mesh) = &mut self.mesh {
@@ -100,7 +100,7 @@ impl Scene {
         self
     }
 
-    /// Sets how cells are cut into triangles.
+    /// Sets how cells of the beam are cut into triangles. Does nothing if the scene has no beam.
     #[must_use]
     pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -109,7 +109,7 @@ impl Scene {
         self
     }
 
-    /// Bends the beam to an arch whose axis rises by `rise`, m, in its middle.
+    /// Bends the beam to an arch whose axis rises by `rise`, m, in its middle. Does nothing if the scene has no beam.
     #[must_use]
     pub fn with_rise(mut self, rise: f64) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -118,7 +118,7 @@ impl Scene {
         self
     }
 
-    /// Sets the number of cells along and across the beam.
+    /// Sets the number of cells along and across the beam. Does nothing if the scene has no beam.
     #[must_use]
     pub fn with_cells(mut self, along: u32, across: u32) -> Self {
         if let Some(beam) = &mut self.beam {
@@ -127,7 +127,7 @@ impl Scene {
         self
     }
 
-    /// Sets the element.
+    /// Sets the element type of the scene's mesh. Does nothing if the scene has neither a beam nor a mesh file.
     #[must_use]
     pub fn with_element(mut self, element: ElementKind) -> Self {
         self.set_element(element);
@@ -171,7 +171,8 @@ impl Scene {
         self
     }
 
-    /// Prescribes a displacement, m, and a rotation about its middle, rad, for the support added last.
+    /// Prescribes a displacement, m, and a rotation about its middle, rad, for the support added last. Does nothing if
+    /// the scene has no support.
     ///
     /// ```
     /// use warpbeam::{Scene, Simulation, Status};
@@ -212,7 +213,7 @@ impl Scene {
     }
 
     /// Makes the load added last a pulse, with the factor sin²(π (t − start)/duration) from `start`, s, for `duration`,
-    /// s, and 0 at other times.
+    /// s, and 0 at other times. Does nothing if the scene has no load.
     #[must_use]
     pub fn pulse(mut self, start: f64, duration: f64) -> Self {
         match self.loads.last_mut() {
@@ -355,7 +356,7 @@ impl Scene {
     }
 
     /// Changes the length and height of the beam, m, and moves loads, supports and probes at points with it. The number
-    /// of cells does not change. A scene with a mesh file is not changed.
+    /// of cells does not change. Does nothing if the scene has no beam.
     pub fn resize_beam(&mut self, length: f64, height: f64) {
         let Some(beam) = &mut self.beam else { return };
         let before = beam.clone();
@@ -425,7 +426,7 @@ impl Scene {
             .collect()
     }
 
-    /// Sets the element type of the scene's mesh.
+    /// Sets the element type of the scene's mesh. Does nothing if the scene has neither a beam nor a mesh file.
     pub fn set_element(&mut self, element: ElementKind) {
         if let Some(beam) = &mut self.beam {
             beam.element = element;

@@ -488,7 +488,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Removes the mouse spring.
+    /// Removes the mouse spring. Does nothing without one.
     pub fn release(&mut self) {
         if self.body.problem.mouse_spring_mut().take().is_some() {
             self.pulled(false);
@@ -739,7 +739,7 @@ impl Simulation {
     }
 
     /// Switches the energy ledger of a motion on or off; it costs two additional loops over the elements per step. It
-    /// is on by default, and starts again from zero when switched on.
+    /// is on by default, and starts again from zero when switched on. Does nothing if the scene is static.
     pub fn keep_ledger(&mut self, keep: bool) {
         if let Process::Motion(motion) = &mut self.process {
             motion.keep_ledger(keep, &self.body);
