@@ -8,7 +8,7 @@ use crate::simd::Number;
 
 /// Proper rotation of the plane, stored as cosine and sine; with SIMD `T`, one rotation per lane.
 ///
-/// See [`State`](crate::State) for an example.
+/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rotation<T = f64> {
     /// Cosine of the angle.

@@ -4,7 +4,7 @@ use crate::sentence::{Sentence, displayed, sentence};
 
 /// Decisions of `auto` since the start of a motion.
 ///
-/// See [`Motion`](crate::Motion) for an example.
+/// See [`MotionResult`](crate::MotionResult) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MotionReport {
@@ -24,7 +24,7 @@ pub struct MotionReport {
 
 /// Kind of a time step.
 ///
-/// See [`Motion`](crate::Motion) for an example.
+/// See [`MotionResult`](crate::MotionResult) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MotionDecision {

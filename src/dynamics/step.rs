@@ -30,7 +30,20 @@ pub enum StepError {
 
 /// Reason why a motion cannot continue.
 ///
-/// See [`Motion`](crate::Motion) for an example.
+/// ```
+/// use warpbeam::{IntegratorKind, Scene, Simulation, Status, StepError, StopReason};
+///
+/// // An explicit motion explodes if its step is longer than the critical one.
+/// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]);
+/// let mut swing = Simulation::new(&scene.moving(IntegratorKind::SymplecticEuler, 1.0 / 60.0))?;
+/// let advice = match swing.solve() {
+///     Status::Stopped(StopReason::Exploded { critical, .. }) if *critical < 0.001 => "use steps below 1 ms",
+///     Status::Stopped(StopReason::Step { error: StepError::NotConverged(_), .. }) => "halve the time step",
+///     _ => "read the status",
+/// };
+/// assert_eq!(advice, "use steps below 1 ms");
+/// # Ok::<(), warpbeam::SimulationError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

@@ -18,7 +18,7 @@ use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 
 /// Reason why a mesh file cannot be used.
 ///
-/// See [`Mesh`](crate::Mesh) for an example.
+/// See [`Mesh::from_gmsh`](crate::Mesh::from_gmsh) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GmshError {
@@ -110,6 +110,17 @@ struct File {
 impl Mesh {
     /// Reads a mesh and converts its triangles or quadrilaterals to `element`: missing nodes are added in the middle of
     /// straight sides, nodes that `element` does not have are left out.
+    ///
+    /// ```
+    /// use warpbeam::{ElementKind, GmshError, Mesh};
+    ///
+    /// // A square of two triangles: four corners, and a node in the middle of each of the five sides.
+    /// let mesh = Mesh::from_gmsh(&std::fs::read_to_string("tests/data/square.msh")?, ElementKind::T6)?;
+    /// assert_eq!((mesh.element_count(), mesh.nodes().len()), (2, 4 + 5));
+    /// let error: GmshError = Mesh::from_gmsh("$MeshFormat\n2.2 0 8\n$EndMeshFormat", ElementKind::T6).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 2: expected Gmsh format 4.1"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`GmshError`], with the line if known.

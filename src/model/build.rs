@@ -30,7 +30,9 @@ impl LoadId {
     }
 }
 
-/// Handle of a support in a scene. It is valid as long as no support before it is removed. See [`LoadId`].
+/// Handle of a support in a scene. It is valid as long as no support before it is removed.
+///
+/// See [`Scene::add_support`](crate::Scene::add_support) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SupportId(usize);
 
@@ -214,6 +216,21 @@ impl Scene {
 
     /// Makes the load added last a pulse, with the factor sin²(π (t − start)/duration) from `start`, s, for `duration`,
     /// s, and 0 at other times. Does nothing if the scene has no load.
+    ///
+    /// ```
+    /// use warpbeam::{IntegratorKind, Momentum, Pulse, Scene, Simulation};
+    ///
+    /// // A free beam of 1000 kg/m³ · 1 m · 0.1 m · 1 m = 100 kg gets the impulse ½ · 2000 N · 0.1 s = 100 kg m/s.
+    /// let scene = Scene::beam(1.0, 0.1).force("right", [2000.0, 0.0]).pulse(0.0, 0.1);
+    /// assert_eq!(scene.loads[0].pulse(), Some(Pulse { start: 0.0, duration: 0.1 }));
+    /// let mut beam = Simulation::new(&scene.moving(IntegratorKind::TrBdf2, 0.01))?;
+    /// for _ in 0..20 {
+    ///     beam.step();
+    /// }
+    /// let Momentum { linear, .. } = beam.motion().ok_or("a dynamic scene has a motion")?.momentum();
+    /// assert!((linear.x - 100.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn pulse(mut self, start: f64, duration: f64) -> Self {
         match self.loads.last_mut() {
@@ -276,6 +293,20 @@ impl Scene {
     }
 
     /// Adds a support and returns its handle.
+    ///
+    /// ```
+    /// use warpbeam::{Axis, Material, Scene, Simulation, Support, SupportId};
+    ///
+    /// let mut scene = Scene::beam(10.0, 1.0).with_material(Material::new(1e6, 0.0)).clamp("left");
+    /// let right: SupportId = scene.add_support(Support::new("right", &[Axis::X, Axis::Y]));
+    /// assert_eq!(right, SupportId::nth(1)); // `support.1` of a scene file
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.move_support(right, [0.1, 0.0], 0.0)?;
+    /// beam.solve();
+    /// // A strain of 1 % needs the force E A ε = 1e6 Pa · 1 m² · 0.01.
+    /// assert!((beam.support_reactions()[1].force.x - 10_000.0).abs() < 1e-3);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     pub fn add_support(&mut self, support: Support) -> SupportId {
         self.supports.push(support);
         SupportId(self.supports.len() - 1)

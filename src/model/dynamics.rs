@@ -5,9 +5,28 @@ use serde::{Deserialize, Serialize};
 use super::error::Invalid;
 use super::{check, limits};
 
-/// Time integration settings of a dynamic scene.
+/// Time integration settings of a dynamic scene. [`Scene::moving`](crate::Scene::moving) sets integrator and time
+/// step.
 ///
-/// See [`Scene::moving`](crate::Scene::moving) for an example.
+/// ```
+/// use warpbeam::{Analysis, Damping, DynamicsSettings, Scene, Simulation, Start};
+///
+/// let mut damping = Damping::default();
+/// damping.mass = 2.0; // 1/s
+/// let mut dynamics = DynamicsSettings::default();
+/// (dynamics.time_step, dynamics.duration, dynamics.damping) = (0.01, 0.5, damping);
+/// let mut start = Start::default();
+/// start.velocity = [3.0, 0.0]; // m/s
+/// let mut scene = Scene::beam(1.0, 0.1).probe("end", "right");
+/// (scene.analysis, scene.dynamics, scene.start) = (Analysis::Dynamic, dynamics, start);
+///
+/// // Mass-proportional damping slows a free body down as exp(−α t): after half a second by 1/e.
+/// let mut body = Simulation::new(&scene)?;
+/// body.solve();
+/// let velocity = body.probe_velocity("end").ok_or("no such probe")?;
+/// assert!((velocity.x - 3.0 / std::f64::consts::E).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -38,7 +57,7 @@ impl Default for DynamicsSettings {
 
 /// Rayleigh damping: mass-proportional and stiffness-proportional.
 ///
-/// See [`Scene::moving`](crate::Scene::moving) for an example.
+/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -49,7 +68,7 @@ pub struct Damping {
     pub stiffness: f64,
 }
 
-/// Integrators; [`crate::dynamics::INTEGRATORS`] describes each.
+/// Time integration schemes.
 ///
 /// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,7 +88,7 @@ pub enum IntegratorKind {
 
 /// Initial velocities of a dynamic scene.
 ///
-/// See [`Scene::moving`](crate::Scene::moving) for an example.
+/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -82,7 +101,7 @@ pub struct Start {
 
 /// Time dependence of a load: the factor is sin²(π (t − start)/duration) during the pulse and 0 at other times.
 ///
-/// See [`Scene::moving`](crate::Scene::moving) for an example.
+/// See [`Scene::pulse`](crate::Scene::pulse) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {
@@ -121,7 +140,7 @@ impl Pulse {
     /// Returns the factor of the load at a time, s.
     ///
     /// ```
-    /// use warpbeam::scene::Pulse;
+    /// use warpbeam::Pulse;
     /// let pulse = Pulse { start: 1.0, duration: 0.2 };
     /// assert_eq!((pulse.factor(0.9), pulse.factor(1.1), pulse.factor(1.3)), (0.0, 1.0, 0.0));
     /// ```
@@ -134,7 +153,7 @@ impl Pulse {
     /// Returns the integral of the factor from one time to another, s.
     ///
     /// ```
-    /// use warpbeam::scene::Pulse;
+    /// use warpbeam::Pulse;
     /// let pulse = Pulse { start: 1.0, duration: 0.2 };
     /// assert_eq!(pulse.impulse(0.0, 9.0), 0.1);
     /// ```

@@ -9,7 +9,14 @@ use crate::sentence::Sentence;
 
 /// Value that can be parsed but not used.
 ///
-/// See [`LoadId`](crate::LoadId) for an example.
+/// ```
+/// use warpbeam::{Invalid, LoadId, Scene};
+///
+/// let mut scene = Scene::beam(10.0, 1.0).clamp("left").moment("right", 5.0);
+/// let invalid: Invalid = scene.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap_err();
+/// assert_eq!(invalid.key, "load.0");
+/// assert_eq!(invalid.message(), "expected a load of kind \"force\", got a moment");
+/// ```
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 pub struct Invalid {
@@ -67,7 +74,18 @@ impl From<std::io::Error> for ReadError {
 
 /// Reason why a scene could not be opened.
 ///
-/// See [`Scene::from_toml`](crate::Scene::from_toml) for an example.
+/// ```
+/// use warpbeam::{ReadError, Scene, SceneError};
+///
+/// let advice = match Scene::from_toml("name = \"Beam\"\nlength = 10.0").unwrap_err() {
+///     SceneError::Syntax { line: Some(line), .. } | SceneError::Invalid { line: Some(line), .. } => {
+///         format!("edit line {line}")
+///     }
+///     SceneError::Read { reason: ReadError::TooLarge { most, .. }, .. } => format!("write at most {most} bytes"),
+///     other => other.to_string(),
+/// };
+/// assert_eq!(advice, "edit line 2"); // `length` belongs to the table [beam]
+/// ```
 #[derive(Debug, Error)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

@@ -68,7 +68,7 @@ pub struct Scene {
 
 /// Kind of result.
 ///
-/// See [`Scene::moving`](crate::Scene::moving) for an example.
+/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -82,7 +82,16 @@ pub enum Analysis {
 
 /// Structured mesh of the rectangle [0, length] × [−height/2, height/2], or of the arch it is bent to.
 ///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
+/// ```
+/// use warpbeam::{Beam, Diagonals, ElementKind, Scene};
+///
+/// let scene = Scene::beam(10.0, 1.0).with_cells(20, 2).with_element(ElementKind::T3).with_diagonals(Diagonals::Same);
+/// assert_eq!(scene.unknowns(), 2 * 21 * 3); // two per node
+/// let beam: Beam = scene.beam.ok_or("the scene has a beam")?;
+/// assert_eq!((beam.cells, beam.diagonals), ([20, 2], Diagonals::Same));
+/// assert_eq!(beam.point(0.5, 0.5), [5.0, 0.5]); // the middle of the upper side
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -106,7 +115,7 @@ pub struct Beam {
 
 /// Mesh from a Gmsh file.
 ///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
+/// See [`Scene::mesh_file`](crate::Scene::mesh_file) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -142,7 +151,7 @@ pub enum ElementKind {
 
 /// Directions in which the cells of a beam are cut.
 ///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
+/// See [`Beam`](crate::Beam) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -203,7 +212,19 @@ pub enum Plane {
 
 /// Settings of the equilibrium solver.
 ///
-/// See [`Equilibrium`](crate::Equilibrium) for an example.
+/// ```
+/// use warpbeam::{MethodKind, Scene, Simulation, SolverSettings, Status};
+///
+/// // The budget of a game: two iterations, whatever the residual is then.
+/// let mut solver = SolverSettings::default();
+/// (solver.method, solver.accept_after) = (MethodKind::Warped, 2);
+/// let mut scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
+/// scene.solver = solver;
+/// let mut beam = Simulation::new(&scene)?;
+/// assert_eq!(*beam.solve(), Status::Accepted);
+/// assert_eq!(beam.iterations(), 2);
+/// # Ok::<(), warpbeam::SimulationError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -241,9 +262,9 @@ fn is_off(iterations: &u32) -> bool {
     *iterations == 0
 }
 
-/// Methods; `method::METHODS` describes each.
+/// Methods that find an equilibrium or solve a time step.
 ///
-/// See [`Equilibrium`](crate::Equilibrium) for an example.
+/// See [`SolverSettings`](crate::SolverSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]

@@ -12,7 +12,14 @@ use crate::sentence::Sentence;
 
 /// Whole edge or single point.
 ///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
+/// ```
+/// use warpbeam::{Place, Probe, Scene};
+///
+/// let scene = Scene::beam(10.0, 1.0).probe("tip", "right").probe("middle", [5.0, 0.0]);
+/// let Probe { name, place, .. } = &scene.probes[0];
+/// assert_eq!((name.as_str(), place), ("tip", &Place::Edge("right".to_owned())));
+/// assert_eq!(scene.probes[1].place, Place::At([5.0, 0.0]));
+/// ```
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Place {
     /// Named edge: `left`, `right`, `bottom`, `top`, or a name of the mesh file.
@@ -98,7 +105,7 @@ impl Place {
 
 /// Support: nodes that are fixed, or moved along a prescribed displacement.
 ///
-/// See [`Scene::moved`](crate::Scene::moved) for an example.
+/// See [`Scene::add_support`](crate::Scene::add_support) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
@@ -174,7 +181,7 @@ pub enum Axis {
 
 /// Displacement to report: the mean over an edge, or of a material point.
 ///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
+/// See [`Place`](crate::Place) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ProbeTable", into = "ProbeTable")]
 #[non_exhaustive]

@@ -12,6 +12,15 @@ const MAX_MESH_BYTES: u64 = 256 << 20;
 impl Scene {
     /// Returns a rubber body whose mesh is in a Gmsh file, relative to `folder`, without supports and loads.
     ///
+    /// ```
+    /// use warpbeam::{ElementKind, MeshFile, Scene};
+    ///
+    /// let scene = Scene::mesh_file("square.msh", "tests/data")?.with_scale(0.001); // drawn in mm
+    /// let MeshFile { file, element, scale, .. } = scene.mesh.as_ref().ok_or("the scene has a mesh file")?;
+    /// assert_eq!((file.as_str(), *element, *scale), ("square.msh", Some(ElementKind::T3), Some(0.001)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SceneError::Invalid`] if the file cannot be read.
     pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {

@@ -24,7 +24,7 @@ pub enum Field {
     LargestStrain,
     /// Angle of the polar rotation, degrees.
     RotationAngle,
-    /// Distribution of the estimated mesh error, percent; one value per element, see [`ErrorEstimate::elements`].
+    /// Distribution of the estimated mesh error, percent; one value per element.
     MeshError,
 }
 

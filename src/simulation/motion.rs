@@ -54,7 +54,7 @@ pub(super) struct TimeStepping {
     last_step: Timings,
 }
 
-/// Snapshot of a motion: state, energies and counts. [`super::Simulation::return_to`] returns to it.
+/// Snapshot of a motion: state, energies and counts. [`Simulation::return_to`](crate::Simulation::return_to) returns to it.
 ///
 /// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Debug)]

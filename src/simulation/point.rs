@@ -73,14 +73,19 @@ impl Simulation {
     /// the range of f64. Takes a loop over the whole body.
     ///
     /// ```
-    /// use warpbeam::{Field, PointValues, Scene, Simulation};
+    /// use warpbeam::{Field, PlaneTensor, PointState, PointValues, Rotation, Scene, Simulation};
     ///
-    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
+    /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]))?;
     /// beam.solve();
     /// let middle = beam.mesh().locate([5.0, 0.4].into()).ok_or("no such point")?;
-    /// let state = beam.point_state(middle, PointValues::Recovered).ok_or("the state is not finite")?;
-    /// assert!(state.cauchy.is_some_and(|stress| stress.plane.m11 > 0.0), "the upper side is in tension");
-    /// assert!(state.field(Field::RotationAngle).is_some_and(|degrees| degrees < -5.0));
+    /// let state: PointState = beam.point_state(middle, PointValues::Recovered).ok_or("the state is not finite")?;
+    /// // The moment of 1 N · 5 m stretches the upper side: M y/I = 24 Pa.
+    /// let stress: PlaneTensor = state.cauchy.ok_or("the stress is not defined")?;
+    /// assert!((stress.plane.m11 - 24.0).abs() < 1.0);
+    /// // The beam has rotated clockwise by P (L x − x²/2)/(E I) = 4.5e-4 rad.
+    /// let rotation: Rotation = state.rotation;
+    /// assert!((rotation.angle() + 4.5e-4).abs() < 1e-5);
+    /// assert_eq!(state.field(Field::RotationAngle), Some(rotation.angle().to_degrees()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

@@ -35,7 +35,7 @@ pub struct Energy {
     pub external: f64,
     /// Work of supports with prescribed displacements, the integral of their reactions along the load path from rest; 0
     /// if there are none. In linear theory it is half of the final reactions times the displacements; else it is
-    /// `None`, because it depends on the path, which [`crate::study::LoadPath`] computes.
+    /// `None`, because it depends on the path, which the command `warpbeam solve` computes.
     pub supports: Option<f64>,
 }
 

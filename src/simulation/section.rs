@@ -13,12 +13,19 @@ impl Simulation {
     /// a motion, loads and inertia act on the nodes. Reactions always do.
     ///
     /// ```
-    /// use warpbeam::{Scene, SectionLine, Simulation};
+    /// use warpbeam::{Scene, Section, SectionError, SectionForces, SectionLine, SectionPoint, Simulation};
     ///
     /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]))?;
     /// beam.solve();
-    /// let forces = beam.section(SectionLine { at: [4.0, 0.0].into(), angle: 0.0 })?.forces;
-    /// assert!((forces.shear + 1.0).abs() < 1e-3 && (forces.moment + 6.0).abs() < 1e-3);
+    /// let Section { forces, points, .. } = beam.section(SectionLine { at: [4.0, 0.0].into(), angle: 0.0 })?;
+    /// // In front of the cut there is 1 N at a distance of 6 m.
+    /// let SectionForces { normal, shear, moment } = forces;
+    /// assert!(normal.abs() < 1e-2 && (shear + 1.0).abs() < 1e-3 && (moment + 6.0).abs() < 1e-3);
+    /// // Beam theory at the upper side: N/A − M (h/2)/I = 36 Pa.
+    /// let SectionPoint { beam: [normal_stress, _], .. } = points[points.len() - 1];
+    /// assert!((normal_stress - 36.0).abs() < 0.1);
+    /// let beyond = SectionLine { at: [11.0, 0.0].into(), angle: 0.0 };
+    /// assert_eq!(beam.section(beyond), Err(SectionError::Missed));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -6,7 +6,22 @@ use crate::sentence::Sentence;
 
 /// Status of a simulation.
 ///
-/// See [`Simulation`](crate::Simulation) for an example.
+/// ```
+/// use warpbeam::{IterationError, MethodKind, Reason, Scene, Simulation, Status};
+///
+/// // A load of α = P L²/EI = 24 is too large for the iteration `warped`.
+/// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -20_000.0]).with_method(MethodKind::Warped);
+/// let mut beam = Simulation::new(&scene)?;
+/// let advice = match beam.solve() {
+///     Status::Converged | Status::Accepted => "read the results",
+///     Status::NotConverged(Reason::IterationLimit(_)) => "raise the limit of iterations",
+///     Status::Diverged(Reason::Iteration(IterationError::NotFinite)) => "reduce the load",
+///     Status::Diverged(_) => "use the method `newton`",
+///     _ => "read the reason",
+/// };
+/// assert_eq!(advice, "use the method `newton`");
+/// # Ok::<(), warpbeam::SimulationError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Status {
@@ -16,7 +31,7 @@ pub enum Status {
     /// The residual is below the tolerance, or within its rounding error; see [`crate::Equilibrium::residual_floor`].
     Converged,
     /// The number of iterations was reached after which the scene accepts the result:
-    /// [`crate::scene::SolverSettings::accept_after`].
+    /// [`accept_after`](crate::SolverSettings::accept_after).
     Accepted,
     /// The search stopped while still improving, or close to convergence.
     NotConverged(Reason),

@@ -83,16 +83,23 @@ impl Equilibrium<'_> {
 /// Results of a motion; returned by [`Simulation::motion`].
 ///
 /// ```
-/// use warpbeam::{IntegratorKind, Scene, Simulation};
+/// use warpbeam::{Counts, IntegratorKind, Ledger, Moment, Momentum, Motion, Scene, Simulation};
 ///
-/// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]);
-/// let mut swing = Simulation::new(&scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0))?;
+/// // A free beam of 1000 kg/m³ · 1 m · 0.1 m · 1 m = 100 kg falls for half a second.
+/// let scene = Scene::beam(1.0, 0.1).gravity([0.0, -9.81]);
+/// let mut fall = Simulation::new(&scene.moving(IntegratorKind::EnergyMomentum, 1.0 / 60.0))?;
+/// let start: Moment = fall.motion().ok_or("a dynamic scene has a motion")?.moment();
 /// for _ in 0..30 {
-///     swing.step();
+///     fall.step();
 /// }
-/// let motion = swing.motion().ok_or("a dynamic scene has a motion")?;
-/// assert_eq!(motion.counts().steps, 30);
-/// assert!(motion.ledger().drift().abs() < 1e-3);
+/// let motion: Motion<'_> = fall.motion().ok_or("a dynamic scene has a motion")?;
+/// let (Counts { steps, .. }, Momentum { linear, .. }) = (motion.counts(), motion.momentum());
+/// assert!(steps == 30 && (linear.y + 100.0 * 9.81 * 0.5).abs() < 1e-6);
+/// // Kinetic energy comes from the potential of the weight, and from nothing else.
+/// let ledger: &Ledger = motion.ledger();
+/// assert!((ledger.kinetic + ledger.potential).abs() < 1e-6 && ledger.drift().abs() < 1e-9);
+/// fall.return_to(&start)?;
+/// assert_eq!(fall.state().time(), 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]

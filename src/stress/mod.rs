@@ -184,7 +184,7 @@ pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, vi
 
 /// Stress and strain of a state at the nodes of its mesh, recovered by patches (Zienkiewicz and Zhu 1992).
 ///
-/// See [`Simulation::nodal_stress`](crate::Simulation::nodal_stress).
+/// See [`Simulation::nodal_stress`](crate::Simulation::nodal_stress) for an example.
 ///
 /// The components of ε and of R are recovered, because they are smooth wherever the body is; the stresses are computed
 /// from the recovered ε and R. So all values at a node belong to one deformation.

@@ -22,7 +22,7 @@ use crate::state::{largest, largest_distance};
 
 /// Cost allowed for a reference solution.
 ///
-/// See [`Reference`](crate::Reference) for an example.
+/// See [`Reference::find`](crate::Reference::find) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
     /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves on them: a second or two.
@@ -60,7 +60,7 @@ impl Effort {
 
 /// Point of a scene that is not at a node of the mesh.
 ///
-/// See [`Reference`](crate::Reference) for an example.
+/// See [`Reference::find`](crate::Reference::find) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MovedPoint {

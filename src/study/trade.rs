@@ -180,14 +180,25 @@ const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MAX_ITERATIONS];
 impl Study {
     /// Measures a scene. `observe` receives the progress, and breaks to cancel.
     ///
-    /// ```no_run
+    /// ```
     /// use std::ops::ControlFlow;
-    /// use warpbeam::{Extent, Scene, Study};
+    /// use warpbeam::{
+    ///     Demand, ErrorSplit, Extent, Measurement, Observer, Progress, Scene, Sentence, Setting, Study, StudyError,
+    /// };
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
-    /// let study = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(()))?;
-    /// println!("{}", study.summary());
-    /// # Ok::<(), warpbeam::StudyError>(())
+    /// let observe: Observer<'_> = &|Progress { fraction, now }| {
+    ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
+    ///     ControlFlow::Continue(()) // `Break` cancels
+    /// };
+    /// let study = Study::new(&scene, Extent::Quick, observe)?;
+    /// let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(100.0) };
+    /// for Measurement { setting, error, .. } in study.meeting(demand) {
+    ///     let (Setting { iterations, .. }, ErrorSplit { discretization, iteration, model, .. }) = (setting, error);
+    ///     println!("{setting}: mesh {discretization} %, stopped after {iterations}: {iteration} %, theory {model} %");
+    ///     assert!(discretization + iteration + model <= 5.0);
+    /// }
+    /// # Ok::<(), StudyError>(())
     /// ```
     ///
     /// # Errors

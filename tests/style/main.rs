@@ -1,9 +1,10 @@
-//! Tests that read the source text: layers, the public face, the language of the comments. `cargo test --test style
-//! TOPIC` runs one file.
+//! Tests that read the source text: layers, the public face and its documentation, the language of the comments. `cargo
+//! test --test style TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod architecture;
 mod comments;
+mod examples;
 #[path = "../common/files.rs"]
 mod files;
 mod public_api;

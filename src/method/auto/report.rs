@@ -4,7 +4,17 @@ use crate::sentence::{Sentence, displayed, sentence};
 
 /// Decisions of `auto` for the current result.
 ///
-/// See [`Solution`](crate::Solution) for an example.
+/// ```
+/// use warpbeam::{AutoReport, Decision, MethodKind, Scene, Simulation};
+///
+/// // The deflection P L³/(3 E I) = 4 mm of a beam of 10 m is small enough for linear theory.
+/// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Auto);
+/// let mut beam = Simulation::new(&scene)?;
+/// beam.solve();
+/// let AutoReport { decision, estimated_error, .. } = beam.solution().auto.ok_or("the method is `auto`")?;
+/// assert!(decision == Decision::Linear && estimated_error < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct AutoReport {
@@ -21,7 +31,7 @@ pub struct AutoReport {
 
 /// Kind of solution that `auto` chose.
 ///
-/// See [`Solution`](crate::Solution) for an example.
+/// See [`AutoReport`](crate::AutoReport) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Decision {
