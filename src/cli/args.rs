@@ -27,7 +27,8 @@ const SOLVE_FILES: &str = "--out of a static scene:
   .csv  a row per time step. Columns: t (s); for every probe NAME
           NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
         then energies (J):
-          kinetic, elastic, potential, dissipated, integrator (energy lost by it), pulses, hands
+          kinetic, elastic, potential, dissipated, integrator (energy lost by it),
+          pulses and hands (work of pulses and of the mouse spring)
   .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... next to it:
         at most about 300 states, evenly spread in time
   .vtu  the last state
