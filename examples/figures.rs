@@ -237,7 +237,7 @@ pub fn front(document: &str) -> Figure {
         }
     }
     let axes = [
-        ("time of a solve from rest, ms".to_owned(), Axis::Logarithmic, vec![0.001, 0.01, 0.1, 1.0]),
+        ("time of a solve from rest, ms".to_owned(), Axis::Logarithmic, vec![0.0005, 0.001, 0.01, 0.1, 1.0]),
         ("error at most, %".to_owned(), Axis::Logarithmic, vec![0.1, 1.0, 10.0, 100.0]),
     ];
     Figure { axes, series, has_one_scale: false }
