@@ -23,6 +23,9 @@ pub(crate) trait PathEquations {
     /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components to load factor λ.
     fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, factor: f64);
 
+    /// Sets the parts of a state that follow from its unknowns, such as the rotations of elements.
+    fn complete(&self, state: &mut Self::State);
+
     /// Linearizes the equations at a state and load factor: writes Newton's correction at fixed λ into `correction` and
     /// dx/dλ at fixed residual into `rate`. Returns the number of negative eigenvalues of the tangent matrix, or `None`
     /// if the results are not finite.
@@ -105,8 +108,11 @@ const ROUNDING: f64 = 1e-9;
 const MAX_CORRECTIONS: u32 = 8;
 /// Length of the first step.
 const FIRST_STEP: f64 = 0.1;
-/// Longest step.
+/// Longest step, unless the path is long.
 const MAX_STEP: f64 = 1.0;
+/// Longest step relative to the length of the path so far. Bodies that are stretched to many times their size have long
+/// and straight paths.
+const MAX_RELATIVE_STEP: f64 = 0.05;
 /// Step in which an inconsistent inertia counts as a bifurcation in any case: steps of this length resolve the turn of a
 /// column with an imperfection of about 1e-13 of the load.
 const BIFURCATION_STEP: f64 = 1e-6;
@@ -116,6 +122,11 @@ const SHORTER: f64 = 0.25;
 const MIN_SEPARATION: f64 = 1e-3;
 /// Step below which a path counts as ended.
 const MIN_STEP: f64 = 1e-7;
+/// Largest number of times that a path without a further step is followed again from the point before its last one. Next to
+/// a sharp turn, the inertia of a point may be that of its small error.
+const MAX_RETREATS: u32 = 4;
+/// Factor by which the step after a retreat is shorter than the one that is taken back.
+const RETREAT: f64 = 0.3;
 /// Relative error of a limit point's load factor.
 const LIMIT_TOLERANCE: f64 = 1e-6;
 
@@ -133,6 +144,11 @@ pub(crate) struct Continuation<S> {
     /// Point before the last step.
     before: ContinuationPoint<S>,
     step: f64,
+    /// Length of the path so far, and of its last step if that can be taken back.
+    length: f64,
+    last_step: Option<f64>,
+    /// Number of steps that were taken back.
+    retreats: u32,
     /// Mean curvature of the last step, and its length.
     curvature: Option<(Vec<f64>, f64)>,
     /// Weight of the square of x in the norm of (x, λ).
@@ -202,6 +218,9 @@ impl<S: Clone> Continuation<S> {
             point,
             before,
             step,
+            length: 0.0,
+            last_step: None,
+            retreats: 0,
             curvature: None,
             weight,
             linearizations: 1,
@@ -243,7 +262,8 @@ impl<S: Clone> Continuation<S> {
         &mut self,
         equations: &mut impl PathEquations<State = S>,
     ) -> Result<Option<(Critical, ContinuationPoint<S>)>, PathFailure> {
-        let mut step = self.step.min(MAX_STEP).min(self.max_by_factor / self.point.slope.abs());
+        let longest = MAX_STEP.max(MAX_RELATIVE_STEP * self.length);
+        let mut step = self.step.min(longest).min(self.max_by_factor / self.point.slope.abs());
         let mut was_rejected = false;
         loop {
             if self.linearizations >= self.max_linearizations {
@@ -254,7 +274,7 @@ impl<S: Clone> Continuation<S> {
                 step *= 0.5;
                 was_rejected = true;
                 if step < MIN_STEP {
-                    return Err(PathFailure::Stuck);
+                    step = self.retreat().ok_or(PathFailure::Stuck)?;
                 }
                 continue;
             };
@@ -266,7 +286,9 @@ impl<S: Clone> Continuation<S> {
             let mode = if !consistent && !turns && is_single { equations.critical_mode() } else { None };
             // On a path that is unstable already, small imperfections count as none.
             let orthogonal = if from.modes > 0 { NEARLY_ORTHOGONAL } else { ORTHOGONAL };
-            let crossed = mode.filter(|mode| mode.cosine <= orthogonal);
+            // After a long step another mode may be closer to 0 than the one that has changed its sign.
+            let has_crossed = |mode: &CriticalMode| (mode.stiffness < 0.0) == (point.modes > from.modes);
+            let crossed = mode.filter(|mode| mode.cosine <= orthogonal && has_crossed(mode));
             if !consistent && crossed.is_none() && step > BIFURCATION_STEP {
                 step = (SHORTER * step).max(BIFURCATION_STEP);
                 continue;
@@ -274,6 +296,8 @@ impl<S: Clone> Continuation<S> {
             let may_grow = cosine >= STRAIGHT && !was_rejected;
             let growth = (WANTED_CONTRACTION / contraction).sqrt().min(if may_grow { 2.0 } else { 1.0 });
             self.step = step * growth;
+            self.length += step;
+            self.last_step = (consistent && !turns).then_some(step);
             self.before = std::mem::replace(&mut self.point, point);
             let last = self.curvature.take();
             let (curvature, derivatives) = derivatives([&self.before, &self.point], step, last.as_ref());
@@ -285,6 +309,16 @@ impl<S: Clone> Continuation<S> {
             }
             return Ok(turns.then(|| (Critical::Limit, self.limit(equations, step))));
         }
+    }
+
+    /// Takes the last step back, if it passed no critical point; returns the length of the next one.
+    fn retreat(&mut self) -> Option<f64> {
+        let last = self.last_step.take().filter(|_| self.retreats < MAX_RETREATS)?;
+        self.retreats += 1;
+        self.length -= last;
+        self.curvature = None;
+        self.point = self.before.clone();
+        Some(RETREAT * last)
     }
 
     /// Counts a linearization; `None` if the limit of their number is reached.
@@ -303,7 +337,7 @@ impl<S: Clone> Continuation<S> {
         beyond: Option<CriticalMode>,
     ) -> ContinuationPoint<S> {
         /// Largest number of trial steps.
-        const MAX_TRIALS: u32 = 6;
+        const MAX_TRIALS: u32 = 10;
         /// Number of bisections for bifurcations beyond the first.
         const MAX_BISECTIONS: u32 = 9;
         let from = self.before.clone();
@@ -331,7 +365,9 @@ impl<S: Clone> Continuation<S> {
         let (Some(first), Some(last)) = (stiffness(equations.critical_mode()), stiffness(beyond)) else { return best };
         let (mut low, mut high) = ((0.0, first), (step, last));
         for _ in 0..MAX_TRIALS {
-            let middle = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+            let is_enclosed = low.1 > 0.0 && high.1 < 0.0;
+            let part = if is_enclosed { low.1 / (low.1 - high.1) } else { 0.5 };
+            let middle = low.0 + (high.0 - low.0) * part;
             let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
             let Some(stiffness) = stiffness(equations.critical_mode()) else { break };
             let is_near = stiffness.abs() <= CROSSING_TOLERANCE * first.abs();
@@ -429,6 +465,7 @@ impl<S: Clone> Continuation<S> {
         // Next to a bifurcation the corrections are rounding errors, and the prediction is more accurate.
         let mut state = from.state.clone();
         equations.advance(&mut state, &from.tangent, way(from), goal);
+        equations.complete(&mut state);
         (from.modes != to.modes).then(|| ContinuationPoint {
             state,
             factor: goal,
@@ -462,6 +499,7 @@ impl<S: Clone> Continuation<S> {
             equations.advance(&mut state, correction, 1.0, goal);
             last = Some(size);
             if size <= (CONVERGED * distance.abs()).max(1e-4 * RESIDUE) {
+                equations.complete(&mut state);
                 let (point, cosine) = self.tangent_at(near, state, goal, modes)?;
                 let consistent = (fewest..=most).contains(&modes) && (point.slope < 0.0) == (near.slope < 0.0);
                 return (consistent && cosine >= MIN_COSINE).then_some(point);
@@ -513,6 +551,7 @@ impl<S: Clone> Continuation<S> {
             let is_corrected = last.is_some();
             last = Some(size);
             if size <= ROUNDING || is_corrected && size <= CONVERGED * step.abs() {
+                equations.complete(&mut state);
                 let (point, cosine) = self.tangent_at(from, state, factor, modes)?;
                 return (cosine >= MIN_COSINE).then_some((point, contraction, cosine));
             }

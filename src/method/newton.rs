@@ -77,6 +77,8 @@ struct LoadSteps {
     path_end: ContinuationPoint<State>,
     /// Limit point of the path, and the critical points on it, if the path was followed beyond it.
     limit: Option<(ContinuationPoint<State>, PathEvents)>,
+    /// Follower of a path that is long, and can be followed further.
+    resume: Option<Box<PathFollower>>,
     /// Critical points of the path once the result is known.
     events: Option<PathEvents>,
 }
@@ -85,7 +87,7 @@ struct LoadSteps {
 const GROW: f64 = 2.0;
 /// Factor by which load steps shrink after a failure.
 const SHRINK: f64 = 0.35;
-/// Number of solves along a path after which load steps take over: they solve slender bodies in fewer solves, but are
+/// Number of solves along a path after which load steps are tried: they solve slender bodies in fewer solves, but are
 /// not known to end on the path.
 const MAX_PATH_SOLVES: u32 = 600;
 /// Smallest load step.
@@ -104,6 +106,8 @@ pub struct Newton {
     /// `true` if the end of the path may be unstable, beyond a bifurcation.
     may_be_unstable: bool,
     steps: u32,
+    /// Number of solves along a path after which load steps take over.
+    max_path_solves: u32,
     /// Number of linear solves of the last iteration.
     solves: u32,
     shortest: f64,
@@ -127,6 +131,7 @@ impl Default for Newton {
             from_rest: false,
             may_be_unstable: false,
             steps: 0,
+            max_path_solves: MAX_PATH_SOLVES,
             solves: 1,
             shortest: f64::INFINITY,
             worse: 0,
@@ -167,6 +172,11 @@ impl Newton {
                 state.copy_from(&steps.base);
                 steps.step = SHRINK * (self.load_factor - steps.reached);
                 if steps.step < MIN_LOAD_STEP {
+                    if let Some(follower) = steps.resume.take() {
+                        self.max_path_solves = u32::MAX;
+                        self.phase = NewtonPhase::Path(Some(follower));
+                        return Verdict::Changed;
+                    }
                     // A load step may end a little above a limit point, at its tolerance.
                     if steps.limit.is_some() || steps.path_end.factor > steps.reached {
                         state.copy_from(&steps.path_end.state);
@@ -182,15 +192,17 @@ impl Newton {
         Verdict::Changed
     }
 
-    /// Begins to apply the load in steps from rest.
+    /// Begins to apply the load in steps from rest; if they fail, the path is followed further with `resume`.
     fn begin_load_steps(
         &mut self,
         state: &mut State,
         path_end: ContinuationPoint<State>,
         limit: Option<(ContinuationPoint<State>, PathEvents)>,
+        resume: Option<Box<PathFollower>>,
     ) {
         state.reset();
-        let steps = LoadSteps { base: state.clone(), reached: 0.0, step: SHRINK, path_end, limit, events: None };
+        let (base, reached, step, events) = (state.clone(), 0.0, SHRINK, None);
+        let steps = LoadSteps { base, reached, step, path_end, limit, resume, events };
         self.phase = NewtonPhase::LoadSteps(Box::new(steps));
         self.begin_load_step();
     }
@@ -272,7 +284,7 @@ impl Newton {
         };
         state.copy_from(&shown.state);
         self.load_factor = shown.factor;
-        let is_too_long = follower.linearizations() > MAX_PATH_SOLVES;
+        let is_too_long = follower.linearizations() > self.max_path_solves;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
             PathProgress::Continue if !is_too_long => {}
@@ -287,7 +299,9 @@ impl Newton {
             PathProgress::Continue | PathProgress::Ended(_) => {
                 let limit = follower.limit().cloned().map(|limit| (limit, follower.take_events()));
                 let path_end = follower.last().clone();
-                self.begin_load_steps(state, path_end, limit);
+                let can_go_on = matches!(progress, PathProgress::Continue) && limit.is_none();
+                let resume = if can_go_on { Some(follower.clone()) } else { None };
+                self.begin_load_steps(state, path_end, limit, resume);
             }
         }
     }

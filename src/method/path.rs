@@ -89,6 +89,10 @@ impl PathEquations for StaticEquations<'_> {
         }
     }
 
+    fn complete(&self, state: &mut State) {
+        self.problem.system().update_rotations(state, Kinematics::Corotated);
+    }
+
     fn linearize(&mut self, state: &mut State, factor: f64, correction: &mut [f64], rate: &mut [f64]) -> Option<usize> {
         /// Relative residual that is only rounding error: next to a singular tangent, it must not become a correction.
         const BALANCED: f64 = 2e-15;
