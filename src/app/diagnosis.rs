@@ -5,12 +5,11 @@ use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, three_digits, two_digits};
-use crate::method::{floor_text, rho_text};
 use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
-use crate::simulation::{Equilibrium, Simulation, Status, probe_results};
+use crate::simulation::{Simulation, Status, probe_results};
 use crate::stress::strain_warning;
-use crate::study::{Reference, moved_points};
+use crate::study::{Advice, Claim, Reference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -85,7 +84,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
         return Some(fill!("strain %{strain}", strain = percent(100.0 * strain)));
     }
     let off = input.reference?.beam_off_by_percent?;
-    Some(fill!("beam theory differs by %{off}", off = percent(off)))
+    Some(said(&Claim::BeamTheory { off_by_percent: off }))
 }
 
 /// Returns the colour of an error, percent.
@@ -160,7 +159,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     add(count(simulation.iterations(), "iteration"));
     moved_points(simulation).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
-        path.sentences().for_each(|sentence| add(said(&sentence)));
+        path.claims().for_each(|claim| add(said(&claim)));
     }
     (text, inside_out || stability(simulation) == Some(false))
 }
@@ -222,45 +221,21 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         return lines;
     }
     lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
-    let residual = number(two_digits(simulation.residual()));
-    let floor = simulation.equilibrium().and_then(Equilibrium::residual_floor);
-    let asked = number(input.scene.solver.tolerance);
-    lines.push(match simulation.status() {
-        Status::Converged if floor.is_some() => {
-            fill!("The forces balance to machine precision: the relative residual is %{residual}.", residual = residual)
-        }
-        Status::Converged => {
-            fill!(
-                "The forces balance: the relative residual is %{residual}, the tolerance is %{asked}.",
-                residual = residual,
-                asked = asked
-            )
-        }
-        _ => fill!(
+    if !simulation.status().is_success() {
+        lines.push(fill!(
             "The forces do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
-            residual = residual,
-            asked = asked
-        ),
-    });
-    if let Some(floor) = floor {
-        lines.push(sentence(&said(&floor_text(floor, input.scene.solver.tolerance))));
+            residual = number(two_digits(simulation.residual())),
+            asked = number(input.scene.solver.tolerance)
+        ));
     }
-    let stable = stability(simulation).map(|stable| match stable {
-        true => "Stable: after a small push the body returns (the exact tangent stiffness is positive definite).",
-        false => {
-            "Unstable: after a small push the body moves away (the exact tangent stiffness is not positive definite)."
-        }
-    });
-    lines.extend(stable.map(|text| tr(text).to_owned()));
-    if let Some(rho) = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped) {
-        lines.push(sentence(&said(&rho_text(rho))));
-        let converged = *simulation.status() == Status::Converged;
-        if rho > 1.0 && converged {
-            let text = "It still converged, because this load has no part in the direction that diverges: a bar pulled \
-                        along its axis stays straight. The iteration would not remove a small sideways deflection.";
-            lines.push(tr(text).to_owned());
-        }
-    }
+    let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
+    let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
+    // The status has the others.
+    let explains = |claim: &&Claim| {
+        use Claim::{Converged, Disturbance, Helps, Stable, Unstable};
+        matches!(claim, Converged { .. } | Stable | Unstable | Disturbance { .. } | Helps(Advice::Imperfection))
+    };
+    lines.extend(claims.iter().filter(explains).map(|claim| sentence(&said(claim))));
     lines
 }
 

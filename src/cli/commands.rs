@@ -18,8 +18,8 @@ use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult}
 use crate::stress::{inversion_warning, strain_warning};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MemoryMeter, MotionStudy, PathSummary, Reference,
-    Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
+    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MemoryMeter, MotionStudy, PathSummary,
+    Reference, Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
 };
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
@@ -96,6 +96,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let reference = reference.and_then(Result::ok);
     warnings.extend(reference.as_ref().map(Reference::limits).unwrap_or_default());
     warnings.extend(limits_of_auto(&scene, &solution, reference.as_ref()));
+    let rho = solution.certificate.and_then(|certificate| certificate.fixed_point_rho);
+    let claims = Claim::of_result(&simulation, rho, path.as_ref(), reference.as_ref());
     let solved = SolvedScene {
         scene: &scene,
         mesh: simulation.system().mesh(),
@@ -103,6 +105,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         stress: &stress,
         path,
         reference: reference.as_ref(),
+        claims: &claims,
         warnings: &warnings,
         spent: &spent,
     };
@@ -192,8 +195,8 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let (summary, table) = match (&beam, &path) {
         (Some(curve), path) => {
-            // A path without events adds nothing to the curve.
-            let path = path.as_ref().filter(|path| !text::events(path).is_empty());
+            // A path on which nothing happens adds nothing to the curve.
+            let path = path.as_ref().filter(|path| !path.is_plain());
             let own = path.map(|path| format!("\n{}", text::path(&scene, path))).unwrap_or_default();
             (text::curve(&scene, curve) + &own, text::curve_table(curve))
         }

@@ -13,7 +13,7 @@ use crate::study::{ProbeReference, Reference};
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+    let SolvedScene { scene, mesh, solution, stress, path, reference, claims, warnings, spent } = *solved;
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
     let known = |value: f64| if diverged { Value::Null } else { number(value) };
@@ -58,6 +58,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         })),
         "mesh_error_percent": stress.mesh_error_percent.map(number),
         "mesh_error_of": "estimate: energy norm",
+        "claims": claims.iter().map(|claim| json!({ "claim": claim.id(), "text": claim.to_string() })).collect::<Value>(),
         "warnings": warnings,
         "probes": probes,
         "energy": {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::simulation::{Solution, StressResult};
-use crate::study::{PathSummary, Reference};
+use crate::study::{Claim, PathSummary, Reference};
 use crate::timings::Timings;
 
 /// Durations of the parts of a solve.
@@ -61,6 +61,8 @@ pub(super) struct SolvedScene<'a> {
     /// Jumps and buckling on the load path to the result; `None` if unknown.
     pub path: Option<PathSummary>,
     pub reference: Option<&'a Reference>,
+    /// Claims of a result at rest.
+    pub claims: &'a [Claim],
     /// Sentences about limitations of the result.
     pub warnings: &'a [String],
     pub spent: &'a Spent,

@@ -10,13 +10,14 @@ use super::CliError;
 use super::contexts::Contexts;
 use super::solved::SolvedScene;
 use crate::export::csv_field;
-use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
-use crate::method::{Certificate, floor_text, rho_text};
+use crate::format::{count, engineering, engineering_pair, prefix};
 #[cfg(feature = "app")]
 use crate::render::AdapterReport;
-use crate::scene::{Analysis, MethodKind, Place, Scene, Support, registry};
+use crate::scene::{Analysis, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
-use crate::study::{Drive, LoadCurve, LoadPath, PathState, Reference, path_chart, support_name, support_text};
+use crate::study::{
+    Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, path_chart, support_name, support_text,
+};
 
 /// Prints to standard output. A closed pipe, as after `head`, is not an error.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
@@ -59,7 +60,7 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, path, reference, warnings, spent } = *solved;
+    let SolvedScene { scene, mesh, solution, stress, path, reference, claims, warnings, spent } = *solved;
     let within = Contexts::of(solved);
     let mut text = format!(
         "{}: element {}, {}, {}\n",
@@ -85,25 +86,20 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             solution.residual
         ),
     };
-    if let Some(reason) = solution.status.failure() {
+    if let (Some(_), Some(reason)) = (solution.motion, solution.status.failure()) {
         let _ = writeln!(text, "  {reason}");
     }
-    if solution.load_factor < 1.0 && !solution.status.is_success() {
-        let percent = engineering(100.0 * solution.load_factor, "%");
-        let _ =
-            writeln!(text, "  the numbers below are those of the equilibrium at {percent} of {}", drive_text(scene));
-    }
-    if matches!(solution.status, Status::Diverged(_)) && solution.motion.is_none() {
-        let _ = writeln!(text, "  the last state of a diverging iteration has no meaning; solve with method newton");
-        return text;
-    }
-    if let Some(floor) = solution.residual_floor {
-        let _ = writeln!(text, "  {}", floor_text(floor, scene.solver.tolerance));
-    }
-    if let Some(path) = path {
-        for sentence in path.sentences() {
-            let _ = writeln!(text, "{sentence}");
+    for claim in claims {
+        // The line above says that the forces balance, those below have the errors, and silence is stability.
+        if !matches!(
+            claim,
+            Claim::Converged { floor: None, .. } | Claim::Stable | Claim::Error { .. } | Claim::BeamTheory { .. }
+        ) {
+            let _ = writeln!(text, "  {claim}");
         }
+    }
+    if matches!(solution.status, Status::Diverged(_)) {
+        return text;
     }
     if let Some(auto) = &solution.auto {
         let _ = writeln!(
@@ -127,17 +123,6 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             auto.new_factor_steps,
             count(auto.factorizations, "factorization")
         );
-    }
-    let Certificate { stable, fixed_point_rho } = solution.certificate.unwrap_or_default();
-    if solution.status == Status::Converged && stable == Some(false) {
-        let _ = writeln!(text, "  this equilibrium is unstable: the exact tangent is not positive definite");
-    }
-    if let Some(rho) = fixed_point_rho {
-        let still = match scene.solver.method == MethodKind::Warped && rho > 1.0 {
-            true => "; it converged because nothing disturbs it, as in a bar pulled along its axis",
-            false => "",
-        };
-        let _ = writeln!(text, "{} (spectral radius){still}", rho_text(rho));
     }
     let references = reference.map_or(&[][..], Reference::probes);
     let moved_by = |u: Vector2<f64>| within.displacement.pair(u.into(), "m");
@@ -163,8 +148,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             let _ = writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source);
         }
     }
-    if let Some(off) = reference.and_then(|r| r.beam_off_by_percent) {
-        let _ = writeln!(text, "  beam theory differs by {off:.1} %");
+    for claim in claims.iter().filter(|claim| matches!(claim, Claim::BeamTheory { .. })) {
+        let _ = writeln!(text, "  {claim}");
     }
     let deformation = &solution.deformation;
     let _ = writeln!(
@@ -221,15 +206,6 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
     let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
     text
-}
-
-/// Names the quantities that grow along the path of a scene.
-fn drive_text(scene: &Scene) -> Drive {
-    match (scene.loads.is_empty(), moved(scene)) {
-        (false, true) => Drive::Both,
-        (true, true) => Drive::Supports,
-        (_, false) => Drive::Loads,
-    }
 }
 
 fn moved(scene: &Scene) -> bool {
@@ -337,23 +313,10 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
         );
     }
     text.push('\n');
-    for departure in &curve.departures {
-        let _ = writeln!(
-            text,
-            "linear theory differs by {} % at {} of the load: tip rotation {}, largest strain {}",
-            departure.percent,
-            engineering(three_digits(100.0 * departure.at.factor), "%"),
-            engineering(three_digits(departure.at.rotation.to_degrees().abs()), "°"),
-            engineering(three_digits(100.0 * departure.at.strain), "%")
-        );
+    for claim in Claim::of_curve(curve) {
+        let _ = writeln!(text, "{claim}");
     }
     text.push('\n');
-    if let Some(factor) = curve.buckles_at {
-        let percent = engineering(100.0 * factor, "%");
-        let _ = writeln!(text, "the exact beam buckles at {percent} of the load: beyond it, its path is unstable\n");
-    } else if curve.samples.last().is_some_and(|sample| sample.factor < 1.0) {
-        text.push_str("the exact beam could not be followed to the full load\n\n");
-    }
     for point in &curve.methods {
         let unstable = point.status == Status::Converged && point.stable == Some(false);
         let word = point.status.word() + if unstable { ", unstable" } else { "" };
@@ -416,37 +379,17 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         let _ = writeln!(text, "{}", path_chart::stability_text(state));
     }
     text.push('\n');
-    for pair in path.states.windows(2).filter(|pair| pair.iter().all(|state| state.unstable_modes == 0)) {
-        let (at, word) = match [pair[0].stable, pair[1].stable] {
-            [Some(true), Some(false)] => {
-                (&pair[0], "the limit load: beyond it, the path is unstable under force control")
-            }
-            [Some(false), Some(true)] => (&pair[1], "stable under force control again"),
-            _ => continue,
-        };
-        if let Some([displacement, force]) = driven_text(scene, path, at) {
-            let _ = writeln!(text, "{displacement}, {force}: {word}");
-        }
+    for claim in Claim::of_path(scene, path) {
+        let _ = writeln!(text, "{claim}");
     }
-    text.push_str(&events(path));
     text
-}
-
-/// Lists changes of stability and jumps on a load path, and its end.
-pub(super) fn events(path: &LoadPath) -> String {
-    let bifurcations = path.bifurcations.iter().map(ToString::to_string);
-    let (jump, end) = (path.jump.map(|jump| jump.to_string()), path.end.map(|end| end.to_string()));
-    bifurcations.chain(jump).chain(end).map(|sentence| sentence + "\n").collect()
 }
 
 /// Formats the motion of the moving support, and its reaction along it.
 fn driven_text(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
     let [displacement, force] = path.driven_pair(scene, state)?;
-    let turns = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
-    Some(match turns {
-        true => [engineering(displacement.to_degrees(), "°"), engineering(force, "N m")],
-        false => [engineering(displacement, "m"), engineering(force, "N")],
-    })
+    let rotates = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
+    Some(driven_texts([displacement, force], rotates))
 }
 
 /// Formats a load path as CSV.

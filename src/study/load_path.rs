@@ -95,13 +95,6 @@ impl PathSummary {
         let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied();
         Self { jump, buckling, ..Self::default() }
     }
-
-    /// Describes jump, buckling and another end, one sentence each.
-    pub fn sentences(&self) -> impl Iterator<Item = Sentence> {
-        let buckling = self.buckling.map(|buckling| Sentence::from(&buckling));
-        let elsewhere = self.elsewhere.map(|elsewhere| Sentence::from(&elsewhere));
-        self.jump.map(|jump| Sentence::from(&jump)).into_iter().chain(buckling).chain(elsewhere)
-    }
 }
 
 /// Critical points of the load path from rest, and the equilibrium at its end.
@@ -224,6 +217,12 @@ impl LoadPath {
     pub fn summary(&self) -> PathSummary {
         let supports_work = self.end.is_none().then_some(self.supports_work);
         PathSummary { supports_work, ..PathSummary::of(self.jump, &self.bifurcations) }
+    }
+
+    /// Returns `true` if the path reaches the full load without a jump or a bifurcation.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.bifurcations.is_empty() && self.jump.is_none() && self.end.is_none()
     }
 
     /// Returns the motion of the moving support at a state: its displacement, m, or its rotation, rad, if it only

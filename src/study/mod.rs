@@ -1,6 +1,7 @@
 //! Measurements over many solves.
 
 mod bound;
+mod claim;
 mod colors;
 mod convergence;
 pub mod extremes;
@@ -23,6 +24,9 @@ mod trade;
 mod tune;
 
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
+pub(crate) use claim::driven_texts;
+pub use claim::{Advice, Claim};
 pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};

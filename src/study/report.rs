@@ -1,29 +1,16 @@
-//! Report of the speed–accuracy study: table and summary.
+//! Reports of the speed–accuracy study, table and summary, and of a tuning.
 
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use super::claim::Claim;
 use super::trade::Study;
-use crate::format::percent;
+use super::tune::Tuning;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
 /// Mark of a setting whose rank is undecided.
 pub(super) const UNDECIDED: &str = " (rank undecided)";
-
-/// Explains the mark of undecided ranks; `own` is the reference's own error, percent.
-pub(super) fn undecided_note(own: f64) -> String {
-    format!(
-        "rank undecided: a faster setting may be as accurate, because their errors differ by less than the reference's \
-         own error, {}\n",
-        percent(own)
-    )
-}
-
-/// Ends the sentence about an error that is below those of all settings.
-pub(super) fn not_reached() -> String {
-    "is not reached by a measured setting".to_owned()
-}
 
 impl Study {
     /// Formats the study as CSV, with times in microseconds. `error_bound_percent` is the sum of the error's parts;
@@ -91,19 +78,15 @@ impl Study {
         }
         let own = self.against.own_error_percent;
         if front.iter().any(|(_, undecided)| *undecided) {
-            text.push_str(&undecided_note(own));
+            let _ = writeln!(text, "{}", Claim::Undecided(own));
         }
         text.push('\n');
         for percent in [10.0, 1.0, 0.1] {
-            if own >= percent {
-                let _ =
-                    writeln!(text, "an error of {percent} %: not known, the reference's own error may be {own:.2} %");
+            let claim = Claim::of_study(self, percent);
+            let _ = writeln!(text, "{claim}");
+            if matches!(claim, Claim::NotKnown { .. }) {
                 continue;
             }
-            let cost = self
-                .cheapest_within(percent)
-                .map_or_else(not_reached, |m| format!("costs {:.4} ms, {}", m.milliseconds(), m.setting));
-            let _ = writeln!(text, "an error of {percent} % {cost}");
             for element in ElementKind::all() {
                 for method in METHODS.iter().map(|m| m.kind) {
                     let own = self.measurements.iter().filter(|m| {
@@ -121,5 +104,26 @@ impl Study {
             }
         }
         text
+    }
+}
+
+impl std::fmt::Display for Tuning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { chosen, study, .. } = self;
+        let e = &chosen.error;
+        writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
+        writeln!(f, "{}:", Claim::of_tuning(self))?;
+        writeln!(
+            f,
+            "  {}: {:.4} ms, error at most {:.4} %",
+            chosen.setting,
+            chosen.milliseconds(),
+            study.error_bound(chosen)
+        )?;
+        write!(
+            f,
+            "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the reference's own {:.4} %",
+            e.discretization, e.iteration, e.model, study.against.own_error_percent
+        )
     }
 }

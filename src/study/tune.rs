@@ -18,7 +18,7 @@ pub struct Demand {
 }
 
 impl Demand {
-    fn time_is_met(self, measurement: &Measurement) -> bool {
+    pub(super) fn time_is_met(self, measurement: &Measurement) -> bool {
         self.max_time_ms.is_none_or(|most| measurement.milliseconds() <= most)
     }
 }
@@ -142,47 +142,5 @@ impl Tuning {
         })?;
         let (measured, meeting) = (ended.len(), meeting.len());
         Ok(Self { chosen, demand, met: best.is_some(), is_partial, measured, meeting, study })
-    }
-}
-
-impl std::fmt::Display for Tuning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { chosen, demand, met, measured, meeting, study, .. } = self;
-        let which = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
-            (true, true, _) => "the fastest",
-            (true, false, _) => "the most accurate",
-            (false, _, true) => "the most accurate within the time",
-            (false, _, false) => "the fastest of all",
-        };
-        let own = study.against.own_error_percent;
-        let is_as_accurate = |m: &&Measurement| {
-            m.converged && demand.time_is_met(m) && (m.error.bound() - chosen.error.bound()).abs() < own
-        };
-        let as_accurate = study.measurements.iter().filter(is_as_accurate).count();
-        // The setting itself is one of them.
-        let undecided = match as_accurate > 1 && which.starts_with("the most accurate") {
-            true => format!(", undecided between {as_accurate} whose errors differ by less than the reference's own"),
-            false => String::new(),
-        };
-        let text = if *met {
-            format!("{meeting} of {measured} settings measured here meet {demand}; {which}{undecided}")
-        } else {
-            format!("none of {measured} settings measured here meets {demand}; {which}{undecided}")
-        };
-        let e = &chosen.error;
-        writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
-        writeln!(f, "{text}:")?;
-        writeln!(
-            f,
-            "  {}: {:.4} ms, error at most {:.4} %",
-            chosen.setting,
-            chosen.milliseconds(),
-            study.error_bound(chosen)
-        )?;
-        write!(
-            f,
-            "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the reference's own {own:.4} %",
-            e.discretization, e.iteration, e.model
-        )
     }
 }

@@ -91,6 +91,7 @@ fn json_has_every_field_of_the_contract() {
             "max_von_mises",
             "mesh_error_percent",
             "mesh_error_of",
+            "claims",
             "warnings",
             "probes",
             "energy",

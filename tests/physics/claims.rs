@@ -1,14 +1,16 @@
 //! Tests the claims of results over random scenes, each by other means than the one that made it: equilibria by those of
-//! other methods, stability by the eigenvalues of a stiffness of finite differences, and ρ by the iteration of
-//! `warped`. Errors are tested in `reference.rs`.
+//! other methods, stability and critical loads by the eigenvalues of a stiffness of finite differences, limit loads by
+//! prescribed displacements, ρ by the iteration of `warped`, and advice by following it. Errors are tested in
+//! `reference.rs`.
 
 use std::collections::BTreeMap;
 
-use crate::common::random;
+use crate::common::random::{self, Random};
+use crate::common::solved;
 use warpbeam::assembly::{Forces, Kinematics};
 use warpbeam::nalgebra::{DMatrix, Vector2};
-use warpbeam::study::LoadPath;
-use warpbeam::{MethodKind, Simulation, Status};
+use warpbeam::study::{Advice, Claim, Extent, LoadPath, PathSummary, Study};
+use warpbeam::{Axis, Demand, ElementKind, MethodKind, Place, Scene, Simulation, Status};
 
 /// Number of claims of each kind, and those that are false.
 #[derive(Debug, Default)]
@@ -22,6 +24,51 @@ impl Claims {
         *self.checked.entry(kind).or_default() += 1;
         if !is_true {
             self.wrong.push(format!("seed {seed}, {kind}: {}", words()));
+        }
+    }
+}
+
+fn path_of(simulation: &Simulation) -> Option<PathSummary> {
+    LoadPath::to_result(simulation, &|_| std::ops::ControlFlow::Continue(()))
+}
+
+/// Returns the claims of a result, without an error.
+fn claims_of(simulation: &mut Simulation) -> Vec<Claim> {
+    let rho = simulation.certify().fixed_point_rho;
+    Claim::of_result(simulation, rho, path_of(simulation).as_ref(), None)
+}
+
+impl Claims {
+    /// Checks the claims of a result that hold for the result alone.
+    fn check_result(&mut self, claim: &Claim, seed: u64, simulation: &Simulation) {
+        match claim {
+            Claim::Converged { .. } => {
+                // Further iterations do not move the body.
+                let mut scene = simulation.scene().clone();
+                scene.solver.tolerance = 1e-14;
+                let mut further = Simulation::with_system(&scene, simulation.system().clone()).unwrap();
+                further.start_from(simulation.displacement()).unwrap();
+                further.solve();
+                let off = distance(simulation.displacement(), further.displacement());
+                self.check(claim.id(), seed, off < 1e-3, || format!("{off} off"));
+            }
+            Claim::Stable | Claim::Unstable if simulation.system().dofs() <= 200 => {
+                let smallest = smallest_eigenvalue(simulation);
+                // Closer to singular than this, differences do not tell.
+                if smallest.abs() > 1e-8 {
+                    self.check(claim.id(), seed, (*claim == Claim::Stable) == (smallest > 0.0), || {
+                        format!("the smallest eigenvalue is {smallest}")
+                    });
+                }
+            }
+            &Claim::Disturbance { rho, .. } if rho > 0.3 => {
+                if let Some(ratio) = observed_ratio(simulation, rho) {
+                    self.check(claim.id(), seed, ratio < 1.3 * rho && ratio > (0.5 * rho).min(1.0), || {
+                        format!("{rho}, observed {ratio}")
+                    });
+                }
+            }
+            _ => {}
         }
     }
 }
@@ -122,24 +169,9 @@ fn claims_about_random_scenes_are_true() {
             unsolved += 1;
             continue;
         }
-        let certificate = newton.certify();
         let scale = newton.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
-        if newton.system().dofs() <= 200 {
-            // Closer to singular than this, differences do not tell.
-            let smallest = smallest_eigenvalue(&newton);
-            if smallest.abs() > 1e-8 {
-                claims.check("stable", seed, certificate.stable == Some(smallest > 0.0), || {
-                    format!("{certificate:?}, but the smallest eigenvalue is {smallest}")
-                });
-            }
-        }
-        if let Some(rho) = certificate.fixed_point_rho
-            && rho > 0.3
-            && let Some(ratio) = observed_ratio(&newton, rho)
-        {
-            claims.check("ρ", seed, ratio < 1.3 * rho && ratio > (0.5 * rho).min(1.0), || {
-                format!("{rho}, observed {ratio}")
-            });
+        for claim in claims_of(&mut newton) {
+            claims.check_result(&claim, seed, &newton);
         }
         for method in [MethodKind::Warped, MethodKind::Auto] {
             let mut other = with(method).unwrap();
@@ -147,10 +179,8 @@ fn claims_about_random_scenes_are_true() {
                 // Newton's method is never worse.
                 continue;
             }
-            let is_elsewhere = |simulation: &Simulation| {
-                LoadPath::to_result(simulation, &|_| std::ops::ControlFlow::Continue(()))
-                    .is_some_and(|path| path.elsewhere.is_some())
-            };
+            let is_elsewhere =
+                |simulation: &Simulation| path_of(simulation).is_some_and(|path| path.elsewhere.is_some());
             let off = distance(newton.displacement(), other.displacement());
             let allowed = match other.equilibrium().and_then(|it| it.auto_report()) {
                 // Twice the error that the scene asks for.
@@ -167,5 +197,144 @@ fn claims_about_random_scenes_are_true() {
     assert!(claims.wrong.is_empty(), "{:#?}", claims.wrong);
     assert!(unsolved <= count / 20, "{unsolved} of {count} not solved");
     // None of the checks is skipped.
-    assert!(claims.checked.len() == 4 && claims.checked.values().all(|&n| n as usize >= count / 30), "{claims:?}");
+    for kind in ["converged", "stable", "disturbance", "warped converges", "auto's error"] {
+        let checked = claims.checked.get(kind).copied().unwrap_or_default() as usize;
+        assert!(checked >= count / 30, "{kind}: {claims:?}");
+    }
+}
+
+/// Claims near critical loads: a perfect column is unstable just above the load at which it is said to buckle, and
+/// stable just below; an arch jumps at the largest force that holds it under a prescribed displacement; an imperfection
+/// leads to a stable state.
+#[test]
+fn claims_near_critical_loads_are_true() {
+    let first: u64 = std::env::var("WARPBEAM_SEED").map_or(500, |seed| seed.parse().unwrap());
+    let count = if crate::common::sweeps_run_in_full() { 60 } else { 12 };
+    let mut claims = Claims::default();
+    // In the last one, a second mode is closer to 0 than the one that has buckled.
+    for seed in (first..).take(count).chain([535]) {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(13));
+        let slenderness = random.between(8.0, 60.0);
+        // A row of triangles is not symmetric, which would be an imperfection of its own.
+        let mut beam = Scene::beam(slenderness, 1.0).with_cells(16, 1).with_element(ElementKind::Q4);
+        (beam.material.young, beam.material.poisson) = (1e6, random.between(0.0, 0.45));
+        let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 / slenderness.powi(2);
+        let near = random.between(1.2, 2.5);
+        let newton = |scene: Scene| solved(&scene.with_method(MethodKind::Newton));
+        match seed % 3 {
+            // Columns and strips without an imperfection.
+            kind @ (0 | 1) => {
+                let push = |part: f64, side: f64| {
+                    let end = if kind == 0 { "right".into() } else { Place::from([0.5 * slenderness, 0.5]) };
+                    let scene = beam.clone().clamp("left").force(
+                        end,
+                        match kind {
+                            0 => [-0.25 * near * part * euler, side],
+                            _ => [0.0, side],
+                        },
+                    );
+                    match kind {
+                        0 => scene,
+                        _ => scene.clamp("right").moved([-4.0 * near * part * euler / 1e6 * slenderness, 0.0], 0.0),
+                    }
+                };
+                let mut column = newton(push(1.0, 0.0));
+                let stated = claims_of(&mut column);
+                let at = stated.iter().find_map(|claim| match claim {
+                    Claim::Buckles(bifurcation) => Some(bifurcation.factor),
+                    _ => None,
+                });
+                let Some(at) = at else {
+                    claims.check("buckles", seed, false, || format!("{stated:?}"));
+                    continue;
+                };
+                let [below, beyond] = [0.99, 1.01].map(|part| smallest_eigenvalue(&newton(push(part * at, 0.0))));
+                claims.check("buckles", seed, below > 0.0 && beyond < 0.0, || format!("{at}: {below}, {beyond}"));
+                for claim in &stated {
+                    claims.check_result(claim, seed, &column);
+                }
+                let helps = stated.contains(&Claim::Helps(Advice::Imperfection));
+                let mut helped = newton(push(1.0, 1e-4 * euler));
+                let is_stable = claims_of(&mut helped).contains(&Claim::Stable) && smallest_eigenvalue(&helped) > 0.0;
+                claims.check("helps", seed, helps && is_stable, || format!("{stated:?}"));
+            }
+            // Arches, loaded and moved at their crown.
+            _ => {
+                let rise = random.between(1.5, 4.0);
+                beam.beam.as_mut().unwrap().rise = rise;
+                let crown = [0.5 * slenderness, rise + 0.5];
+                let arch = beam.clamp("left").clamp("right").probe("crown", Place::from(crown));
+                let moved = arch.clone().support(crown, &[Axis::Y]).moved([0.0, -2.0 * rise], 0.0);
+                let path = LoadPath::of(&moved).unwrap();
+                let limit = Claim::of_path(&moved, &path).into_iter().find_map(|claim| match claim {
+                    Claim::LimitLoad { motion, reaction, is_regained: false, .. } => Some([motion, reaction]),
+                    _ => None,
+                });
+                // A buckling arch leaves this path.
+                let Some([motion, reaction]) = limit.filter(|_| path.is_plain()) else { continue };
+                // No state nearby has a larger reaction.
+                let held = [0.99, 1.01].map(|part| {
+                    let at = arch.clone().support(crown, &[Axis::Y]).moved([0.0, -motion * part], 0.0);
+                    newton(at).solution().supports[2].force.y.abs()
+                });
+                claims.check(
+                    "limit_load",
+                    seed,
+                    held.iter().all(|held| *held <= reaction.abs() * (1.0 + 1e-6)),
+                    || format!("{reaction} at {motion}, {held:?}"),
+                );
+                let load = 1.3 * reaction.abs();
+                let stated = claims_of(&mut newton(arch.clone().force(crown, [0.0, -load])));
+                let jump = stated.iter().find_map(|claim| match claim {
+                    Claim::Jumps(jump) => Some(jump.factor),
+                    _ => None,
+                });
+                let is_same = jump.is_some_and(|factor| (factor * load / reaction.abs() - 1.0).abs() < 1e-3);
+                claims.check("jumps", seed, is_same, || format!("{jump:?} of {load} N, {reaction} N"));
+                let below = claims_of(&mut newton(arch.force(crown, [0.0, -0.98 * reaction.abs()])));
+                let none = below.iter().all(|claim| !matches!(claim, Claim::Jumps(_)));
+                claims.check("does not jump", seed, none, || format!("{below:?}"));
+            }
+        }
+    }
+    println!("{:?}", claims.checked);
+    assert!(claims.wrong.is_empty(), "{:#?}", claims.wrong);
+    for kind in ["buckles", "helps", "unstable", "limit_load", "jumps", "does not jump"] {
+        let checked = claims.checked.get(kind).copied().unwrap_or_default() as usize;
+        assert!(checked >= count / 6, "{kind}: {claims:?}");
+    }
+}
+
+/// Claims of a study agree with its table.
+#[test]
+fn claims_of_a_study_are_those_of_its_table() {
+    let study =
+        Study::new(&crate::common::scene("cantilever"), Extent::Quick, &|_| std::ops::ControlFlow::Continue(()))
+            .unwrap();
+    let table = study.table();
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = rows.next().unwrap();
+    let of = |row: &[&str], name: &str| -> f64 {
+        row[names.iter().position(|n| *n == name).unwrap()].parse().unwrap_or(f64::INFINITY)
+    };
+    let rows: Vec<_> = rows.collect();
+    let mut kinds = Vec::new();
+    for percent in [50.0, 10.0, 3.0, 1.0, 0.3, 1e-3, 1e-9] {
+        let within = rows.iter().filter(|row| of(row, "at_most_percent") <= percent);
+        let fastest = within.map(|row| of(row, "time_us")).fold(f64::INFINITY, f64::min);
+        let claim = Claim::of_study(&study, percent);
+        kinds.push(claim.id());
+        match claim {
+            Claim::Best { time, .. } => {
+                let stated: f64 = time.trim_end_matches(" ms").parse().unwrap();
+                assert!((1e3 * stated - fastest).abs() <= 0.06, "{percent} %: {time}, {fastest} µs");
+            }
+            Claim::NotReached(_) => assert!(fastest.is_infinite(), "{percent} %"),
+            Claim::NotKnown { own_percent, .. } => assert!(own_percent >= percent, "{percent} %"),
+            other => panic!("{other:?}"),
+        }
+        let demand = Demand { max_error_percent: Some(percent), max_time_ms: None };
+        assert_eq!(study.meeting(demand).is_empty(), fastest.is_infinite(), "{percent} %");
+    }
+    assert!(["best", "not_known"].iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
 }

@@ -10,10 +10,9 @@ use crate::app::session::clock::fraction;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 use crate::format::{engineering, engineering_pair, three_digits};
-use crate::method::rho_text;
 use crate::scene::MethodKind;
 use crate::simulation::{Motion, Simulation, Status, energy};
-use crate::study::Reference;
+use crate::study::{Claim, Reference};
 
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -80,7 +79,10 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if input.scene.solver.method == MethodKind::Warped {
-        let text = rho(input).map_or_else(|| UNKNOWN.to_owned(), |rho| sentence(&said(&rho_text(rho))));
+        let text = rho(input).map_or_else(
+            || UNKNOWN.to_owned(),
+            |rho| sentence(&said(&Claim::Disturbance { rho, has_converged: false })),
+        );
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
         row("ρ", text, tip);
     }

@@ -6,7 +6,8 @@ use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStu
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
-use crate::study::report::{UNDECIDED, not_reached, undecided_note};
+use crate::study::claim::Claim;
+use crate::study::report::UNDECIDED;
 use crate::study::trade::mesh_text;
 
 impl MotionStudy {
@@ -92,7 +93,7 @@ impl MotionStudy {
             );
         }
         if front.iter().any(|(_, undecided)| *undecided) {
-            text.push_str(&undecided_note(self.reference.error_percent));
+            let _ = writeln!(text, "{}", Claim::Undecided(self.reference.error_percent));
         }
         text.push('\n');
         self.costs(&mut text);
@@ -105,12 +106,11 @@ impl MotionStudy {
     /// Adds the cost of given errors with every integrator.
     fn costs(&self, text: &mut String) {
         for percent in [10.0, 1.0, 0.1] {
-            if percent < self.reference.error_percent {
+            let claim = Claim::of_motions(self, percent);
+            let _ = writeln!(text, "{claim}");
+            if matches!(claim, Claim::NotKnown { .. }) {
                 continue;
             }
-            let best = self.fastest_within(percent);
-            let cost = best.map_or_else(not_reached, |m| format!("costs {}", time_text(m)));
-            let _ = writeln!(text, "an error of {percent} % {cost}");
             for integrator in INTEGRATORS {
                 let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
                 let cost = own.map_or_else(|| "not reached".to_owned(), time_text);
