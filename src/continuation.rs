@@ -116,6 +116,11 @@ const MAX_RELATIVE_STEP: f64 = 0.05;
 /// Step in which an inconsistent inertia counts as a bifurcation in any case: steps of this length resolve the turn of a
 /// column with an imperfection of about 1e-13 of the load.
 const BIFURCATION_STEP: f64 = 1e-6;
+/// Fraction of the smaller slope dλ/ds at the ends of a step; if λ rises less in between, the step may pass two limit
+/// points.
+const MIN_SLOPE_BETWEEN: f64 = 0.25;
+/// Step that is not shortened for this reason.
+const MIN_RESOLVED_STEP: f64 = 1e-3;
 /// Factor by which a step with an inconsistent inertia is shortened.
 const SHORTER: f64 = 0.25;
 /// Step in which several bifurcations count as one.
@@ -191,6 +196,19 @@ fn derivatives<S>(
         None => vec![curvature.clone()],
     };
     (curvature, derivatives)
+}
+
+/// Returns `true` if λ may have extreme values between two points at this distance, with slopes of the same sign: its
+/// cubic interpolation rises much less between them than at either.
+fn may_pass_limits<S>(from: &ContinuationPoint<S>, to: &ContinuationPoint<S>, step: f64) -> bool {
+    let sign = from.slope.signum();
+    let [start, end, mean] = [from.slope, to.slope, (to.factor - from.factor) / step].map(|slope| sign * slope);
+    // The cubic's slope is start (1 − t)² + 2 m t (1 − t) + end t², with this m.
+    let m = 3.0 * mean - start - end;
+    let curvature = start + end - 2.0 * m;
+    let at = if curvature > 0.0 { ((start - m) / curvature).clamp(0.0, 1.0) } else { 0.0 };
+    let least = start * (1.0 - at).powi(2) + 2.0 * m * at * (1.0 - at) + end * at * at;
+    least < MIN_SLOPE_BETWEEN * start.min(end)
 }
 
 impl<S: Clone> Continuation<S> {
@@ -293,6 +311,11 @@ impl<S: Clone> Continuation<S> {
                 step = (SHORTER * step).max(BIFURCATION_STEP);
                 continue;
             }
+            if consistent && !turns && step > MIN_RESOLVED_STEP && may_pass_limits(&from, &point, step) {
+                step *= 0.5;
+                was_rejected = true;
+                continue;
+            }
             let may_grow = cosine >= STRAIGHT && !was_rejected;
             let growth = (WANTED_CONTRACTION / contraction).sqrt().min(if may_grow { 2.0 } else { 1.0 });
             self.step = step * growth;
@@ -337,7 +360,7 @@ impl<S: Clone> Continuation<S> {
         beyond: Option<CriticalMode>,
     ) -> ContinuationPoint<S> {
         /// Largest number of trial steps.
-        const MAX_TRIALS: u32 = 10;
+        const MAX_TRIALS: u32 = 20;
         /// Number of bisections for bifurcations beyond the first.
         const MAX_BISECTIONS: u32 = 9;
         let from = self.before.clone();
@@ -363,11 +386,12 @@ impl<S: Clone> Continuation<S> {
         let _ = equations.linearize(&mut state, from.factor, correction, rate);
         let stiffness = |mode: Option<CriticalMode>| mode.map(|mode| mode.stiffness);
         let (Some(first), Some(last)) = (stiffness(equations.critical_mode()), stiffness(beyond)) else { return best };
-        let (mut low, mut high) = ((0.0, first), (step, last));
+        let (mut low, mut high, mut was_good) = ((0.0, first), (step, last), true);
         for _ in 0..MAX_TRIALS {
-            let is_enclosed = low.1 > 0.0 && high.1 < 0.0;
-            let part = if is_enclosed { low.1 / (low.1 - high.1) } else { 0.5 };
-            let middle = low.0 + (high.0 - low.0) * part;
+            // A secant if both ends have the crossing mode and the last trial was good, else a bisection.
+            let uses_secant = low.1 > 0.0 && high.1 < 0.0 && was_good;
+            let part = if uses_secant { low.1 / (low.1 - high.1) } else { 0.5 };
+            let (width, middle) = (high.0 - low.0, low.0 + (high.0 - low.0) * part);
             let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
             let Some(stiffness) = stiffness(equations.critical_mode()) else { break };
             let is_near = stiffness.abs() <= CROSSING_TOLERANCE * first.abs();
@@ -383,6 +407,7 @@ impl<S: Clone> Continuation<S> {
             if is_near {
                 break;
             }
+            was_good = high.0 - low.0 <= 0.5 * width;
         }
         best
     }

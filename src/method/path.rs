@@ -500,9 +500,7 @@ impl PathFollower {
         if !rises || !(stable(&piece.from) || stable(&piece.to)) {
             return false;
         }
-        if let Some(limit) =
-            self.limit.clone().filter(|limit| piece.to.factor >= limit.factor && piece.from.slope > 0.0)
-        {
+        if let Some(limit) = self.limit.clone().filter(|limit| piece.to.factor >= limit.factor) {
             let is_start = piece.to.factor == limit.factor;
             if !is_start && let Some(landing) = self.path.between(equations, &piece.from, &piece.to, limit.factor) {
                 let jump = Jump::from(&limit, Some(&landing.state), true, equations.problem);

@@ -345,6 +345,18 @@ fn in_small_steps(scene: &Scene, steps: u32) -> Option<Simulation> {
     Some(simulation)
 }
 
+/// Returns the total of all loads and reactions relative to the sum of their magnitudes, and both, N.
+fn imbalance(simulation: &Simulation) -> [f64; 3] {
+    let (solution, problem) = (simulation.solution(), simulation.problem());
+    let mut external = vec![Vector2::zeros(); simulation.displacement().len()];
+    let kinematics = warpbeam::assembly::Kinematics::Corotated;
+    problem.loads().force(problem.system(), simulation.displacement(), kinematics, 1.0, &mut external);
+    let (total, loads) =
+        external.iter().fold((solution.reaction.force, 0.0), |(sum, size), f| (sum + f, size + f.norm()));
+    let size = loads + solution.supports.iter().map(|support| support.force.norm()).sum::<f64>();
+    [total.norm() / size, total.norm(), size]
+}
+
 /// Random scenes: the result is the end of a path in small steps, its forces balance its reactions, and the work along
 /// the path is the stored energy.
 #[test]
@@ -357,25 +369,19 @@ fn random_scenes_end_on_their_path() {
         if *simulation.solve() != Status::Converged {
             continue;
         }
-        let solution = simulation.solution();
         // The total of all forces vanishes.
-        let problem = simulation.problem();
-        let mut external = vec![Vector2::zeros(); simulation.displacement().len()];
-        let kinematics = warpbeam::assembly::Kinematics::Corotated;
-        problem.loads().force(problem.system(), simulation.displacement(), kinematics, 1.0, &mut external);
-        let (total, size) =
-            external.iter().fold((solution.reaction.force, 0.0), |(sum, size), f| (sum + f, size + f.norm()));
-        let reactions: f64 = solution.supports.iter().map(|support| support.force.norm()).sum();
-        let off = total.norm() / (size + reactions);
-        // In a body hundreds of times as long as high, rounding may change the residual by more than the tolerance: the
-        // inner forces are much larger than the loads.
-        let is_rounding = || {
+        let [off, total, size] = imbalance(&simulation);
+        // In a body hundreds of times as long as high, the inner forces, to which the residual is relative, are much larger
+        // than the loads, and rounding may change it by more than the tolerance.
+        let balances_further = || {
             let mut exact = scene.clone();
             exact.solver.tolerance = 1e-14;
-            solved(&exact).solution().residual_floor.is_some_and(|floor| floor > scene.solver.tolerance)
+            let exact = solved(&exact);
+            exact.solution().residual_floor.is_some_and(|floor| floor > scene.solver.tolerance)
+                || imbalance(&exact)[0] <= 1e-5
         };
-        if off > 1e-3 || off > 1e-5 && !is_rounding() {
-            wrong.push(format!("seed {seed}: {} N are not balanced of {size} N", total.norm()));
+        if off > 1e-3 || off > 1e-5 && !balances_further() {
+            wrong.push(format!("seed {seed}: {total} N are not balanced of {size} N"));
         }
         let Some(truth) = in_small_steps(&scene, 60) else { continue };
         judged += 1;
