@@ -1,6 +1,6 @@
 //! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
-use egui::{Align, Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
 use crate::app::viewport::projection::Projection;
@@ -11,15 +11,20 @@ use crate::format::{engineering, round_down, three_digits};
 use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};
 
-/// Length of the arrow of a zero force, points: long enough to be grabbed.
+/// Smallest length that is drawn, points: long enough to be grabbed.
 const STUB: f64 = 16.0;
 /// Length of the arrow of the force that the scene opens with, points, in small views and in large ones. Dragging the
 /// tip by one pixel changes the force by 1 to 2 %.
 const OPENING: [f64; 2] = [50.0, 72.0];
-/// Additional length per factor of ten above twice the opening force, points, in small views and in large ones.
-const DECADE: [f64; 2] = [20.0, 60.0];
-/// Opening length and additional length as fractions of the shorter side of the view, limited by the ranges above.
-const SHARE: [f64; 2] = [0.12, 0.09];
+/// Opening length as a fraction of the shorter side of the view, limited by the range above.
+const SHARE: f64 = 0.12;
+/// Length, in opening lengths, above which an arrow ends at the border of the view.
+const WHOLE: f64 = 2.0;
+/// Distance of such an arrow's tip from the border at the sides, and above and below, points: room for its label and for
+/// the colour bar.
+const BORDER: Vec2 = vec2(40.0, 80.0);
+/// Length below which a dragged arrow is a force of zero, points.
+const NO_LENGTH: f32 = 0.5;
 /// Smallest ratio of the largest force of a slider to the force that the scene opens with.
 pub(crate) const MIN_SPAN: f64 = 4.0;
 /// Distance from a tip within which a press grabs it, points.
@@ -75,10 +80,23 @@ pub(crate) fn power_of_ten_above(value: f64) -> f64 {
 /// Returns the scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of size `view`,
 /// points.
 pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
-    let side = f64::from(view.min_elem());
-    let within = |[low, high]: [f64; 2], share: f64| (share * side).clamp(low, high);
-    let [opening, decade] = SHARE;
-    LoadScale { usual, stub: STUB, opening: within(OPENING, opening), decade: within(DECADE, decade) }
+    let [low, high] = OPENING;
+    LoadScale::smooth(usual, (SHARE * f64::from(view.min_elem())).clamp(low, high))
+}
+
+/// Returns the distance from a point to the border of a rectangle along a unit vector, points; infinite for a point
+/// outside.
+fn room(rect: Rect, from: Pos2, direction: Vec2) -> f64 {
+    if !rect.contains(from) {
+        return f64::INFINITY;
+    }
+    let along = |from: f32, direction: f32, [low, high]: [f32; 2]| match direction {
+        d if d > 0.0 => f64::from((high - from) / d),
+        d if d < 0.0 => f64::from((low - from) / d),
+        _ => f64::INFINITY,
+    };
+    let [x, y] = [[rect.min.x, rect.max.x], [rect.min.y, rect.max.y]];
+    along(from.x, direction.x, x).min(along(from.y, direction.y, y))
 }
 
 /// Returns the forces, N, that scale the arrows and sliders of a scene: the largest opening force and the largest force
@@ -106,8 +124,10 @@ pub(crate) struct Arrow {
     pub load: usize,
     /// Point of application.
     pub from: Pos2,
-    /// Vector from the point of application to the tip.
+    /// Vector from the point of application to the tip, which stays in the view.
     pub vector: Vec2,
+    /// Direction of the force.
+    direction: Vec2,
     scale: LoadScale,
     /// Magnitude of the force, N.
     magnitude: f64,
@@ -141,8 +161,12 @@ impl ForceArrows<'_> {
             let Load::Force { place, force, .. } = of else { return None };
             let from = projection.point(load_point(mesh, self.positions, place)?);
             let (magnitude, degrees) = polar_form(*force);
-            let [x, y] = vector(scale.length(magnitude), degrees.unwrap_or(self.direction));
-            let arrow = Arrow { load, from, vector: vec2(x as f32, -y as f32), scale, magnitude, largest };
+            let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
+            let direction = vec2(x as f32, -y as f32);
+            let whole = WHOLE * scale.opening;
+            let longest = whole.max(room(projection.rect.shrink2(BORDER), from, direction));
+            let vector = direction * scale.length(magnitude).clamp(STUB, longest) as f32;
+            let arrow = Arrow { load, from, vector, direction, scale, magnitude, largest };
             (arrow.from.is_finite() && arrow.vector.is_finite()).then_some(arrow)
         });
         arrows.collect()
@@ -164,8 +188,11 @@ impl Arrow {
     /// Returns the force, N, and its direction, degrees, after the tip has moved by `by`, points. The numbers are
     /// rounded to the pointer's accuracy.
     pub(crate) fn dragged(&self, by: Vec2, snap: bool) -> (f64, f64) {
-        let vector = self.vector + by;
-        let degrees = f64::from(-vector.y).atan2(f64::from(vector.x)).to_degrees();
+        // The length of the force, not that of the arrow, which is limited.
+        let vector = self.direction * self.scale.length(self.magnitude) as f32 + by;
+        let vector = if vector.length() < NO_LENGTH { Vec2::ZERO } else { vector };
+        let pointed = if vector == Vec2::ZERO { self.direction } else { vector };
+        let degrees = f64::from(-pointed.y).atan2(f64::from(pointed.x)).to_degrees();
         let step = if snap { SNAP } else { 1.0 };
         // Normalizes −0 to 0 and, below, −180 to 180.
         let degrees = (degrees / step).round() * step + 0.0;
@@ -293,8 +320,6 @@ mod tests {
             let scale = scale(3e4, vec2(2.0 * side, side));
             let rate = (scale.load(scale.opening + 1.0) - scale.load(scale.opening - 1.0)) / (2.0 * 3e4);
             assert!((0.01..=0.0201).contains(&rate), "{side}: {rate}");
-            // The largest force of most sliders leaves room for the body.
-            assert!(scale.length(1e6) < 0.35 * f64::from(side).max(400.0), "{side}: {}", scale.length(1e6));
         }
     }
 
@@ -319,7 +344,8 @@ mod tests {
     fn a_dragged_tip_gives_round_numbers_and_shift_snaps() {
         let scale = scale(1e3, LARGE);
         let vector = vec2(0.0, scale.length(1e3) as f32);
-        let arrow = Arrow { load: 0, from: Pos2::ZERO, vector, scale, magnitude: 1e3, largest: 1e6 };
+        let (from, direction) = (Pos2::ZERO, vector.normalized());
+        let arrow = Arrow { load: 0, from, vector, direction, scale, magnitude: 1e3, largest: 1e6 };
         assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
         // Twice the length is twice the force.
         assert_eq!(arrow.dragged(vector, false), (2e3, DOWN));
@@ -328,7 +354,13 @@ mod tests {
         assert_eq!(direction, -75.0);
         assert_eq!(arrow.dragged(-arrow.vector, false).0, 0.0);
         // Dragging ends at the slider's largest force.
-        assert!((arrow.dragged(vec2(0.0, 900.0), false).0 / 1e6 - 1.0).abs() < 1e-9);
+        assert!((arrow.dragged(vec2(0.0, 2e4), false).0 / 1e6 - 1.0).abs() < 1e-9);
+        // The force of an arrow that ends at the border of the view is that of its whole length.
+        let large = Arrow { vector: 3.0 * vector, magnitude: 1e5, ..arrow };
+        assert_eq!(large.dragged(Vec2::ZERO, false), (1e5, DOWN));
+        let zero = Arrow { vector: 16.0 * arrow.direction, magnitude: 0.0, ..arrow };
+        assert_eq!((zero.dragged(Vec2::ZERO, false).0, zero.dragged(vector, false)), (0.0, (1e3, DOWN)));
+        assert_eq!(zero.dragged(Vec2::ZERO, false).1, DOWN);
         // A force exactly to the left has the direction +180, on either side of the axis.
         let left = arrow.dragged(-arrow.vector + vec2(-60.0, 1e-4), false);
         assert_eq!(left.1, 180.0);

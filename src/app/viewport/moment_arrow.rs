@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
 use crate::app::viewport::arrow::{MIN_SPAN, paint_grip, power_of_ten_above};
-use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
+use crate::app::widgets::load_scale::{LoadScale, OpeningLoads, STRAIGHT};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::format::{engineering, round_down, three_digits};
@@ -58,7 +58,8 @@ pub(crate) struct MomentArrow {
 impl MomentArrow {
     /// Creates the arrow of a moment, N m, in a scene that opens with moments up to `usual`, N m.
     pub(crate) fn new(load: usize, center: Pos2, moment: f64, usual: f64) -> Self {
-        Self { load, center, moment, scale: LoadScale { usual, stub: STUB, opening: OPENING, decade: DECADE } }
+        let scale = LoadScale { usual, stub: STUB, opening: OPENING, straight: STRAIGHT, decade: DECADE };
+        Self { load, center, moment, scale }
     }
 
     /// Returns the angle of the arrow, rad, counter-clockwise.

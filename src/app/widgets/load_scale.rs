@@ -35,8 +35,8 @@ impl OpeningLoads {
 /// Monotone, continuous map from the magnitude of a load to a length, in points, radians or fractions of a slider.
 ///
 /// Let x be the load divided by its opening value. The map is a parabola from the stub length at x = 0 to the opening
-/// length at x = 1, where its tangent passes through the origin; this tangent up to x = 2, so that an arrow of twice
-/// the length is twice the load; and a logarithm beyond.
+/// length at x = 1, where its tangent passes through the origin; this tangent up to x = `straight`, so that an arrow of
+/// twice the length is twice the load; and a logarithm beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoadScale {
     /// Opening value: the load that has the opening length.
@@ -45,12 +45,14 @@ pub(crate) struct LoadScale {
     pub stub: f64,
     /// Length of the opening value.
     pub opening: f64,
-    /// Additional length per factor of ten above twice the opening value.
+    /// Ratio of a load to its opening value above which lengths are logarithmic.
+    pub straight: f64,
+    /// Additional length per factor of ten above it.
     pub decade: f64,
 }
 
-/// Ratio of a load to its opening value above which lengths are logarithmic.
-const STRAIGHT: f64 = 2.0;
+/// Ratio of a load to its opening value above which sliders and the arrows of moments are logarithmic.
+pub(crate) const STRAIGHT: f64 = 2.0;
 
 impl LoadScale {
     /// Returns the length of a load.
@@ -58,10 +60,10 @@ impl LoadScale {
         let x = load / self.usual;
         if x <= 1.0 {
             self.stub + x * (self.opening - 2.0 * self.stub + self.stub * x)
-        } else if x <= STRAIGHT {
+        } else if x <= self.straight {
             self.opening * x
         } else {
-            self.opening * STRAIGHT + self.decade * (x / STRAIGHT).log10()
+            self.opening * self.straight + self.decade * (x / self.straight).log10()
         }
     }
 
@@ -73,12 +75,19 @@ impl LoadScale {
             // The positive root of stub x² + b x = c, in the form without cancellation.
             let (b, c) = (self.opening - 2.0 * self.stub, length - self.stub);
             2.0 * c / (b + (b * b + 4.0 * self.stub * c).sqrt())
-        } else if length <= STRAIGHT * self.opening {
+        } else if length <= self.straight * self.opening {
             length / self.opening
         } else {
-            STRAIGHT * 10f64.powf((length - STRAIGHT * self.opening) / self.decade)
+            self.straight * 10f64.powf((length - self.straight * self.opening) / self.decade)
         };
         x * self.usual
+    }
+
+    /// Returns the scale of an arrow whose length is proportional to the load up to three times the opening value, and
+    /// logarithmic beyond with the same slope there, so that no pixel of a drag is worth much more than the one before.
+    pub(crate) fn smooth(usual: f64, opening: f64) -> Self {
+        const STRAIGHT: f64 = 3.0;
+        Self { usual, stub: 0.0, opening, straight: STRAIGHT, decade: STRAIGHT * opening * std::f64::consts::LN_10 }
     }
 
     /// Returns the scale of a slider from 0 to 1 whose upper end is `largest`. The opening value is in the middle
@@ -88,7 +97,8 @@ impl LoadScale {
         /// Smallest number of decades of the logarithmic part.
         const MIN_DECADES: f64 = 0.3;
         let decades = (largest / (STRAIGHT * usual)).log10().max(MIN_DECADES);
-        Self { usual, stub: 0.0, opening: OPENING, decade: (1.0 - STRAIGHT * OPENING) / decades }
+        let decade = (1.0 - STRAIGHT * OPENING) / decades;
+        Self { usual, stub: 0.0, opening: OPENING, straight: STRAIGHT, decade }
     }
 
     /// Returns the scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third
@@ -106,10 +116,26 @@ mod tests {
     use super::*;
 
     const SCALES: [LoadScale; 3] = [
-        LoadScale { usual: 3e4, stub: 16.0, opening: 72.0, decade: 60.0 },
-        LoadScale { usual: 2e-3, stub: 0.5, opening: 2.4, decade: 1.6 },
-        LoadScale { usual: 700.0, stub: 0.0, opening: 0.4, decade: 0.1 },
+        LoadScale { usual: 3e4, stub: 0.0, opening: 72.0, straight: 3.0, decade: 500.0 },
+        LoadScale { usual: 2e-3, stub: 0.5, opening: 2.4, straight: STRAIGHT, decade: 1.6 },
+        LoadScale { usual: 700.0, stub: 0.0, opening: 0.4, straight: STRAIGHT, decade: 0.1 },
     ];
+
+    /// The force under the tip of an arrow grows evenly, from one pixel to the next.
+    #[test]
+    fn no_pixel_of_a_smooth_scale_is_worth_much_more_than_the_one_before() {
+        for opening in [50.0, 72.0] {
+            let scale = LoadScale::smooth(3e4, opening);
+            let step = |pixel: u32| scale.load(f64::from(pixel)) - scale.load(f64::from(pixel) - 1.0);
+            for pixel in 2..=400 {
+                let ratio = step(pixel) / step(pixel - 1);
+                assert!(ratio > 0.999 && ratio < 1.5, "{opening}: {ratio} at {pixel}");
+            }
+        }
+        // 100 points beyond the tip of the article's arrow.
+        let load = LoadScale::smooth(3e4, 72.0).load(172.0);
+        assert!((load - 72e3).abs() < 1e3, "{load}");
+    }
 
     #[test]
     fn lengths_go_to_loads_and_back_and_grow() {
@@ -124,7 +150,7 @@ mod tests {
             }
             assert_eq!((scale.length(0.0), scale.load(scale.stub), scale.load(0.0)), (scale.stub, 0.0, 0.0));
             // The pieces are continuous.
-            for x in [1.0, STRAIGHT] {
+            for x in [1.0, scale.straight] {
                 let [below, above] = [1.0 - 1e-9, 1.0 + 1e-9].map(|near| scale.length(near * x * scale.usual));
                 assert!((above - below).abs() < 1e-6 * scale.opening, "{scale:?} at {x}");
             }
