@@ -190,7 +190,8 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
     }
 }
 
-/// Returns the magnitude of a scene's only load; `None` if it has none or several, or moves a support.
+/// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or
+/// moves a support.
 fn load_text(scene: &Scene) -> Option<String> {
     let magnitude = |load: &Load| match *load {
         Load::Force { force: [x, y], .. } => (x.hypot(y), "N"),
@@ -198,7 +199,7 @@ fn load_text(scene: &Scene) -> Option<String> {
         Load::Moment { moment, .. } => (moment.abs(), "N m"),
     };
     let mut loads = scene.loads.iter().map(magnitude).filter(|(value, _)| *value > 0.0);
-    let (value, unit) = loads.next()?;
+    let (value, unit) = loads.next().or_else(|| scene.loads.first().map(magnitude))?;
     let is_only = loads.next().is_none() && !scene.supports.iter().any(Support::moves);
     is_only.then(|| engineering(three_digits(value), unit))
 }

@@ -16,7 +16,10 @@ use warpbeam::simulation::{Field, PointValues, Simulation, Status};
 const STEP: f32 = 0.05;
 
 fn harness(id: &str) -> Harness<'static, Lab> {
-    let scene = scene(id);
+    harness_of(id, scene(id))
+}
+
+fn harness_of(id: &str, scene: warpbeam::Scene) -> Harness<'static, Lab> {
     let simulation = Simulation::new(&scene).unwrap();
     let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
     let mut harness =
@@ -225,6 +228,27 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     harness.run();
     assert!(harness.query_by_label_contains("not reached").is_none());
     assert_ne!(details(&harness), before);
+}
+
+/// A scene whose first state diverges shows the body at rest, an equilibrium without load, and no number of the state
+/// that diverges.
+#[test]
+fn a_scene_that_opens_with_too_large_a_load_shows_the_body_at_rest() {
+    let mut large = scene("article");
+    large.set_force(LoadId::nth(0), [0.0, -176e3]).unwrap();
+    let mut harness = harness_of("article", large);
+    unfold(&mut harness, "stable");
+    assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
+    harness.get_by_label("equilibrium at 0 N; 176 kN not reached");
+    let values: Vec<String> =
+        harness.get_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect();
+    let at = values.iter().position(|value| value == "tip x, y").unwrap_or_else(|| panic!("{values:?}"));
+    assert_eq!(values[at + 1], "(0, 0) m");
+    harness.get_by_label_contains("ERROR \u{2013}");
+    harness.get_by_label("Use newton").click();
+    harness.run();
+    assert!(harness.query_by_label_contains("not reached").is_none());
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
 }
 
 /// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.

@@ -594,7 +594,8 @@ impl Session {
         self.facts.reference.request(&self.scene)
     }
 
-    /// Stores a copy of an equilibrium, to be displayed when a later state diverges.
+    /// Stores a copy of an equilibrium, to be displayed when a later state diverges. If the first state diverges, the
+    /// last equilibrium is the body at rest without load.
     pub(crate) fn keep_converged(&mut self) {
         let simulation = &self.simulation;
         let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
@@ -602,6 +603,10 @@ impl Session {
             && !self.converged.as_ref().is_some_and(is_kept)
         {
             self.converged = simulation.equilibrium().map(Equilibrium::snapshot);
+        } else if matches!(simulation.status(), Status::Diverged(_)) && self.converged().is_none() {
+            let mut scene = self.scene.clone();
+            scene.scale_loads(0.0);
+            self.converged = Simulation::with_system(&scene, simulation.system().clone()).ok();
         }
     }
 

@@ -202,9 +202,12 @@ impl Arrow {
         (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
     }
 
-    /// Paints the arrow of the force on a body that is not in the state that was asked for, without a handle.
+    /// Paints the arrow of the force on a body that is not in the state that was asked for, without a handle; nothing for a
+    /// force of zero.
     pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32) {
-        paint_arrow(painter, self.from, self.vector, color);
+        if self.magnitude > 0.0 {
+            paint_arrow(painter, self.from, self.vector, color);
+        }
     }
 
     /// Paints the arrow with its force next to it, as an outline if the body does not have this load.
