@@ -91,7 +91,7 @@ const MAX_CONTRACTION: f64 = 0.25;
 const WANTED_CONTRACTION: f64 = 0.1;
 /// Largest first correction relative to the step.
 const MAX_FIRST_CORRECTION: f64 = 0.5;
-/// Largest second-order part of a prediction relative to the step.
+/// Largest second-order or third-order part of a prediction relative to the step.
 const MAX_TURN: f64 = 0.25;
 /// Smallest cosine of the angle between successive tangents.
 const MIN_COSINE: f64 = 0.8;
@@ -108,7 +108,7 @@ const ROUNDING: f64 = 1e-9;
 const MAX_CORRECTIONS: u32 = 8;
 /// Length of the first step.
 const FIRST_STEP: f64 = 0.1;
-/// Longest step, unless the path is long.
+/// Longest step, in the norm of (x, λ), unless the path is long.
 const MAX_STEP: f64 = 1.0;
 /// Longest step relative to the length of the path so far. Bodies that are stretched to many times their size have long
 /// and straight paths.
@@ -119,7 +119,7 @@ const BIFURCATION_STEP: f64 = 1e-6;
 /// Fraction of the smaller slope dλ/ds at the ends of a step; if λ rises less in between, the step may pass two limit
 /// points.
 const MIN_SLOPE_BETWEEN: f64 = 0.25;
-/// Step that is not shortened for this reason.
+/// Steps shorter than this are not halved where they may pass two limit points.
 const MIN_RESOLVED_STEP: f64 = 1e-3;
 /// Factor by which a step with an inconsistent inertia is shortened.
 const SHORTER: f64 = 0.25;
@@ -127,10 +127,10 @@ const SHORTER: f64 = 0.25;
 const MIN_SEPARATION: f64 = 1e-3;
 /// Step below which a path counts as ended.
 const MIN_STEP: f64 = 1e-7;
-/// Largest number of times that a path without a further step is followed again from the point before its last one. Next to
-/// a sharp turn, the inertia of a point may be that of its small error.
+/// Largest number of retreats: if no step is accepted, the last one is taken back and repeated shorter, because near a sharp
+/// turn a small error of a point can change its number of negative eigenvalues.
 const MAX_RETREATS: u32 = 4;
-/// Factor by which the step after a retreat is shorter than the one that is taken back.
+/// Length of the step after a retreat, relative to the step that is taken back.
 const RETREAT: f64 = 0.3;
 /// Relative error of a limit point's load factor.
 const LIMIT_TOLERANCE: f64 = 1e-6;
@@ -139,7 +139,7 @@ const LIMIT_TOLERANCE: f64 = 1e-6;
 const CROSSING_TOLERANCE: f64 = 1e-5;
 /// Largest cosine between load and critical mode that is rounding error.
 const ORTHOGONAL: f64 = 2e-14;
-/// Largest cosine of a small imperfection.
+/// On a path that is unstable already: largest cosine between load and critical mode at a bifurcation.
 const NEARLY_ORTHOGONAL: f64 = 1e-7;
 
 /// Path of solutions from a first one, followed step by step.
@@ -149,8 +149,9 @@ pub(crate) struct Continuation<S> {
     /// Point before the last step.
     before: ContinuationPoint<S>,
     step: f64,
-    /// Length of the path so far, and of its last step if that can be taken back.
+    /// Length of the path so far.
     length: f64,
+    /// Length of the last step, if that can be taken back.
     last_step: Option<f64>,
     /// Number of steps that were taken back.
     retreats: u32,
@@ -158,8 +159,9 @@ pub(crate) struct Continuation<S> {
     curvature: Option<(Vec<f64>, f64)>,
     /// Weight of the square of x in the norm of (x, λ).
     weight: f64,
-    /// Number of linearizations so far, and its limit.
+    /// Number of linearizations so far.
     pub(crate) linearizations: u32,
+    /// Largest number of linearizations.
     max_linearizations: u32,
     /// Largest change of λ in a step.
     max_by_factor: f64,
@@ -304,7 +306,7 @@ impl<S: Clone> Continuation<S> {
             let mode = if !consistent && !turns && is_single { equations.critical_mode() } else { None };
             // On a path that is unstable already, small imperfections count as none.
             let orthogonal = if from.modes > 0 { NEARLY_ORTHOGONAL } else { ORTHOGONAL };
-            // After a long step another mode may be closer to 0 than the one that has changed its sign.
+            // After a long step the eigenvalue of another mode may be closer to 0 than the one that has changed its sign.
             let has_crossed = |mode: &CriticalMode| (mode.stiffness < 0.0) == (point.modes > from.modes);
             let crossed = mode.filter(|mode| mode.cosine <= orthogonal && has_crossed(mode));
             if !consistent && crossed.is_none() && step > BIFURCATION_STEP {
@@ -369,7 +371,7 @@ impl<S: Clone> Continuation<S> {
             return best;
         }
         if from.modes > 0 {
-            // Beyond the first bifurcation, the critical mode at `from` may be the one of the last.
+            // Beyond the first bifurcation, the critical mode at `from` may be the one of the bifurcation before.
             let (mut low, mut high) = (0.0, step);
             for _ in 0..if self.locates_all { MAX_BISECTIONS } else { 0 } {
                 let middle = 0.5 * (low + high);
@@ -399,7 +401,7 @@ impl<S: Clone> Continuation<S> {
                 (low, best) = ((middle, stiffness), point);
             } else {
                 high = (middle, stiffness);
-                // A point just beyond is as good, but for its mode.
+                // A point just beyond the bifurcation serves too, with the number of negative eigenvalues before it.
                 if is_near {
                     best = ContinuationPoint { modes: from.modes, ..point };
                 }
@@ -420,7 +422,7 @@ impl<S: Clone> Continuation<S> {
         let mut best = if from.slope.abs() < self.point.slope.abs() { from.clone() } else { self.point.clone() };
         let (mut low, mut high) = ((0.0, from.slope), (step, self.point.slope));
         for _ in 0..MAX_TRIALS {
-            // Between regula falsi and bisection, so that neither end stays.
+            // Between secant and bisection, so that both ends move.
             let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
             let middle = 0.8 * secant + 0.1 * (low.0 + high.0);
             let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
@@ -572,7 +574,8 @@ impl<S: Clone> Continuation<S> {
             }
             factor += by;
             equations.advance(&mut state, correction, 1.0, factor);
-            // The prediction stretches a slender body, under which its tangent is another, however small the correction.
+            // The prediction stretches a slender body, and a stretched body has another tangent: one small correction does
+            // not prove convergence.
             let is_corrected = last.is_some();
             last = Some(size);
             if size <= ROUNDING || is_corrected && size <= CONVERGED * step.abs() {

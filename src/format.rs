@@ -138,6 +138,24 @@ pub fn percent(value: f64) -> String {
     format!("{} %", significant(value, 2))
 }
 
+/// Formats the bound of an error, percent, with two digits, rounded up: a bound that is shown as `1 %` is at most 1 %.
+///
+/// ```
+/// use warpbeam::format::bound_percent;
+/// assert_eq!([1.04, 1.0, 0.0512].map(bound_percent), ["1.1 %", "1 %", "0.052 %"]);
+/// ```
+#[must_use]
+pub fn bound_percent(value: f64) -> String {
+    /// Relative difference that is rounding error.
+    const ROUNDING: f64 = 1e-9;
+    let nearest = two_digits(value);
+    if nearest >= value * (1.0 - ROUNDING) || !value.is_finite() {
+        return percent(value);
+    }
+    let digit = 10f64.powf(value.log10().floor() - 1.0);
+    percent(nearest + digit)
+}
+
 /// Rounds to three significant digits, the precision of sliders, pointer positions and clocks.
 #[must_use]
 pub fn three_digits(value: f64) -> f64 {

@@ -156,7 +156,8 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation).iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
-    limits.extend(simulation.motion().and_then(|motion| motion.ledger().gain_warning()).map(|gain| gain.to_string()));
+    limits
+        .extend(simulation.motion().and_then(|motion| motion.ledger().drift_warning()).map(|drift| drift.to_string()));
     limits
 }
 

@@ -65,7 +65,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "elastic": known(solution.energy.elastic),
             "external": known(solution.energy.external),
             "supports": solution.energy.supports.map(number),
-            // Present for motions only.
+            // Null at rest.
             "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
             "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
         },
@@ -73,7 +73,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "supports": supports,
         "time_us": time_us,
     });
-    // Only present for `auto`; other methods give the documented object without additions.
+    // Other methods have no `auto`.
     if let Some(auto) = &solution.auto {
         object["auto"] = json!({
             "decision": auto.decision.id(),

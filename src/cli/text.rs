@@ -90,11 +90,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         let _ = writeln!(text, "  {reason}");
     }
     for claim in claims {
-        // The line above says that the forces balance, those below have the errors, and silence is stability.
-        if !matches!(
-            claim,
-            Claim::Converged { floor: None, .. } | Claim::Stable | Claim::Error { .. } | Claim::BeamTheory { .. }
-        ) {
+        // The line above says that the forces balance, those below have the errors.
+        if !matches!(claim, Claim::Converged { floor: None, .. } | Claim::Error { .. } | Claim::BeamTheory { .. }) {
             let _ = writeln!(text, "  {claim}");
         }
     }

@@ -13,6 +13,8 @@ use crate::state::State;
 const MAX_GAIN: f64 = 0.1;
 /// Smallest energy gained, relative to the energy put in, for which the time step is reported as too long.
 const MIN_NOTED_GAIN: f64 = 0.01;
+/// Smallest fraction of the energy put in whose loss is noted.
+const MIN_NOTED_LOSS: f64 = 0.1;
 
 /// Energies of a motion, J, and the energy added and removed since its start: kinetic + elastic + potential +
 /// dissipated + integrator − pulses − mouse_spring − edits = start, up to the rounding error [`Self::imbalance`].
@@ -155,16 +157,24 @@ impl Ledger {
         self.drift_of_input() > MAX_GAIN
     }
 
-    /// Returns a warning if the integrator has added more than a hundredth of the energy put in.
+    /// Returns a warning if the integrator has added more than a hundredth of the energy put in, or lost more than a tenth.
     #[doc(hidden)]
     #[must_use]
-    pub fn gain_warning(&self) -> Option<Sentence> {
-        let gain = self.drift_of_input();
-        (gain > MIN_NOTED_GAIN).then(|| {
-            sentence!(
+    pub fn drift_warning(&self) -> Option<Sentence> {
+        let drift = self.drift_of_input();
+        let (energy, percent) = (engineering(self.integrator.abs(), "J"), percent(100.0 * drift.abs()));
+        if drift > MIN_NOTED_GAIN {
+            return Some(sentence!(
                 "the integrator gained %{energy}, %{percent} of the energy put in: the time step is too long",
-                energy = engineering(-self.integrator, "J"),
-                percent = percent(100.0 * gain)
+                energy,
+                percent
+            ));
+        }
+        (drift < -MIN_NOTED_LOSS).then(|| {
+            sentence!(
+                "the integrator lost %{energy}, %{percent} of the energy put in: shorter time steps lose less",
+                energy,
+                percent
             )
         })
     }

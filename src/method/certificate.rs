@@ -35,7 +35,7 @@ pub fn is_stable(
 
 /// Returns the stiffness along the supports' prescribed motion at constant loads, J: the derivative of their
 /// generalised force g = Σ r · ∂u/∂λ with respect to the fraction λ of the motion. `None` if the body is unstable even
-/// with the supports held.
+/// with the supports held, or if the value is only rounding error, as where the body follows the supports without strain.
 ///
 /// The value is the Schur complement of the exact tangent when everything but λ is eliminated: if the supports are released
 /// and driven by g instead, the body is stable if the tangent is positive definite on the free unknowns and this value
@@ -49,6 +49,8 @@ pub fn support_stiffness(
 ) -> Option<f64> {
     /// Step of the central differences, as a fraction of the support's displacement; their relative error is about H².
     const H: f64 = 1e-4;
+    /// Rounding error of a nodal force relative to the sum of the magnitudes of the element forces there.
+    const ROUNDING: f64 = 1e-14;
     let (system, supports) = (problem.system(), problem.supports());
     let (mesh, pattern) = (system.mesh(), system.pattern());
     if !is_stable(problem, state, load_factor, forces, workspace) {
@@ -67,7 +69,7 @@ pub fn support_stiffness(
         free.iter_mut().zip(&workspace.free).for_each(|(sum, f)| *sum += f / (2.0 * h));
     }
     workspace.factor.solve_in_place(&mut free);
-    let mut stiffness = 0.0;
+    let (mut stiffness, mut noise) = (0.0, 0.0);
     for h in [H, -H] {
         trial.copy_from(state);
         let mut ahead = trial.displacement.clone();
@@ -85,8 +87,10 @@ pub fn support_stiffness(
         let force: f64 =
             increment.iter().zip(forces.residual()).map(|(increment, residual)| -increment.dot(residual)).sum();
         stiffness += force / (2.0 * h);
+        let magnitudes = increment.iter().zip(forces.magnitude());
+        noise += magnitudes.map(|(increment, force)| increment.abs().dot(force)).sum::<f64>() * ROUNDING / (2.0 * H);
     }
-    stiffness.is_finite().then_some(stiffness)
+    (stiffness.is_finite() && stiffness.abs() > noise).then_some(stiffness)
 }
 
 /// Describes ρ in a sentence.
@@ -94,13 +98,13 @@ pub fn support_stiffness(
 pub fn rho_text(rho: f64) -> Sentence {
     match rho {
         ..1.0 => sentence!(
-            "the warped iteration converges near this equilibrium: a disturbance shrinks by ρ = %{n} an iteration",
+            "the warped iteration converges near this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
             n = format!("{rho:.3}")
         ),
         _ => {
             let rho = if rho < 1000.0 { format!("{rho:.3}") } else { format!("{rho:.1e}") };
             sentence!(
-                "the warped iteration leaves this equilibrium: a disturbance grows by ρ = %{n} an iteration",
+                "the warped iteration leaves this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
                 n = rho
             )
         }

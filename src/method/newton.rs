@@ -51,17 +51,17 @@ const MAX_SOFTENING: f64 = 0.05;
 /// Largest displacement, relative to that of linear theory, with which the result counts as the end of the path.
 const MAX_GROWTH: f64 = 1.1;
 
-/// Part of the search.
+/// Phase of the solve.
 #[derive(Clone, Debug, Default)]
 enum NewtonPhase {
     /// Full steps under the whole load.
     #[default]
     Direct,
-    /// The path from rest, once its follower is made.
+    /// The path from rest; `None` until its follower is made.
     Path(Option<Box<PathFollower>>),
     /// Full steps from the end of the path.
     Finish(PathEvents),
-    /// Full steps under growing parts of the load, where rounding errors hide the path or it is too long.
+    /// Full steps under growing parts of the load, where rounding errors hide the path, or the path is too long.
     LoadSteps(Box<LoadSteps>),
 }
 

@@ -311,9 +311,9 @@ pub(crate) struct PathFollower {
     path: Continuation<State>,
     /// Pieces of the last step that are not yet searched for the goal.
     pieces: Vec<PathPiece>,
-    /// Limit point from which the body has jumped, until the path is stable again at its load.
+    /// Limit point from which the body has jumped, until the path is stable again at the load of that point.
     limit: Option<ContinuationPoint<State>>,
-    /// First stable state beyond the first limit point, at its load.
+    /// First stable state beyond the first limit point, at the load of that point.
     landing: Option<ContinuationPoint<State>>,
     /// Last point before the last bifurcation.
     crossing: Option<ContinuationPoint<State>>,
@@ -321,10 +321,11 @@ pub(crate) struct PathFollower {
     unstable_modes: usize,
     /// Number of linearizations since the limit point.
     since_limit: u32,
-    /// Last equilibrium without other unstable modes than those of bifurcations.
+    /// Last equilibrium whose unstable modes all arose at bifurcations.
     last: ContinuationPoint<State>,
     /// `true` during the descent of the energy from the limit point.
     descends: bool,
+    /// Number of linearizations of the descent and of paths before it.
     descent_steps: u32,
     /// Critical points so far.
     events: PathEvents,
@@ -571,7 +572,7 @@ fn unit(problem: &Problem) -> f64 {
 enum Descent {
     /// The energy is lower.
     Lower,
-    /// The state is a stable equilibrium but for small corrections.
+    /// The state is close to a stable equilibrium.
     Stable,
     /// No step lowers the energy.
     Stuck,

@@ -431,6 +431,8 @@ impl Scene {
     /// Returns warnings about pulses that are shorter than a time step, or outside the motion.
     #[must_use]
     pub fn unresolved_pulses(&self) -> Vec<String> {
+        /// Smallest number of time steps in a pulse that resolve its shape in outline.
+        const RESOLVED: f64 = 5.0;
         let DynamicsSettings { duration, time_step, .. } = self.dynamics;
         let pulses = self.loads.iter().enumerate().filter_map(|(i, load)| Some((i, load.pulse()?)));
         pulses
@@ -449,6 +451,12 @@ impl Scene {
                          is not resolved",
                         seconds(pulse.duration),
                         seconds(time_step)
+                    ))
+                } else if pulse.duration < RESOLVED * time_step {
+                    Some(format!(
+                        "the pulse of load.{i} lasts {}, only {:.1} time steps: a twentieth of it resolves its shape",
+                        seconds(pulse.duration),
+                        pulse.duration / time_step
                     ))
                 } else {
                     None

@@ -101,7 +101,7 @@ pub struct Beam {
     /// Height, m.
     pub height: f64,
     /// Rise of the axis in the middle, along a parabola from end to end, m: a shallow arch, stress-free.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub rise: f64,
     /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
@@ -184,8 +184,8 @@ pub struct Material {
     pub plane: Plane,
 }
 
-/// Returns `true` for a default value, which scene files omit.
-fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
+/// Returns `true` for the default value of a type, such as 0; predicate for keys that scene files then omit.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

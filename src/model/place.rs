@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::{check, is_zero, limits};
+use super::{check, is_default, limits};
 use crate::format::number;
 use crate::sentence::Sentence;
 
@@ -289,9 +289,9 @@ struct SupportTable {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
     fix: Vec<Axis>,
-    #[serde(skip_serializing_if = "is_zero", default)]
+    #[serde(skip_serializing_if = "is_default", default)]
     displacement: [f64; 2],
-    #[serde(skip_serializing_if = "is_zero", default)]
+    #[serde(skip_serializing_if = "is_default", default)]
     turn: f64,
 }
 

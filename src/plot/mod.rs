@@ -12,4 +12,4 @@ pub use atlas::{atlas, motion_atlas};
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;
-pub use trade::{drawn_error, motion_study, scaling, study};
+pub use trade::{LARGEST_ERROR, SMALLEST_ERROR, drawn_error, motion_study, scaling, study};

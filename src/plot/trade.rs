@@ -10,9 +10,9 @@ use crate::study::motion::{MotionStudy, REAL_TIME};
 use crate::study::{Measurement, Scaling, ScalingPoint, Study};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
-const SMALLEST_ERROR: f64 = 1e-3;
+pub const SMALLEST_ERROR: f64 = 1e-3;
 /// Errors above this are drawn at it: those of an iteration that diverges are off the picture.
-const LARGEST_ERROR: f64 = 1e3;
+pub const LARGEST_ERROR: f64 = 1e3;
 /// Width of a line.
 const WIDTH: f64 = 1.5;
 

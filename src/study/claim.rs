@@ -97,7 +97,7 @@ pub enum Claim {
         /// Distance, percent.
         off_by_percent: f64,
     },
-    /// The error of linear theory reaches a limit.
+    /// The load and the state at which the error of linear theory reaches a given percentage.
     LinearTheory(Departure),
     /// The exact beam buckles at this load factor.
     BeamBuckles(f64),
@@ -123,9 +123,9 @@ pub enum Claim {
     },
     /// Ranks of settings are undecided, because their errors differ by less than the reference's own error, percent.
     Undecided(f64),
-    /// Measured settings meet a demand, or none does.
+    /// A number of measured settings, possibly none, meets a demand.
     Suffices {
-        /// Demand.
+        /// Limits of error and time that the user asked for.
         demand: Demand,
         /// Number of settings that meet it.
         meeting: usize,
@@ -136,11 +136,11 @@ pub enum Claim {
         /// Number of settings as accurate as the chosen one, as far as the reference's own error tells.
         as_accurate: usize,
     },
-    /// An edit helps.
+    /// An edit of the scene leads to a result where this one is none, or is unstable.
     Helps(Advice),
 }
 
-/// Edit of a scene that helps.
+/// Edit of a scene that leads to a stable equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Advice {
@@ -176,7 +176,7 @@ impl From<&Claim> for Sentence {
                                 positive definite)"
                 .into(),
             Claim::Disturbance { rho, has_converged: true } if *rho > 1.0 => sentence!(
-                "%{disturbance}; it converged because nothing disturbs it, as in a bar pulled along its axis",
+                "%{disturbance}; it converged because nothing disturbs it, as in a bar loaded along its axis",
                 disturbance = rho_text(*rho)
             ),
             Claim::Disturbance { rho, .. } => rho_text(*rho),
@@ -408,7 +408,7 @@ impl Claim {
         let is_as_accurate = |m: &&Measurement| {
             m.converged && demand.time_is_met(m) && (m.error.bound() - chosen.error.bound()).abs() < own
         };
-        // The setting itself is one of them.
+        // The setting itself is one of them. The fastest is chosen by its time, which is decided.
         let as_accurate = match reason.starts_with("the most accurate") {
             true => study.measurements.iter().filter(is_as_accurate).count(),
             false => 1,
@@ -419,7 +419,7 @@ impl Claim {
 }
 
 impl PathSummary {
-    /// Returns jump, buckling and another end.
+    /// Returns the claims that the path jumps, buckles, or ends elsewhere than the result.
     pub fn claims(&self) -> impl Iterator<Item = Claim> {
         let (jump, buckling) = (self.jump.map(Claim::Jumps), self.buckling.map(Claim::Buckles));
         jump.into_iter().chain(buckling).chain(self.elsewhere.map(Claim::Elsewhere))

@@ -5,6 +5,8 @@ use std::fs;
 
 use crate::common::{ids_of, stderr, stdout, warpbeam, warpbeam_in};
 use warpbeam::scene::Analysis;
+use warpbeam::study::{Claim, LoadPath};
+use warpbeam::{Axis, ElementKind, Material, Scene};
 
 /// Returns the exit code and the text of `solve`.
 fn solve(args: &[&str]) -> (Option<i32>, String) {
@@ -70,6 +72,29 @@ fn inverted_elements_give_a_warning() {
     }
     let (_, json) = solve_object(&["article"]);
     assert!(!warnings(&json).iter().any(|said| said.contains("inverted")), "{json}");
+}
+
+/// An integrator that loses more than a tenth of the energy put in, and a pulse of few time steps, are noted.
+#[test]
+fn lost_energy_and_short_pulses_are_noted() {
+    let text = |args: &[&str]| stdout(&warpbeam(&[&["solve"][..], args].concat()));
+    let lossy = text(&["swing", "--set", "dynamics.integrator=implicit-euler"]);
+    assert!(lossy.contains("note: the integrator lost ") && lossy.contains("of the energy put in"), "{lossy}");
+    let usual = text(&["swing"]);
+    assert!(!usual.contains("note: the integrator"), "{usual}");
+    let coarse = text(&["flick", "--set", "dynamics.time_step=0.04"]);
+    assert!(coarse.contains("lasts 100 ms, only 2.5 time steps"), "{coarse}");
+}
+
+/// A support whose motion needs no force has no limit load: its reaction is only rounding error.
+#[test]
+fn a_support_without_a_reaction_has_no_limit_load() {
+    let beam = Scene::beam(2.0, 0.1).with_cells(40, 2).with_element(ElementKind::Q4);
+    let beam = beam.with_material(Material::new(210e9, 0.3)).support("left", &[Axis::X]).moment("right", 2e5);
+    let scene = beam.support([1.0, 0.05], &[Axis::Y]).moved([0.0, -0.005], 0.0);
+    let path = LoadPath::of(&scene).unwrap();
+    let claims = Claim::of_path(&scene, &path);
+    assert!(claims.iter().all(|claim| claim.id() != "limit_load"), "{claims:?}");
 }
 
 /// A motion that gains energy from its integrator is not a success, and the text names the time step. Losses and small

@@ -243,7 +243,10 @@ fn rho_is_stated_at_equilibria_only() {
         assert!(json["fixed_point_rho"].is_null() && json["stable"].is_null(), "{args:?}: {json}");
     }
     let text = text(&["solve", "stretch", "--set", "solver.method=warped"]);
-    assert!(text.contains("a disturbance grows by ρ = 18.79") && text.contains("it converged because"), "{text}");
+    assert!(
+        text.contains("an iteration multiplies a disturbance by ρ = 18.79") && text.contains("it converged because"),
+        "{text}"
+    );
     assert!(!text.contains("cannot converge"), "{text}");
 }
 

@@ -6,7 +6,7 @@ use egui::Color32;
 use crate::app::language::{count, fill, percent, said, tr};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
-use crate::plot::drawn_error;
+use crate::plot::{LARGEST_ERROR, drawn_error};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
 use crate::study::{Demand, Measurement, MotionStudy, Study};
@@ -67,6 +67,14 @@ impl Measured {
         }
     }
 
+    /// Returns the error bound of the reference solution, percent.
+    pub(crate) fn own_error_percent(&self) -> f64 {
+        match self {
+            Self::Rest(study) => study.against.own_error_percent,
+            Self::Motion(study) => study.reference.error_percent,
+        }
+    }
+
     /// Returns the error bound of the reference solution, percent, if it is too large to judge whether a demand is met.
     pub(crate) fn too_coarse_for(&self, demand: Demand) -> Option<f64> {
         match self {
@@ -95,7 +103,7 @@ impl Measured {
     pub(crate) fn drawn_error(&self, choice: &Choice) -> f64 {
         match (self, choice) {
             (Self::Rest(study), Choice::Rest(m)) => drawn_error(study, m),
-            _ => self.error_percent(choice).min(1e3),
+            _ => self.error_percent(choice).min(LARGEST_ERROR),
         }
     }
 

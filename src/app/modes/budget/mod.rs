@@ -5,8 +5,11 @@ pub(crate) mod study_task;
 
 use crate::app::session::facts::without_settings;
 use crate::app::widgets::plot::{X_AXIS, marker, segments};
-use egui::{Button, Context, FontId, ProgressBar, RichText, ScrollArea, Ui};
-use egui_plot::{AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points, VLine};
+use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, Polygon, Text,
+    VLine,
+};
 
 use crate::app::action::Action;
 use crate::app::language::{fill, joined, percent, said, tr};
@@ -17,8 +20,9 @@ use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
-use crate::format::{engineering, number, three_digits};
+use crate::format::{bound_percent, engineering, number, three_digits};
 use crate::method::METHODS;
+use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::Sentence;
 use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
@@ -258,10 +262,13 @@ fn settings(
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
         let best = meeting.first().copied();
-        let apply = ui.add_enabled(best.is_some(), Button::new(tr("Apply the fastest")));
-        let apply = apply
-            .on_hover_text(tr("Use the fastest setting that meets both limits"))
-            .on_disabled_hover_text(tr("No measured setting meets both limits"));
+        let apply = ui.add_enabled(best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
+        let apply = apply.on_hover_text(tr("Use the fastest setting that meets both limits")).on_disabled_hover_text(
+            tr(match budget.current {
+                true => "No measured setting meets both limits",
+                false => "The body or its load has changed since.",
+            }),
+        );
         if let (true, Some(best)) = (apply.clicked(), best) {
             actions.push(best.action(budget.scene));
         }
@@ -281,8 +288,9 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let text = format!("{:>8} {:>8}  {}", milliseconds(m), percent(error(m)), m.text());
-            let label = ui.add(
+            let text = format!("{:>8} {:>8}  {}", milliseconds(m), bound(error(m)), m.text());
+            let label = ui.add_enabled(
+                budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
@@ -296,6 +304,11 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
 /// Formats the time of a solve or of a frame with three digits.
 fn milliseconds(m: &Choice) -> String {
     engineering(three_digits(1e-3 * m.milliseconds()), "s")
+}
+
+/// Formats the bound of an error, percent.
+fn bound(error: f64) -> String {
+    tr(&bound_percent(error)).to_owned()
 }
 
 /// Returns a tick at every power of ten.
@@ -334,6 +347,8 @@ fn legend(ui: &mut Ui, moves: bool) {
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     /// Space for the tick labels and the title of the axis, points.
     const BUDGET_Y_AXIS: f32 = 62.0;
+    /// Space beyond the outermost points, in decades.
+    const EDGE: f64 = 0.2;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
@@ -342,6 +357,11 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         let distance = |m: &Choice| (place(m)[0] - x).hypot(place(m)[1] - y);
         budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
+    let [x, y] = [(0, [-2.5, 2.5]), (1, [SMALLEST_ERROR.log10(), 2.0])].map(|(axis, usual)| {
+        let places = budget.choices.iter().map(|choice| place(choice)[axis]);
+        let [low, high] = places.fold(usual, |[low, high], v| [low.min(v), high.max(v)]);
+        [low - EDGE, high + EDGE]
+    });
     let time = match budget.scene.analysis {
         Analysis::Static => "time of a solve, ms",
         Analysis::Dynamic => "time of a frame at 60 Hz, ms",
@@ -362,14 +382,15 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), percent(error(m)))),
+                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), bound(error(m)))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
-        .include_x(-2.5)
-        .include_x(2.5)
-        .include_y(-3.0)
-        .include_y(2.0)
+        .include_x(x[0])
+        .include_x(x[1])
+        .include_y(y[0])
+        .include_y(y[1])
+        .set_margin_fraction(egui::Vec2::ZERO)
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -381,10 +402,18 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                     groups.push(group);
                 }
             }
+            if let Some(own) = budget.study.map(Measured::own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
+                own_error_zone(plot, &palette, x, [y[0], own.log10()]);
+            }
+            // Larger errors are drawn at the edge, as outlines.
+            let is_off = |m: &Choice| error(m) > LARGEST_ERROR;
             for group in groups {
-                let points: Vec<[f64; 2]> = budget.choices.iter().filter(|m| m.group() == group).map(place).collect();
-                let (shape, _) = marker(group.element());
-                plot.points(Points::new(group.name(), points).color(group.color(&palette)).shape(shape).radius(3.5));
+                for off in [false, true] {
+                    let own = budget.choices.iter().filter(|m| m.group() == group && is_off(m) == off);
+                    let (shape, _) = marker(group.element());
+                    let points = Points::new(group.name(), own.map(place).collect::<Vec<_>>());
+                    plot.points(points.color(group.color(&palette)).shape(shape).radius(3.5).filled(!off));
+                }
             }
             let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(|m| place(&m)).collect();
             for piece in segments(&front) {
@@ -403,6 +432,18 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 plot.points(ring);
             }
         });
+}
+
+/// Shades the errors that the reference's own error hides, in these ranges of the logarithms of times and errors.
+fn own_error_zone(plot: &mut PlotUi<'_>, palette: &Palette, [left, right]: [f64; 2], [low, own]: [f64; 2]) {
+    /// Distance of the text from the edge, decades.
+    const INSET: f64 = 0.06;
+    let corners = vec![[left, low], [right, low], [right, own], [left, own]];
+    let zone = Polygon::new("", PlotPoints::from(corners)).allow_hover(false);
+    plot.polygon(zone.fill_color(palette.secondary.gamma_multiply(0.18)).stroke(Stroke::NONE));
+    let at = PlotPoint::new(right - INSET, 0.5 * (low + own));
+    let text = RichText::new(tr("the reference's own error")).small().color(palette.secondary);
+    plot.text(Text::new("", at, text).anchor(Align2::RIGHT_CENTER).allow_hover(false));
 }
 
 #[cfg(test)]
