@@ -23,8 +23,9 @@ pub(crate) trait PathEquations {
     /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components to load factor λ.
     fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, factor: f64);
 
-    /// Sets the parts of a state that follow from its unknowns, such as the rotations of elements.
-    fn complete(&self, state: &mut Self::State);
+    /// Sets the parts of a state that follow from its unknowns, such as the rotations of elements; a state of unknowns
+    /// alone has none.
+    fn complete(&self, _state: &mut Self::State) {}
 
     /// Linearizes the equations at a state and load factor: writes Newton's correction at fixed λ into `correction` and
     /// dx/dλ at fixed residual into `rate`. Returns the number of negative eigenvalues of the tangent matrix, or `None`

@@ -297,8 +297,6 @@ impl PathEquations for Shooting<'_> {
     }
 
     /// The number of unstable modes is known modulo 2 only, from the sign of the determinant.
-    fn complete(&self, _state: &mut Self::State) {}
-
     fn linearize(
         &mut self,
         state: &mut Self::State,

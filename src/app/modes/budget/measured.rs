@@ -77,13 +77,8 @@ impl Measured {
 
     /// Returns the error bound of the reference solution, percent, if it is too large to judge whether a demand is met.
     pub(crate) fn too_coarse_for(&self, demand: Demand) -> Option<f64> {
-        match self {
-            Self::Rest(study) => (!study.can_judge(demand)).then_some(study.against.own_error_percent),
-            Self::Motion(study) => {
-                let own = study.reference.error_percent;
-                demand.max_error_percent.filter(|most| own >= *most).map(|_| own)
-            }
-        }
+        let own = self.own_error_percent();
+        demand.max_error_percent.filter(|most| own >= *most).map(|_| own)
     }
 
     /// Returns the name of the reference solution.
