@@ -1,6 +1,6 @@
-//! Benchmarks of rotation, assembly, factorization, solve, edits and a whole iteration at four sizes of the same
+//! Benchmarks of setting up, rotation, assembly, factorization, solve, edits and a whole iteration at four sizes of the same
 //! cantilever. Prints the time of a sweep, in nanoseconds per element, and the time of an iteration relative to a plain
-//! loop of sweep, factorization and solve.
+//! loop of sweep, factorization and solve, and to faer's own factorization and solve of the same matrix.
 //!
 //! `cargo bench` reports medians of this machine; do not compare them with those of another machine.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
@@ -9,9 +9,13 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par, Side};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::MethodKind;
-use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
+use warpbeam::assembly::{Forces, Kinematics, Matrix, Pattern, Problem, System};
 use warpbeam::element::{ELEMENTS, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::{Rotation, polar};
@@ -32,6 +36,9 @@ fn sizes() -> Vec<Scene> {
 
 fn stages(c: &mut Criterion) {
     for scene in sizes() {
+        c.bench_function(&format!("set up/{}", System::new(&scene).unwrap().dofs()), |b| {
+            b.iter(|| System::new(black_box(&scene)).unwrap());
+        });
         let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
         let system = problem.system();
         let dofs = system.dofs();
@@ -118,12 +125,77 @@ fn time(work: impl FnOnce()) -> Duration {
     start.elapsed()
 }
 
+/// faer's Cholesky factorization with its own choices of ordering and kind of factor, of a matrix in the numbering of
+/// the mesh.
+struct Faer {
+    symbolic: SymbolicCholesky<usize>,
+    structure: SymbolicSparseColMat<usize>,
+    /// Index of every value in the values of our matrix.
+    source: Vec<usize>,
+    values: Vec<f64>,
+    factor: Vec<f64>,
+    memory: MemBuffer,
+}
+
+impl Faer {
+    fn new(pattern: &Pattern) -> Self {
+        let mut place = vec![0; pattern.dofs()];
+        let mut order: Vec<usize> = (0..pattern.dofs()).collect();
+        order.sort_unstable_by_key(|&free| pattern.free()[free]);
+        order.iter().enumerate().for_each(|(i, &free)| place[free] = i);
+        let mut entries = Vec::new();
+        for (column, bounds) in pattern.column_starts().windows(2).enumerate() {
+            for i in bounds[0]..bounds[1] {
+                let (a, b) = (place[pattern.row_indices()[i]], place[column]);
+                entries.push((a.min(b), a.max(b), i));
+            }
+        }
+        entries.sort_unstable();
+        let n = pattern.dofs();
+        let starts = (0..=n).map(|column| entries.partition_point(|&(c, ..)| c < column)).collect();
+        let rows = entries.iter().map(|&(_, row, _)| row).collect();
+        let structure = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
+        let (lower, amd) = (Side::Lower, SymmetricOrdering::Amd);
+        let symbolic = factorize_symbolic_cholesky(structure.as_ref(), lower, amd, Default::default()).unwrap();
+        let memory = MemBuffer::new(StackReq::any_of(&[
+            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
+            symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
+        ]));
+        let (source, factor) = (entries.iter().map(|&(.., i)| i).collect(), vec![0.0; symbolic.len_val()]);
+        Self { symbolic, values: vec![0.0; entries.len()], structure, source, factor, memory }
+    }
+
+    fn set(&mut self, matrix: &Matrix) {
+        self.values.iter_mut().zip(&self.source).for_each(|(value, &i)| *value = matrix.values()[i]);
+    }
+
+    fn factorize_and_solve(&mut self, b: &mut [f64]) {
+        let matrix = SparseColMatRef::new(self.structure.as_ref(), &self.values);
+        let (memory, options) = (MemStack::new(&mut self.memory), Default::default());
+        let factor = self.symbolic.factorize_numeric_llt(
+            &mut self.factor,
+            matrix,
+            Side::Lower,
+            options,
+            Par::Seq,
+            memory,
+            Default::default(),
+        );
+        let (n, memory) = (b.len(), MemStack::new(&mut self.memory));
+        let b = MatMut::from_column_major_slice_mut(b, n, 1);
+        factor.unwrap().solve_in_place_with_conj(Conj::No, b, Par::Seq, memory);
+    }
+}
+
 /// Prints the time of one sweep with rotations and forces, in nanoseconds per element, and the time of the first
-/// iteration from rest relative to a plain loop. The plain loop factorizes and solves with the same ordering, sweeps,
-/// and does nothing else. The two are timed alternately.
+/// iteration from rest relative to a plain loop and to faer's own factorization and solve. The plain loop factorizes
+/// and solves with the same ordering, sweeps, and does nothing else. The three are timed alternately.
 fn sweeps(_: &mut Criterion) {
-    println!("one sweep, ns an element; an iteration over a plain loop of factorization, solve and sweep");
-    println!("element  unknowns  force only       A   A + G  warped / plain  newton / plain");
+    println!("one sweep, ns an element; an iteration over a plain loop of factorization, solve and sweep, and over");
+    println!("faer's own factorization and solve of the same matrix, without a sweep");
+    println!(
+        "element  unknowns  force only       A   A + G  warped / plain  newton / plain  warped / faer  newton / faer"
+    );
     for (element, mut scene) in ELEMENTS.iter().flat_map(|e| sizes().into_iter().map(move |s| (e, s))) {
         scene.set_element(element.kind);
         let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
@@ -143,11 +215,12 @@ fn sweeps(_: &mut Criterion) {
         });
         let mut factor = Factor::new(system.symbolic().unwrap()).unwrap();
         let mut free = vec![0.0; dofs];
+        let mut faer = Faer::new(system.pattern());
         let ratio =
             [(MethodKind::Warped, Tangent::WARPED), (MethodKind::Newton, Tangent::EXACT)].map(|(method, tangent)| {
                 scene.solver.method = method;
                 let mut simulation = Simulation::new(&scene).unwrap();
-                let (mut ours, mut plain) = (Vec::new(), Vec::new());
+                let (mut ours, mut plain, mut faers) = (Vec::new(), Vec::new(), Vec::new());
                 for _ in 0..repetitions {
                     simulation.reset();
                     ours.push(time(|| {
@@ -163,6 +236,8 @@ fn sweeps(_: &mut Criterion) {
                         factor.solve_in_place(&mut free);
                         system.pattern().add_free(&free, 1.0, &mut u);
                     });
+                    faer.set(&matrix);
+                    faers.push(time(|| faer.factorize_and_solve(&mut free)));
                     state = state.with_displacement(u).unwrap();
                     let matrix = Some((tangent, &mut matrix));
                     let sweep = time(|| {
@@ -170,11 +245,16 @@ fn sweeps(_: &mut Criterion) {
                     });
                     plain.push(solve + sweep);
                 }
-                median(ours).as_secs_f64() / median(plain).as_secs_f64()
+                let ours = median(ours).as_secs_f64();
+                [plain, faers].map(|times| ours / median(times).as_secs_f64())
             });
         let [force, a, a_and_g] = sweep;
-        let [warped, newton] = ratio;
-        println!("{:7} {dofs:9} {force:11.1} {a:7.1} {a_and_g:7.1} {warped:15.3} {newton:15.3}", element.id);
+        let [[warped, warped_faer], [newton, newton_faer]] = ratio;
+        println!(
+            "{:7} {dofs:9} {force:11.1} {a:7.1} {a_and_g:7.1} {warped:15.3} {newton:15.3} {warped_faer:14.3} \
+             {newton_faer:14.3}",
+            element.id
+        );
     }
 }
 

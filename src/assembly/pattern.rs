@@ -4,13 +4,16 @@ use nalgebra::Vector2;
 
 use crate::displacement::Displacement;
 use crate::mesh::Mesh;
+use crate::solver::elimination_order;
 
 /// Marker of a fixed unknown.
 const FIXED: u32 = u32::MAX;
 
 /// Lower triangle of a symmetric matrix over the free unknowns, in compressed columns with sorted rows.
 ///
-/// An unknown is 2 · node + axis. Fixed unknowns are eliminated (in the article's beam, 24 unknowns become 20).
+/// An unknown is 2 · node + axis. Fixed unknowns are eliminated (in the article's beam, 24 unknowns become 20). The free
+/// ones are numbered in the order in which the factorization eliminates them, so that it permutes neither matrix nor
+/// vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     column_starts: Vec<usize>,
@@ -28,14 +31,6 @@ impl Pattern {
     /// Returns the pattern of a mesh whose unknowns `fixed` are eliminated. `groups` are sets of nodes that are coupled
     /// although no element contains all of them.
     pub(super) fn new(mesh: &Mesh, fixed: &[bool], groups: &[Vec<u32>]) -> Self {
-        let mut free = Vec::new();
-        let mut free_of = vec![FIXED; fixed.len()];
-        for ((unknown, fixed), slot) in (0..).zip(fixed).zip(&mut free_of) {
-            if !fixed {
-                *slot = free.len() as u32;
-                free.push(unknown);
-            }
-        }
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); mesh.nodes().len()];
         for coupled in mesh.elements().chain(groups.iter().map(Vec::as_slice)) {
             for &a in coupled {
@@ -46,13 +41,24 @@ impl Pattern {
             list.sort_unstable();
             list.dedup();
         }
+        let mut free = Vec::new();
+        let mut free_of = vec![FIXED; fixed.len()];
+        for node in elimination_order(&neighbours) {
+            for unknown in [2 * node, 2 * node + 1] {
+                if !fixed[unknown as usize] {
+                    free_of[unknown as usize] = free.len() as u32;
+                    free.push(unknown);
+                }
+            }
+        }
         let mut column_starts = vec![0];
         let mut row_indices = Vec::new();
         for (column, &unknown) in free.iter().enumerate() {
-            // Sorted neighbours have sorted unknowns, and these have sorted free numbers.
             let rows = neighbours[unknown as usize / 2].iter().flat_map(|&n| [2 * n, 2 * n + 1]);
             let rows = rows.map(|unknown| free_of[unknown as usize]).filter(|&row| row != FIXED);
+            let start = row_indices.len();
             row_indices.extend(rows.map(|row| row as usize).filter(|&row| row >= column));
+            row_indices[start..].sort_unstable();
             column_starts.push(row_indices.len());
         }
         let mask = fixed.chunks_exact(2).map(|f| Vector2::new(f[0], f[1]).map(|f| if f { 0.0 } else { 1.0 }));

@@ -122,7 +122,7 @@ impl System {
         Self::for_display(scene)?.analysed()
     }
 
-    /// Meshes a scene as [`Self::new`]; the elimination order, which takes most of the time, is computed on first use.
+    /// Meshes a scene as [`Self::new`]; the sparsity of the factor is computed on first use.
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
@@ -249,7 +249,7 @@ impl System {
         self.slots.get_or_init(|| self.mesh().elements().flat_map(|nodes| self.pattern.block_slots(nodes)).collect())
     }
 
-    /// Returns the symbolic factorization, with the elimination order.
+    /// Returns the symbolic factorization.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].

@@ -1,18 +1,19 @@
 //! Search for an equilibrium by iteration.
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
-use crate::element::Tangent;
+use crate::element::{Tangent, UNIT};
 use crate::method::{
     AutoReport, Certificate, Iteration, IterationError, Method, PathEvents, Reason, Restart, Tolerances, Verdict,
     Workspace, fixed_point_rho, is_stable, measure,
 };
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
-use crate::state::State;
+use crate::state::{State, largest};
 use crate::timings::{Timings, timed};
 
 /// Search for an equilibrium with a method.
@@ -362,15 +363,22 @@ impl Search {
         wanted: (Option<Tangent>, f64),
         timings: &mut Timings,
     ) {
-        self.residual = measure(
-            &body.problem,
-            &mut body.state,
-            (self.method.kinematics(), follow),
-            wanted,
-            &mut self.forces,
-            workspace,
-            timings,
-        );
+        let rotate = (self.method.kinematics(), follow);
+        let Body { problem, state, .. } = body;
+        self.residual = measure(problem, state, rotate, wanted, &mut self.forces, workspace, timings);
+        if self.residual > 0.0 && self.is_at_rest_within_rounding(problem, state) {
+            // Both the residual and the forces that it is relative to shrink with the displacement.
+            *state = problem.system().at_rest();
+            self.residual = measure(problem, state, rotate, wanted, &mut self.forces, workspace, timings);
+        }
+    }
+
+    /// Returns `true` if nothing loads the body and its nodes are where they are at rest, within the unit roundoff of
+    /// the body's size.
+    fn is_at_rest_within_rounding(&self, problem: &Problem, state: &State) -> bool {
+        self.forces.external.iter().all(|f| *f == Vector2::zeros())
+            && !problem.supports().move_the_body()
+            && largest(&state.displacement) <= UNIT * problem.system().size()
     }
 
     /// Implements [`super::Simulation::certify`].

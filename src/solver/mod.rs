@@ -6,11 +6,11 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
+use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use thiserror::Error;
@@ -49,17 +49,64 @@ enum FactorKind {
     Indefinite,
 }
 
-/// Elimination order and sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
+/// Returns an order of elimination with few entries in the factor (AMD: Amestoy, Davis and Duff 1996) for the nodes of a
+/// graph, each of which is given by its sorted neighbours. Ordering nodes instead of their two unknowns gives as few
+/// entries and takes a quarter of the entries to read.
+pub(crate) fn elimination_order(neighbours: &[Vec<u32>]) -> Vec<u32> {
+    let n = neighbours.len();
+    let mut column_starts = vec![0];
+    let mut row_indices = Vec::new();
+    for list in neighbours {
+        row_indices.extend_from_slice(list);
+        column_starts.push(row_indices.len() as u32);
+    }
+    let entries = row_indices.len();
+    let graph = SymbolicSparseColMat::new_checked(n, n, column_starts, None, row_indices);
+    let (mut order, mut places) = (vec![0; n], vec![0; n]);
+    let memory = MemBuffer::try_new(amd::order_scratch::<u32>(n, entries));
+    let ordered = memory.is_ok_and(|mut memory| {
+        let memory = MemStack::new(&mut memory);
+        amd::order(&mut order, &mut places, graph.as_ref(), amd::Control::default(), memory).is_ok()
+    });
+    // Any order is valid.
+    if ordered { order } else { (0..n as u32).collect() }
+}
+
+/// Sparsity of the factors of a pattern. Computed once and shared: a clone copies a pointer.
 #[derive(Clone)]
 pub struct Symbolic(Arc<SymbolicAnalysis>);
 
 struct SymbolicAnalysis {
+    /// Lower triangle of the matrix.
     structure: SymbolicSparseColMat<usize>,
+    /// Upper triangle of the matrix, which a simplicial factorization reads.
+    upper: Option<UpperTriangle>,
     /// Sparsity of L Lᵀ; simplicial if that is faster.
     definite: SymbolicCholesky<usize>,
     /// Sparsity of L B Lᵀ, if it differs: simplicial factors do not pivot.
     indefinite: Option<SymbolicCholesky<usize>>,
     price: f64,
+}
+
+/// Upper triangle of a symmetric matrix.
+struct UpperTriangle {
+    structure: SymbolicSparseColMat<usize>,
+    /// Index of every value in the values of the lower triangle.
+    sources: Vec<u32>,
+}
+
+impl UpperTriangle {
+    fn of(lower: &SymbolicSparseColMat<usize>) -> Result<Self, SolverError> {
+        // The columns of the upper triangle are the rows of the lower one, in which faer keeps the order of the columns.
+        let structure = lower.as_ref().transpose().to_col_major().map_err(|_| SolverError::TooLarge)?;
+        let mut sources = vec![0; lower.row_idx().len()];
+        let mut next = structure.col_ptr()[..structure.ncols()].to_vec();
+        for (source, &row) in (0..).zip(lower.row_idx()) {
+            sources[next[row]] = source;
+            next[row] += 1;
+        }
+        Ok(Self { structure, sources })
+    }
 }
 
 impl SymbolicAnalysis {
@@ -78,17 +125,18 @@ impl std::fmt::Debug for Symbolic {
 }
 
 impl Symbolic {
-    /// Orders (AMD: Amestoy, Davis and Duff 1996) and analyses the lower triangle of a symmetric matrix, in compressed
-    /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices`
-    /// the row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond;
-    /// faer's own choice is up to 2.6 times slower on these meshes.
+    /// Analyses the lower triangle of a symmetric matrix, whose unknowns are eliminated in their order, in compressed
+    /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices` the
+    /// row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own
+    /// choice is up to 2.6 times slower on these meshes.
     ///
     /// # Errors
     /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
-        let cholesky = |threshold| symbolic_cholesky(&structure, threshold);
+        let upper = UpperTriangle::of(&structure)?;
+        let cholesky = |threshold| symbolic_cholesky(&upper.structure, threshold);
         let supernodal = cholesky(SupernodalThreshold::FORCE_SUPERNODAL)?;
         let (definite, indefinite) = if n <= MAX_SIMPLICIAL {
             let simplicial = cholesky(SupernodalThreshold::FORCE_SIMPLICIAL)?;
@@ -97,7 +145,8 @@ impl Symbolic {
             (supernodal, None)
         };
         let price = price(&definite);
-        Ok(Self(Arc::new(SymbolicAnalysis { structure, definite, indefinite, price })))
+        let upper = indefinite.is_some().then_some(upper);
+        Ok(Self(Arc::new(SymbolicAnalysis { structure, upper, definite, indefinite, price })))
     }
 
     /// Returns the number of rows of the matrix.
@@ -114,14 +163,15 @@ const SPARSE: usize = 14;
 /// Number of unknowns above which a simplicial factor is not tried, because it has more entries.
 const MAX_SIMPLICIAL: usize = 2500;
 
-/// Computes the sparsity of a factor; `threshold` forces it to be simplicial or supernodal.
+/// Computes the sparsity of a factor of the matrix with this upper triangle; `threshold` forces it to be simplicial or
+/// supernodal.
 fn symbolic_cholesky(
-    structure: &SymbolicSparseColMat<usize>,
+    upper: &SymbolicSparseColMat<usize>,
     threshold: SupernodalThreshold,
 ) -> Result<SymbolicCholesky<usize>, SolverError> {
     let params = CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
-    let ordering = SymmetricOrdering::Amd;
-    factorize_symbolic_cholesky(structure.as_ref(), Side::Lower, ordering, params).map_err(|_| SolverError::TooLarge)
+    let ordering = SymmetricOrdering::Identity;
+    factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, ordering, params).map_err(|_| SolverError::TooLarge)
 }
 
 /// Returns the numbers of operations of a factorization and of a back substitution.
@@ -164,6 +214,8 @@ fn price(symbolic: &SymbolicCholesky<usize>) -> f64 {
 pub struct Factor {
     symbolic: Symbolic,
     values: Vec<f64>,
+    /// Values of the matrix's upper triangle, for a simplicial factorization.
+    upper: Vec<f64>,
     /// Data of the indefinite factor apart from L: B's subdiagonal, and pivots within supernodes.
     subdiagonal: Vec<f64>,
     pivots: Vec<usize>,
@@ -201,6 +253,7 @@ impl Factor {
         Ok(Self {
             symbolic: symbolic.clone(),
             values,
+            upper: symbolic.0.upper.as_ref().map_or_else(Vec::new, |upper| vec![0.0; upper.sources.len()]),
             subdiagonal: vec![0.0; n],
             pivots: vec![0; n],
             inverse_pivots: vec![0; n],
@@ -221,13 +274,19 @@ impl Factor {
     /// [`SolverError::NotPositiveDefinite`]; the factor is then invalid until the next success.
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
         let analysis = &*self.symbolic.0;
-        let matrix = SparseColMatRef::new(analysis.structure.as_ref(), matrix);
+        let (structure, matrix, side) = match &analysis.upper {
+            Some(upper) => {
+                self.upper.iter_mut().zip(&upper.sources).for_each(|(value, &source)| *value = matrix[source as usize]);
+                (&upper.structure, &*self.upper, Side::Upper)
+            }
+            None => (&analysis.structure, matrix, Side::Lower),
+        };
         self.kind = FactorKind::PositiveDefinite;
         let symbolic = analysis.symbolic(self.kind);
         let factorized = symbolic.factorize_numeric_llt(
             &mut self.values[..symbolic.len_val()],
-            matrix,
-            Side::Lower,
+            SparseColMatRef::new(structure.as_ref(), matrix),
+            side,
             LltRegularization::default(),
             Par::Seq,
             MemStack::new(&mut self.memory),

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::{scene, scene_with, solved};
+use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::{Load, LoadId, Mesh, MethodKind, Scene, Simulation, Status};
 
@@ -42,6 +43,25 @@ fn edits_of_loads_keep_the_state() {
         assert!(Arc::ptr_eq(&system, simulation.system()), "{what}");
         assert_eq!(*simulation.solve(), Status::Converged);
         assert!((simulation.probe("tip").unwrap() - before.probe("tip").unwrap()).norm() < 1e-6);
+    }
+}
+
+/// A body without load returns to rest exactly, from any state and with every method and element: near rest the residual
+/// shrinks with the forces that it is relative to, so that a relative residual never ends the iteration.
+#[test]
+fn a_body_whose_loads_vanish_returns_to_rest() {
+    for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e.kind, m.kind))) {
+        for (id, force) in [("cantilever", [0.0, -3000.0]), ("cantilever", [900.0, -1300.0]), ("article", [5e3, 2e4])] {
+            let mut start = scene(id);
+            start.set_element(element);
+            start.solver.method = method;
+            let mut body = Simulation::new(&start).unwrap();
+            body.set_force(LoadId::nth(0), force).unwrap();
+            body.solve();
+            body.set_force(LoadId::nth(0), [0.0; 2]).unwrap();
+            assert_eq!(*body.solve(), Status::Converged, "{id} {element:?} {method:?} {force:?}");
+            assert_eq!((largest(&body), body.residual()), (0.0, 0.0), "{id} {element:?} {method:?} {force:?}");
+        }
     }
 }
 
