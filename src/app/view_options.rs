@@ -17,6 +17,8 @@ pub(crate) enum Mode {
     Compare,
     /// Mode with a plot of the error of measured settings against their time, and the settings within limits of both.
     Budget,
+    /// Loads up to which each method and element holds.
+    Limits,
 }
 
 /// Entry of a mode in the toolbar.
@@ -43,6 +45,11 @@ pub(crate) const MODES: &[ModeEntry] = &[
         mode: Mode::Budget,
         name: "Budget",
         about: "Error against time on this machine, and the fastest setting within limits (B)",
+    },
+    ModeEntry {
+        mode: Mode::Limits,
+        name: "Limits",
+        about: "The loads up to which each method and element is within 1 % and 5 %, and converges (M)",
     },
 ];
 

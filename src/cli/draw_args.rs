@@ -42,6 +42,9 @@ pub(super) struct ShotArgs {
     /// Add the plot of error against time, measured now.
     #[arg(long, conflicts_with = "curve")]
     pub study: bool,
+    /// Add the map of the loads up to which each method and element holds, as the window's Limits mode shows it.
+    #[arg(long, conflicts_with_all = ["curve", "study", "learn", "motion", "compare"])]
+    pub limits: bool,
     /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene. With
     /// --study the last one contains its table.
     #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "motion"])]

@@ -9,10 +9,10 @@ use super::args::LimitsArgs;
 use super::outputs::Outputs;
 use super::progress::Watch;
 use super::{CliError, json, named, simulate, text};
-use crate::format::{engineering, three_digits};
 use crate::plot;
-use crate::scene;
-use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE};
+use crate::scene::{self, Scene};
+use crate::study::figure::LoadAxis;
+use crate::study::limits::{GOOD, LimitPoint, MethodLimits, RANGE, Strip, USABLE, load_text};
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
@@ -25,20 +25,21 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
     outputs.write_table(|| table(&limits))?;
-    outputs.write_picture(|| Ok(plot::limits(&limits)))?;
-    text::print(&if json { as_json(&limits) } else { summary(&limits) })?;
+    outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
+    text::print(&if json { as_json(&limits, &scene) } else { summary(&limits, &scene) })?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn summary(limits: &MethodLimits) -> String {
-    let load = |factor: f64| engineering(three_digits(factor * limits.axis.full), limits.axis.unit);
-    let ends = [limits.reference.first(), limits.reference.last()].map(|end| end.map_or(0.0, |(factor, _)| *factor));
-    let [from, to] = ends.map(load);
+fn summary(limits: &MethodLimits, scene: &Scene) -> String {
+    let axis = LoadAxis::of(scene);
+    let load = |factor: f64| load_text(&axis, factor);
     let known = limits.reference.iter().filter(|(_, u)| u.is_some()).count();
     let mut text = format!(
-        "{}: {} from {from} to {to}, {} in the scene; the reference solution is known at {known} of {} loads\n\n",
-        limits.scene,
-        limits.axis.name,
+        "{}: {} from {} to {}, {} in the scene; the reference solution is known at {known} of {} loads\n\n",
+        scene.name,
+        axis.name,
+        load(RANGE[0]),
+        load(RANGE[1]),
         load(1.0),
         limits.reference.len()
     );
@@ -48,20 +49,8 @@ fn summary(limits: &MethodLimits) -> String {
     head.iter().for_each(|head| _ = write!(text, "  {head:>15}"));
     text.push('\n');
     for strip in &limits.strips {
-        let within = |percent: f64| match (strip.within(percent), strip.last_known()) {
-            (Some(0.0), _) => format!("not at {from}"),
-            (Some(factor), _) => load(factor),
-            (None, Some((factor, _))) => format!("at least {}", load(factor)),
-            (None, None) => "not known".to_owned(),
-        };
-        let converges = match strip.ends_at {
-            Some(0.0) => "nowhere".to_owned(),
-            Some(factor) => load(factor),
-            None => format!("at least {to}"),
-        };
-        let law = strip.law_ends_at().map_or_else(|| "–".to_owned(), |factor| format!("from {}", load(factor)));
         let _ = write!(text, "{:<11}", format!("{} {}", strip.element.id(), strip.method.id()));
-        [within(GOOD), within(USABLE), converges, law].iter().for_each(|cell| _ = write!(text, "  {cell:>15}"));
+        strip.words(&axis).iter().for_each(|cell| _ = write!(text, "  {:>15}", cell.to_string()));
         text.push('\n');
     }
     text
@@ -83,7 +72,8 @@ fn table(limits: &MethodLimits) -> String {
     text
 }
 
-fn as_json(limits: &MethodLimits) -> String {
+fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
+    let axis = LoadAxis::of(scene);
     let strip = |strip: &Strip| {
         let within = |percent: f64| strip.within(percent).map(json::number);
         json!({
@@ -98,10 +88,10 @@ fn as_json(limits: &MethodLimits) -> String {
     };
     let reference = |(factor, u): &(f64, Option<nalgebra::Vector2<f64>>)| json!({ "load_factor": json::number(*factor), "displacement": u.map(json::pair) });
     let object = json!({
-        "scene": limits.scene,
-        "load": limits.axis.name.to_string(),
-        "unit": limits.axis.unit,
-        "full_load": json::number(limits.axis.full),
+        "scene": scene.name,
+        "load": axis.name.to_string(),
+        "unit": axis.unit,
+        "full_load": json::number(axis.full),
         "reference": limits.reference.iter().map(reference).collect::<Value>(),
         "strips": limits.strips.iter().map(strip).collect::<Value>(),
     });

@@ -14,12 +14,26 @@ use crate::render;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs { scene, output, size, no_panel, curve, study, learn, motion, compare, theme, language, adapter } =
-        args;
+    let ShotArgs {
+        scene,
+        output,
+        size,
+        no_panel,
+        curve,
+        study,
+        limits,
+        learn,
+        motion,
+        compare,
+        theme,
+        language,
+        adapter,
+    } = args;
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
     let (panel, adapter) = (!no_panel, adapter.adapter);
-    let options = app::ShotOptions { size, panel, curve, study, learn, motion, compare, theme, language, adapter };
+    let options =
+        app::ShotOptions { size, panel, curve, study, limits, learn, motion, compare, theme, language, adapter };
     check_suffix(&output, &[".png"], ".png")?;
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
@@ -33,6 +47,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         false,
         "it measures solves; for a motion, use `warpbeam study`",
     )?;
+    fits("--limits", options.limits, false, "limits are those of equilibria")?;
     let watch = Watch::new();
     let shot = app::shot(source, scene, simulation, &options, &output, &|progress| watch.observe(progress))?;
     let interrupted = watch.is_cancelled();

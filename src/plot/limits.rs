@@ -3,7 +3,9 @@
 use super::axes::Decades;
 use super::drawing::{Anchor, Color, Drawing, GRID, INK, Item, Outline, Shape, Text, solid};
 use crate::format::engineering;
-use crate::study::limits::{GOOD, MethodLimits, Strip, USABLE};
+use crate::scene::Scene;
+use crate::study::figure::LoadAxis;
+use crate::study::limits::{MethodLimits, RANGE, Rating, Strip, load_text};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
@@ -14,25 +16,29 @@ const CURVE: [f64; 2] = [56.0, 216.0];
 /// Height of a strip with the space below it.
 const ROW: f64 = 26.0;
 
-const WITHIN_GOOD: Color = [0x3a, 0x9d, 0x5d];
-const WITHIN_USABLE: Color = [0xe6, 0xc2, 0x3a];
-const BEYOND: Color = [0xe0, 0x7b, 0x39];
-const FAILED: Color = [0xbe, 0x14, 0x1e];
-const UNKNOWN: Color = [0xc4, 0xc8, 0xcc];
+/// Returns the colour of a rating.
+pub(crate) fn rating_color(rating: Rating) -> Color {
+    match rating {
+        Rating::Good => [0x3a, 0x9d, 0x5d],
+        Rating::Usable => [0xe6, 0xc2, 0x3a],
+        Rating::Beyond => [0xe0, 0x7b, 0x39],
+        Rating::NotConverged => [0xbe, 0x14, 0x1e],
+        Rating::Unknown => [0xc4, 0xc8, 0xcc],
+    }
+}
 
-/// Draws the limits over the logarithm of the load.
+/// Draws the limits of a scene over the logarithm of the load.
 #[must_use]
-pub fn limits(limits: &MethodLimits) -> Drawing {
-    let axis = Decades::new(limits.reference.iter().map(|(factor, _)| *factor), ACROSS);
+pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
+    let (axis, loads) = (Decades::new(RANGE.into_iter(), ACROSS), LoadAxis::of(scene));
     let top = CURVE[1] + 44.0;
     let bottom = top + ROW * limits.strips.len() as f64;
     let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
-    let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, limits.scene.as_str());
+    let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
     drawing.items.push(Item::Text(Text { size: 16.0, ..title }));
-    let load = |factor: f64| engineering(factor * limits.axis.full, limits.axis.unit);
     for (x, factor) in axis.values() {
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
-        drawing.text([x, bottom + 18.0], Anchor::Middle, load(factor));
+        drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));
     }
     // The scene's own load.
     let own = axis.place(1.0);
@@ -46,17 +52,12 @@ pub fn limits(limits: &MethodLimits) -> Drawing {
             Anchor::End,
             format!("{} {}", strip.element.id(), strip.method.id()),
         );
-        bars(&mut drawing, limits, strip, &axis, y);
-        let end = match (strip.ends_at, strip.within(GOOD)) {
-            (_, Some(0.0)) => format!("not within {GOOD} %"),
-            (_, Some(factor)) => format!("{GOOD} % to {}", load(factor)),
-            (Some(factor), None) => format!("converges to {}", load(factor)),
-            (None, None) => String::new(),
-        };
+        bars(&mut drawing, strip, &axis, y);
+        let end = strip.end(&loads).map_or_else(String::new, |end| end.to_string());
         drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
     }
     legend(&mut drawing, bottom + 46.0);
-    drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, limits.axis.name.to_string());
+    drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, loads.name.to_string());
     drawing
 }
 
@@ -77,34 +78,20 @@ fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &Decades) {
     drawing.text([ACROSS[1] + 12.0, CURVE[0] + 30.0], Anchor::Start, "of the first probe");
 }
 
-/// Draws the bars of a strip, from each load to half way to the next one.
-fn bars(drawing: &mut Drawing, limits: &MethodLimits, strip: &Strip, axis: &Decades, y: f64) {
+/// Draws the bars of a strip.
+fn bars(drawing: &mut Drawing, strip: &Strip, axis: &Decades, y: f64) {
     const HEIGHT: f64 = 18.0;
-    let loads: Vec<f64> = limits.reference.iter().map(|(factor, _)| axis.place(*factor)).collect();
-    let edge = |i: usize| match (i.checked_sub(1).and_then(|before| loads.get(before)), loads.get(i)) {
-        (Some(a), Some(b)) => 0.5 * (a + b),
-        (None, _) => ACROSS[0],
-        (_, None) => ACROSS[1],
-    };
-    let end = strip.ends_at.map_or(ACROSS[1], |factor| axis.place(factor.max(f64::MIN_POSITIVE)));
-    for (i, point) in strip.points.iter().enumerate() {
-        let color = match point.error_percent {
-            None => UNKNOWN,
-            Some(error) if error <= GOOD => WITHIN_GOOD,
-            Some(error) if error <= USABLE => WITHIN_USABLE,
-            Some(_) => BEYOND,
-        };
-        let is_last = i + 1 == strip.points.len();
-        let (from, to) = (edge(i), if is_last { end } else { edge(i + 1) });
-        // No gap shows between bars of one colour.
-        let overlap = if is_last { 0.0 } else { 0.5 };
-        drawing.rect([[from, y], [(to - from + overlap).max(0.0), HEIGHT]], color);
-        if point.is_beyond_law() {
+    /// No gap shows between bars of one colour.
+    const OVERLAP: f64 = 0.5;
+    let pieces = strip.pieces();
+    for (i, piece) in pieces.iter().enumerate() {
+        let [from, to] = piece.range.map(|factor| axis.place(factor));
+        let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
+        let overlap = if is_joined { OVERLAP } else { 0.0 };
+        drawing.rect([[from, y], [(to - from + overlap).max(0.0), HEIGHT]], rating_color(piece.rating));
+        if piece.is_beyond_law {
             hatch(drawing, [from, to], [y, y + HEIGHT]);
         }
-    }
-    if strip.ends_at.is_some() {
-        drawing.rect([[end, y], [ACROSS[1] - end, HEIGHT]], FAILED);
     }
 }
 
@@ -124,13 +111,7 @@ fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
 
 fn legend(drawing: &mut Drawing, y: f64) {
     const BOX: f64 = 14.0;
-    let entries = [
-        (WITHIN_GOOD, format!("within {GOOD} %")),
-        (WITHIN_USABLE, format!("within {USABLE} %")),
-        (BEYOND, format!("above {USABLE} %")),
-        (FAILED, "does not converge".to_owned()),
-        (UNKNOWN, "error not known".to_owned()),
-    ];
+    let entries = Rating::all().map(|(rating, name)| (rating_color(rating), name.to_string()));
     let mut x = 20.0;
     for (color, text) in entries {
         drawing.rect([[x, y], [BOX, BOX]], color);

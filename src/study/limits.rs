@@ -4,21 +4,23 @@
 use std::sync::Arc;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
 use super::progress::{StudyError, all_done};
 use super::{Effort, Reference, parallel};
 use crate::assembly::System;
 use crate::exact_beam::error_percent;
+use crate::format::{engineering, number, three_digits};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
-use crate::sentence::sentence;
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Deformation, Simulation, SimulationError, Status};
 use crate::stress::LAW_HOLDS;
 
 /// Smallest and largest part of the scene's loads and prescribed displacements.
-const RANGE: [f64; 2] = [0.01, 10.0];
+pub const RANGE: [f64; 2] = [0.01, 10.0];
 /// Loads per decade.
 const PER_DECADE: i32 = 6;
 /// Error, percent, up to which a result counts as good.
@@ -28,8 +30,48 @@ pub const USABLE: f64 = 5.0;
 /// Bisections of the load at which a method stops to converge: to 1 % of the load.
 const BISECTIONS: u32 = 6;
 
-/// Result of a method at a load.
+/// Error of a result, in classes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rating {
+    /// Error up to [`GOOD`].
+    Good,
+    /// Error up to [`USABLE`].
+    Usable,
+    /// Larger error.
+    Beyond,
+    /// Error without a known bound.
+    Unknown,
+    /// The method does not converge.
+    NotConverged,
+}
+
+impl Rating {
+    /// All classes, with their names.
+    #[must_use]
+    pub fn all() -> [(Self, Sentence); 5] {
+        [
+            (Self::Good, sentence!("within %{percent} %", percent = number(GOOD))),
+            (Self::Usable, sentence!("within %{percent} %", percent = number(USABLE))),
+            (Self::Beyond, sentence!("above %{percent} %", percent = number(USABLE))),
+            (Self::NotConverged, sentence!("does not converge")),
+            (Self::Unknown, sentence!("error not known")),
+        ]
+    }
+}
+
+/// Part of a strip with one rating.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Smallest and largest part of the scene's loads.
+    pub range: [f64; 2],
+    /// Rating of the errors.
+    pub rating: Rating,
+    /// `true` if elements are inverted, or strains exceed those of the linear law.
+    pub is_beyond_law: bool,
+}
+
+/// Result of a method at a load.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitPoint {
     /// Part of the scene's loads and prescribed displacements.
     pub factor: f64,
@@ -50,10 +92,21 @@ impl LimitPoint {
     pub fn is_beyond_law(&self) -> bool {
         self.inverted_elements > 0 || self.max_strain > LAW_HOLDS
     }
+
+    /// Returns the rating of the error.
+    #[must_use]
+    pub fn rating(&self) -> Rating {
+        match self.error_percent {
+            None => Rating::Unknown,
+            Some(error) if error <= GOOD => Rating::Good,
+            Some(error) if error <= USABLE => Rating::Usable,
+            Some(_) => Rating::Beyond,
+        }
+    }
 }
 
 /// Results of a method with an element, from small to large loads.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strip {
     /// Element.
     pub element: ElementKind,
@@ -95,15 +148,76 @@ impl Strip {
     pub fn law_ends_at(&self) -> Option<f64> {
         self.points.iter().find(|point| point.is_beyond_law()).map(|point| point.factor)
     }
+
+    /// Returns the strip in pieces: each result stands for the loads up to half way, in their logarithm, to the next.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<Piece> {
+        let between = |i: usize| match (i.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(i))
+        {
+            (Some(a), Some(b)) => (a.factor * b.factor).sqrt(),
+            (None, _) => RANGE[0],
+            (_, None) => self.ends_at.unwrap_or(RANGE[1]),
+        };
+        let results = self.points.iter().enumerate().map(|(i, point)| Piece {
+            range: [between(i), between(i + 1)],
+            rating: point.rating(),
+            is_beyond_law: point.is_beyond_law(),
+        });
+        let failed = self.ends_at.map(|end| Piece {
+            range: [end.max(RANGE[0]), RANGE[1]],
+            rating: Rating::NotConverged,
+            is_beyond_law: false,
+        });
+        results.chain(failed).collect()
+    }
+
+    /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
+    /// that from which strains exceed 10 %. `axis` is that of the scene.
+    #[must_use]
+    pub fn words(&self, axis: &LoadAxis) -> [Sentence; 4] {
+        let load = |factor: f64| load_text(axis, factor);
+        let within = |percent: f64| match (self.within(percent), self.last_known()) {
+            (Some(0.0), _) => sentence!("not at %{load}", load = load(RANGE[0])),
+            (Some(factor), _) => load(factor).into(),
+            (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),
+            (None, None) => sentence!("not known"),
+        };
+        let converges = match self.ends_at {
+            Some(0.0) => sentence!("nowhere"),
+            Some(factor) => load(factor).into(),
+            None => sentence!("at least %{load}", load = load(RANGE[1])),
+        };
+        let law = self.law_ends_at().map_or_else(|| "\u{2013}".into(), |f| sentence!("from %{load}", load = load(f)));
+        [within(GOOD), within(USABLE), converges, law]
+    }
+
+    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is never within 1 %; `None` if
+    /// it is not known to be larger at any load.
+    #[must_use]
+    pub fn end(&self, axis: &LoadAxis) -> Option<Sentence> {
+        let holds = |percent: &f64| self.within(*percent) != Some(0.0);
+        let Some(percent) = [GOOD, USABLE].into_iter().find(holds) else {
+            return Some(sentence!("not within %{percent} %", percent = number(USABLE)));
+        };
+        match (self.within(percent), self.ends_at) {
+            (Some(factor), _) => {
+                Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
+            }
+            (None, Some(factor)) => Some(sentence!("converges to %{load}", load = load_text(axis, factor))),
+            (None, None) => None,
+        }
+    }
+}
+
+/// Formats a part of a scene's load.
+#[must_use]
+pub fn load_text(axis: &LoadAxis, factor: f64) -> String {
+    engineering(three_digits(factor * axis.full), axis.unit)
 }
 
 /// Limits of all methods and elements on a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodLimits {
-    /// Title of the scene.
-    pub scene: String,
-    /// Quantity and unit of the load.
-    pub axis: LoadAxis,
     /// Reference displacement of the first probe, m, at every load; `None` if it is not known.
     pub reference: Vec<(f64, Option<Vector2<f64>>)>,
     /// Strips, by element and method.
@@ -157,8 +271,6 @@ impl MethodLimits {
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
         ))?;
         Ok(Self {
-            scene: scene.name.clone(),
-            axis: LoadAxis::of(scene),
             reference: factors
                 .iter()
                 .zip(&solved)

@@ -1,4 +1,4 @@
-//! Compares the whole window with golden pictures: Explore, each card of Learn, Compare and Budget; some with another
+//! Compares the whole window with golden pictures: Explore, each card of Learn, Compare, Budget and Limits; some with another
 //! theme or language. The tests of each mode check the displayed numbers.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test window golden` redraws the pictures; look at them before committing.
@@ -94,6 +94,14 @@ fn compare() {
         lab.solve();
         golden(&format!("compare-{name}"), &mut lab, &[look], &PANES);
     }
+}
+
+#[test]
+fn limits() {
+    let mut lab = lab("article");
+    lab.show_limits();
+    lab.solve();
+    golden("limits", &mut lab, &[DARK, LIGHT], &[TIME]);
 }
 
 /// Budget is drawn before any measurement, because measured times differ from run to run.

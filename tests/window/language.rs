@@ -514,6 +514,15 @@ fn the_budget_is_in_chinese() {
 }
 
 #[test]
+fn the_limits_are_in_chinese() {
+    let mut harness = settled("article", [1280.0, 800.0]);
+    harness.key_press(Key::M);
+    harness.run_steps(3);
+    wait(&mut harness, |lab| !lab.is_computing());
+    assert_tips_are_chinese(&mut harness, "Limits");
+}
+
+#[test]
 fn every_card_is_in_chinese() {
     let mut harness = settled("article", [1280.0, 800.0]);
     for card in 1..=warpbeam::app::card_count() {
@@ -530,8 +539,10 @@ fn nothing_is_clipped_in_windows_of_any_size() {
     for size in [[640.0, 480.0], [800.0, 600.0], [1280.0, 800.0]] {
         let window = Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let mut harness = settled("article", size);
-        let names =
-            ["Run", "Step", "Reset", "Explore", "Learn", "Compare", "Budget", "Help", "Theme", "Language", "Panel"];
+        let names = [
+            "Run", "Step", "Reset", "Explore", "Learn", "Compare", "Budget", "Limits", "Help", "Theme", "Language",
+            "Panel",
+        ];
         for name in names.into_iter().chain(["Load curve", "explain"]) {
             let rect = harness.get_by_label(&zh(name)).rect();
             assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?} is clipped");
@@ -570,12 +581,12 @@ fn nothing_is_clipped_in_windows_of_any_size() {
 /// Controls of the toolbar do not overlap in windows from the smallest to wide ones, in both languages.
 #[test]
 fn nothing_of_the_toolbar_overlaps_in_windows_of_any_width() {
-    let names = ["Scene", "Step", "Reset", "Undo", "Redo", "Explore", "Learn", "Compare", "Budget"];
+    let names = ["Scene", "Step", "Reset", "Undo", "Redo", "Explore", "Learn", "Compare", "Budget", "Limits"];
     let tools = ["Help", "Theme", "Language", "Panel"];
     let mut harness = harness_of("article", [480.0, 600.0]);
     for language in [Language::English, Language::Chinese] {
         harness.state_mut().set_language(language);
-        for width in (480..1300).step_by(10) {
+        for width in (420..1300).step_by(10) {
             let window = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(width as f32, 600.0));
             harness.set_size(window.size());
             harness.run_steps(2);

@@ -13,6 +13,7 @@ mod figures;
 mod golden;
 mod language;
 mod learn;
+mod limits;
 mod motions;
 mod panel;
 mod pictures;

@@ -4,3 +4,4 @@ pub(crate) mod budget;
 pub(crate) mod compare;
 pub(crate) mod explore;
 pub(crate) mod learn;
+pub(crate) mod limits;

@@ -31,6 +31,8 @@ pub struct ShotOptions {
     pub curve: bool,
     /// `true` if the speed–accuracy study is measured and shown, in place of the load curve.
     pub study: bool,
+    /// `true` if the limits of every method and element are shown.
+    pub limits: bool,
     /// Number of the card of Learn that is shown, from 1. It has the article's beam, whatever the scene.
     pub learn: Option<usize>,
     /// Integrators that are shown in addition to the scene's; `None` if the plot of a motion's energy is hidden.
@@ -52,6 +54,7 @@ impl Default for ShotOptions {
             panel: true,
             curve: false,
             study: false,
+            limits: false,
             motion: None,
             compare: Vec::new(),
             learn: None,
@@ -101,6 +104,9 @@ pub fn shot(
             Ok((study, _)) => lab.show_study(study),
             Err(error) => study_error = Some(error),
         }
+    }
+    if options.limits {
+        lab.show_limits();
     }
     if let Some(integrators) = &options.motion {
         lab.show_motion_plots();

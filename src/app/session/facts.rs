@@ -11,7 +11,8 @@ use crate::dynamics::lowest_frequency;
 use crate::progress::Observer;
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
 use crate::simulation::Simulation;
-use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference, time_from_rest};
+use crate::study::limits::MethodLimits;
+use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference, StudyError, time_from_rest};
 use crate::timings::Timings;
 
 /// Load–displacement curve of a scene.
@@ -30,6 +31,8 @@ facts! {
     CurveFact = "curve": Curve, |scene, observe| Ok(curve(scene, observe));
     /// End of the load path from rest, and the jumps on it.
     PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
+    /// Limits of every method and element.
+    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe));
     /// Time of a solve from rest.
     TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.
@@ -44,6 +47,15 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Option<Curve> {
     Some(Curve::Path(Box::new((LoadPath::observed(scene, observe)?, own()))))
 }
 
+/// Results that are computed only while they are shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ShownFacts<'a> {
+    /// `true` if the load–displacement curve is shown.
+    pub curve: bool,
+    /// Scene whose limits are shown.
+    pub limits_of: Option<&'a Scene>,
+}
+
 /// Results of the current scene; each is `None` until it has been computed.
 #[derive(Debug, Default)]
 pub(crate) struct Facts {
@@ -52,6 +64,8 @@ pub(crate) struct Facts {
     pub curve: Keyed<CurveFact>,
     /// End of the load path from rest, and the jumps on it.
     pub path: Keyed<PathFact>,
+    /// Limits of every method and element.
+    pub limits: Keyed<LimitsFact>,
     /// Time of a solve from rest.
     pub time: Keyed<TimeFact>,
     /// Lowest natural frequency, Hz.
@@ -69,20 +83,24 @@ impl Facts {
     }
 
     /// Requests the results of a scene at rest; returns `true` while one of them is pending.
-    pub(super) fn request_at_rest(&mut self, scene: &Scene, needs_curve: bool) -> bool {
+    pub(super) fn request_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>) -> bool {
         let reference = self.reference.request(scene);
         let path = self.path.request(scene);
-        let curve = needs_curve && self.curve.request(scene);
+        let curve = shown.curve && self.curve.request(scene);
+        let limits = shown.limits_of.is_some_and(|scene| self.limits.request(scene));
         // Solves are timed after the other computations, which would slow them down.
-        reference || path || curve || self.time.request(scene)
+        reference || path || curve || limits || self.time.request(scene)
     }
 
     /// Computes the results of a scene at rest, and waits for them.
-    pub(super) fn wait_at_rest(&mut self, scene: &Scene, needs_curve: bool) {
+    pub(super) fn wait_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>) {
         self.reference.wait(scene);
         self.path.wait(scene);
-        if needs_curve {
+        if shown.curve {
             self.curve.wait(scene);
+        }
+        if let Some(scene) = shown.limits_of {
+            self.limits.wait(scene);
         }
         self.time.wait(scene);
     }
@@ -104,8 +122,24 @@ pub(crate) fn without_settings(scene: &Scene) -> Scene {
     scene
 }
 
+/// Returns the scene with default values of all settings that its limits do not depend on: they are those of every
+/// method and element.
+pub(crate) fn without_methods(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let first = scene.elements().next().unwrap_or_default();
+    scene.set_element(first);
+    let any = SolverSettings::default();
+    let solver = &mut scene.solver;
+    (solver.method, solver.accept_after, solver.max_error_percent) =
+        (any.method, any.accept_after, any.max_error_percent);
+    scene
+}
+
 fn find_reference(scene: &Scene, observe: Observer<'_>) -> Computed<Reference> {
-    let found = Reference::find(scene, None, Effort::Bounded, observe);
+    found(Reference::find(scene, None, Effort::Bounded, observe))
+}
+
+fn found<V>(found: Result<V, StudyError>) -> Computed<V> {
     found.map(Some).map_err(|error| (&error).into())
 }
 

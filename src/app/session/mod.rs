@@ -24,7 +24,7 @@ use thiserror::Error;
 
 use crate::app::session::background::Background;
 use crate::app::session::document::{Document, SaveError};
-use crate::app::session::facts::Facts;
+use crate::app::session::facts::{Facts, ShownFacts};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
@@ -556,7 +556,7 @@ impl Session {
     }
 
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
-    pub(crate) fn solve(&mut self, needs_curve: bool) {
+    pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
         self.wait_for_background();
         while *self.simulation.status() == Status::Running {
             self.iterate(1);
@@ -565,7 +565,7 @@ impl Session {
             return self.facts.frequency.wait(&self.scene);
         }
         self.certify();
-        self.facts.wait_at_rest(&self.scene, needs_curve);
+        self.facts.wait_at_rest(&self.scene, shown);
     }
 
     fn certify(&mut self) {
@@ -575,7 +575,7 @@ impl Session {
 
     /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Results
     /// of a motion are not requested during a press, so that dragging a slider stays smooth.
-    pub(crate) fn request_facts(&mut self, needs_curve: bool, is_pressed: bool) -> bool {
+    pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
         if self.is_motion() {
             return !is_pressed && self.facts.frequency.request(&self.scene);
         }
@@ -586,7 +586,16 @@ impl Session {
         if !self.is_in_background() {
             self.certify();
         }
-        self.facts.request_at_rest(&self.scene, needs_curve)
+        self.facts.request_at_rest(&self.scene, shown)
+    }
+
+    /// Cancels the computation of limits, unless it is for this scene.
+    pub(crate) fn turn_limits_to(&mut self, scene: Option<&Scene>) {
+        match scene {
+            Some(scene) => self.facts.limits.turn_to(scene),
+            None if self.facts.limits.progress().is_some() => self.facts.limits.clear(),
+            None => {}
+        }
     }
 
     /// Requests the reference solution, in any state of the body; returns `true` while it is pending.

@@ -38,27 +38,27 @@ fn wait(session: &mut Session) {
 #[test]
 fn edits_change_the_solution_and_are_undone_and_redone() {
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let first = tip(&session);
     let changed = session.apply(with_force(&session, -200.0)).unwrap();
     assert_eq!(changed, Changed { scene: true, ..Changed::default() });
     assert!(session.is_edited() && session.iterates());
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let second = tip(&session);
     assert!(second < 1.5 * first, "twice the force: {first} and {second} m");
     session.apply(Edit::Undo).unwrap();
-    session.solve(false);
+    session.solve(ShownFacts::default());
     assert!((tip(&session) - first).abs() < 1e-6 * first.abs() && !session.is_edited());
     assert!(!session.can_undo() && session.can_redo());
     session.apply(Edit::Redo).unwrap();
-    session.solve(false);
+    session.solve(ShownFacts::default());
     assert!((tip(&session) - second).abs() < 1e-6 * second.abs());
 }
 
 #[test]
 fn a_refused_edit_leaves_the_session_unchanged() {
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let (scene, first) = (session.scene().clone(), tip(&session));
     session.take_changed();
     let mut wrong = scene.clone();
@@ -73,7 +73,7 @@ fn a_refused_edit_leaves_the_session_unchanged() {
 #[test]
 fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back() {
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let first = tip(&session);
     session.set_most_unknowns(0);
     session.apply(with_force(&session, -200.0)).unwrap();
@@ -102,7 +102,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
 #[test]
 fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let first = session.scene().clone();
     session.set_most_unknowns(0);
     for cells in [[16, 4], [8, 2]] {
@@ -127,7 +127,7 @@ fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
 fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     session.set_most_unknowns(0);
     let first = session.scene().clone();
     let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
@@ -190,7 +190,7 @@ fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
 #[test]
 fn a_released_body_has_the_numbers_of_its_equilibrium() {
     let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    session.solve(ShownFacts::default());
     let numbers = |session: &Session| {
         let simulation = session.simulation();
         let certificate = simulation.equilibrium().unwrap().certificate();
@@ -212,16 +212,16 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
     session.apply(with_force(&session, -200.0)).unwrap();
     session.grab(Grab { release: true, ..Grab::default() });
-    session.solve(false);
+    session.solve(ShownFacts::default());
     assert!(tip(&session) < 1.5 * before.3.iter().map(|u| u.y).fold(0.0, f64::min), "{}", tip(&session));
 }
 
 #[test]
 fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     let mut session = session(cantilever(-100.0));
-    assert!(!session.request_facts(true, false), "the body is not at rest yet");
-    session.solve(true);
-    assert!(!session.request_facts(true, false));
+    assert!(!session.request_facts(ShownFacts { curve: true, limits_of: None }, false), "the body is not at rest yet");
+    session.solve(ShownFacts { curve: true, limits_of: None });
+    assert!(!session.request_facts(ShownFacts { curve: true, limits_of: None }, false));
     let (facts, scene) = (session.facts(), session.scene());
     assert!(facts.reference.get(scene).is_some() && facts.curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
@@ -233,7 +233,7 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     );
     session.apply(with_force(&session, -150.0)).unwrap();
     assert!(session.facts().reference.is_pending(session.scene()) && session.facts().reference.latest().is_some());
-    session.solve(false);
+    session.solve(ShownFacts::default());
     assert!(session.facts().reference.get(session.scene()).is_some());
 }
 

@@ -70,6 +70,11 @@ impl Lab {
         self.desk.budget.set(self.desk.session.scene(), study);
     }
 
+    /// Shows the limits of every method and element.
+    pub fn show_limits(&mut self) {
+        self.desk.view.mode = Mode::Limits;
+    }
+
     /// Shows two to four panes side by side under the same load, one per setting. Does nothing for a motion.
     pub fn show_comparison(&mut self, settings: &[PaneSetting]) {
         if self.desk.session.is_motion() {
@@ -259,16 +264,17 @@ impl Lab {
     /// Returns `true` while a displayed result of the scene is being computed in the background.
     #[must_use]
     pub fn is_computing(&self) -> bool {
-        let Desk { session, view, .. } = &self.desk;
+        let Desk { session, view, limits, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
         let plots = match view.drawer {
             Some(Drawer::Curve) => facts.curve.is_pending(scene),
             Some(Drawer::Motion) => facts.frequency.is_pending(scene),
             _ => false,
         };
+        let limits = view.mode == Mode::Limits && limits.base().is_none_or(|base| facts.limits.is_pending(base));
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
-        let at_rest = !session.is_motion() && at_rest;
+        let at_rest = !session.is_motion() && (at_rest || limits);
         session.is_working() || plots || learns || at_rest
     }
 

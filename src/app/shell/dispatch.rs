@@ -6,6 +6,7 @@ use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
 use crate::app::modes::learn;
+use crate::app::modes::limits::Limits;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
 use crate::app::view_options::{Drawer, Mode, Toggle};
@@ -18,7 +19,7 @@ use crate::study::Extent;
 impl Lab {
     /// Updates the window after changes of the session.
     pub(super) fn apply_session_changes(&mut self) {
-        let Desk { session, viewport, view, panel, budget, compare, motions } = &mut self.desk;
+        let Desk { session, viewport, view, panel, budget, compare, motions, limits } = &mut self.desk;
         let changed = session.take_changed();
         if changed == Changed::default() {
             return;
@@ -39,6 +40,7 @@ impl Lab {
             *budget = Budget::default();
             *compare = Compare::default();
             *motions = MotionCompare::default();
+            *limits = Limits::default();
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;

@@ -3,9 +3,11 @@
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
 use crate::app::modes::learn::{self, Learn};
+use crate::app::modes::limits::Limits;
 use crate::app::panel::PanelState;
 use crate::app::readout::Readout;
 use crate::app::session::document::Document;
+use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
@@ -43,6 +45,7 @@ pub(super) struct Desk {
     pub budget: Budget,
     pub compare: Compare,
     pub motions: MotionCompare,
+    pub limits: Limits,
 }
 
 impl Desk {
@@ -55,7 +58,20 @@ impl Desk {
             budget: Budget::default(),
             compare: Compare::default(),
             motions: MotionCompare::default(),
+            limits: Limits::default(),
         }
+    }
+
+    /// Turns Limits to the scene while it is shown, and returns the results that only some views show.
+    pub(super) fn shown_facts(&mut self) -> (&mut Session, ShownFacts<'_>) {
+        let Self { session, view, limits, .. } = self;
+        let shows_limits = view.mode == Mode::Limits && !session.is_motion();
+        if shows_limits {
+            limits.turn_to(session.scene());
+        }
+        let limits_of = limits.base().filter(|_| shows_limits);
+        session.turn_limits_to(limits_of);
+        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), limits_of })
     }
 
     /// Returns the common input of the panes of Compare.
@@ -214,7 +230,8 @@ impl Lab {
     /// Iterates until the status is final, or to the end of the motion's duration, and computes all displayed results.
     pub fn solve(&mut self) {
         let has_search = *self.simulation().status() == Status::Running;
-        self.desk.session.solve(self.desk.view.drawer == Some(Drawer::Curve));
+        let (session, shown) = self.desk.shown_facts();
+        session.solve(shown);
         self.apply_session_changes();
         let Desk { session, view, compare, .. } = &mut self.desk;
         if session.is_motion() {

@@ -57,6 +57,12 @@ impl Lab {
                 let Desk { session, budget, .. } = &mut self.desk;
                 drawer_panel(ui).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
             }
+            Mode::Limits => {
+                let mut limits = std::mem::take(&mut self.desk.limits);
+                let shown = self.readout().shown;
+                drawer_panel(ui).show(ui, |ui| limits.show(ui, &self.desk.session, shown, &mut actions));
+                self.desk.limits = limits;
+            }
         }
         let mut requests = Vec::new();
         for action in actions {
@@ -89,9 +95,9 @@ impl Lab {
 
     /// Requests the displayed results of the scene.
     fn request_facts(&mut self, ctx: &egui::Context) {
-        let Desk { session, view, .. } = &mut self.desk;
         let is_pressed = ctx.input(|i| i.pointer.any_down());
-        if session.request_facts(view.drawer == Some(Drawer::Curve), is_pressed) {
+        let (session, shown) = self.desk.shown_facts();
+        if session.request_facts(shown, is_pressed) {
             ctx.request_repaint_after(POLL);
         }
     }

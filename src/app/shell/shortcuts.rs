@@ -67,6 +67,9 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
+    key(Key::M, "Limits: up to which load each method and element holds, on or off", || {
+        Action::Toggle(Toggle::Mode(Mode::Limits))
+    }),
     key(Key::K, "Compare: methods, elements and meshes side by side, on or off", || {
         Action::Toggle(Toggle::Mode(Mode::Compare))
     }),

@@ -14,11 +14,21 @@ use crate::app::view_options::{MODES, Toggle, ViewOptions};
 const WORDS: f32 = 1050.0;
 
 /// In a window narrower than this, points, the modes have a row of their own.
-const ONE_ROW: f32 = 890.0;
+const ONE_ROW: f32 = 945.0;
+
+/// In a window narrower than this, points, the tools of the window have a row of their own, too.
+const TWO_ROWS: f32 = 490.0;
+
+/// Height of one row, and of each further row, points.
+const ROW: [f32; 2] = [36.0, 32.0];
+
+/// In a window narrower than this, points, the modes have little space around their names.
+const TIGHT: f32 = 530.0;
 
 /// Returns the height of the toolbar in a window of this width, points.
 pub(crate) fn height(width: f32) -> f32 {
-    if width >= ONE_ROW { 36.0 } else { 68.0 }
+    let further = [ONE_ROW, TWO_ROWS].into_iter().filter(|least| width < *least).count();
+    ROW[0] + ROW[1] * further as f32
 }
 
 /// Shows the bar.
@@ -30,7 +40,8 @@ pub(crate) fn show(
     actions: &mut Vec<Action>,
 ) {
     let wide = ui.available_width() >= WORDS;
-    let one_row = height(ui.ctx().content_rect().width()) < 40.0;
+    let width = ui.ctx().content_rect().width();
+    let one_row = width >= ONE_ROW;
     let mut first = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         gallery.show(ui, input, wide, actions);
@@ -52,9 +63,17 @@ pub(crate) fn show(
     ui.horizontal(&mut first);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
+        if ui.available_width() < TIGHT {
+            ui.spacing_mut().button_padding.x = 4.0;
+        }
         modes(ui, view, actions);
-        window_tools(ui, view, input.language, actions);
+        if width >= TWO_ROWS {
+            window_tools(ui, view, input.language, actions);
+        }
     });
+    if width < TWO_ROWS {
+        ui.horizontal(|ui| window_tools(ui, view, input.language, actions));
+    }
 }
 
 fn modes(ui: &mut Ui, view: &ViewOptions, actions: &mut Vec<Action>) {

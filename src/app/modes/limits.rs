@@ -1,0 +1,357 @@
+//! Mode Limits: up to which load each method and element holds, with the load of the scene on the same axis.
+
+use egui::{
+    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+};
+use nalgebra::Vector2;
+
+use crate::app::action::Action;
+use crate::app::language::{fill, said, tr};
+use crate::app::session::Session;
+use crate::app::session::facts::without_methods;
+use crate::app::widgets::palette::{Palette, SMALL};
+use crate::format::{engineering, three_digits};
+use crate::plot::rating_color;
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+use crate::study::figure::LoadAxis;
+use crate::study::limits::{MethodLimits, RANGE, Rating, Strip, load_text};
+
+/// Distance of slanted lines over a strip, points.
+const HATCH: f32 = 6.0;
+/// Widths of the columns left and right of the strips, points.
+const NAMES: f32 = 92.0;
+const ENDS: f32 = 148.0;
+/// Width, points, below which the right column is omitted.
+const WITH_ENDS: f32 = 560.0;
+/// Height of a line of small text, points.
+const LINE: f32 = 18.0;
+/// Fraction of the height that the strips take from the curve, and the smallest height of the curve, points: in a lower
+/// window it is omitted.
+const SHARE: f32 = 0.62;
+const MIN_CURVE: f32 = 40.0;
+/// Smallest and largest height of a strip with the space below it, points.
+const ROW: [f32; 2] = [13.0, 19.0];
+
+/// State of Limits: the scene whose limits are shown.
+#[derive(Debug, Default)]
+pub(crate) struct Limits {
+    /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
+    base: Option<Scene>,
+    /// Lab's scene after its load was set here, and its part of the base's loads.
+    placed: Option<(Scene, f64)>,
+}
+
+impl Limits {
+    /// Turns to the lab's scene. A load that was set here does not change the limits, nor do method and element.
+    pub(crate) fn turn_to(&mut self, scene: &Scene) {
+        let scene = without_methods(scene);
+        let is_placed = self.placed.as_ref().is_some_and(|(placed, _)| *placed == scene);
+        if !is_placed && self.base.as_ref() != Some(&scene) {
+            *self = Self { base: Some(scene), placed: None };
+        }
+    }
+
+    /// Returns the scene whose limits are shown.
+    pub(crate) fn base(&self) -> Option<&Scene> {
+        self.base.as_ref()
+    }
+
+    /// Returns the part of the base's loads that the lab's scene has.
+    fn factor(&self, scene: &Scene) -> f64 {
+        let scene = without_methods(scene);
+        self.placed.as_ref().filter(|(placed, _)| *placed == scene).map_or(1.0, |(_, factor)| *factor)
+    }
+
+    /// Returns the lab's scene under a part of the base's loads, rounded to three digits.
+    fn place(&mut self, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene {
+        let factor = three_digits(factor * axis.full) / axis.full;
+        let mut placed = scene.clone();
+        placed.scale_loads(factor / self.factor(scene));
+        self.placed = Some((without_methods(&placed), factor));
+        placed
+    }
+
+    /// Shows the limits of the lab's scene.
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
+        let scene = session.scene();
+        let facts = &session.facts().limits;
+        let message = |ui: &mut Ui, text: &str| _ = ui.centered_and_justified(|ui| ui.weak(text));
+        if session.is_motion() {
+            return message(
+                ui,
+                tr("Limits are those of equilibria. Compare and Budget judge the integrators of a motion."),
+            );
+        }
+        let Some(base) = self.base.clone() else { return };
+        if let Some(reason) = facts.failure(&base) {
+            return message(ui, &said(reason));
+        }
+        let Some(limits) = facts.get(&base) else {
+            ui.add_space(0.3 * ui.available_height());
+            ui.vertical_centered(|ui| {
+                ui.weak(tr("Solving with every method and element, from a hundredth to ten times the load"));
+                let done = facts.progress().unwrap_or_default() as f32;
+                ui.add(ProgressBar::new(done).desired_width(240.0).show_percentage());
+            });
+            return;
+        };
+        let whole = ui.available_rect_before_wrap();
+        ui.horizontal(legend);
+        let axis = LoadAxis::of(&base);
+        let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
+        let chart = Chart::new(ui, below, limits, &axis);
+        let load = chart.handle(ui, self.factor(scene));
+        if let Some(factor) = load {
+            let placed = self.place(scene, &axis, factor);
+            if placed != *scene {
+                actions.push(Action::Edit("Load", Box::new(placed)));
+            }
+        }
+        chart.curve(ui);
+        for (row, strip) in limits.strips.iter().enumerate() {
+            chart.strip(ui, row, strip, scene, actions);
+        }
+        chart.load_line(ui, load.unwrap_or_else(|| self.factor(scene)), first_probe(shown));
+    }
+}
+
+/// Returns the length of the displacement of the first probe, m, at an equilibrium.
+fn first_probe(shown: &Simulation) -> Option<f64> {
+    let probe = shown.problem().probes().first().filter(|_| shown.status().is_success())?;
+    Some(probe.mean(shown.displacement()).norm())
+}
+
+/// Shows the key of the colours in one line.
+fn legend(ui: &mut Ui) {
+    const BOX: f32 = 10.0;
+    ui.add_space(8.0);
+    ui.spacing_mut().item_spacing.x = 5.0;
+    let entry = |ui: &mut Ui, name: &str, paint: &dyn Fn(&Ui, Rect)| {
+        let (rect, _) = ui.allocate_exact_size(vec2(BOX, BOX), Sense::hover());
+        paint(ui, rect);
+        ui.add(egui::Label::new(RichText::new(name).size(SMALL)).truncate());
+        ui.add_space(6.0);
+    };
+    for (rating, name) in Rating::all() {
+        entry(ui, &said(&name), &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+    }
+    let ink = Palette::new(ui.visuals()).text;
+    entry(ui, tr("strains above 10 %, or inverted elements"), &|ui, rect| {
+        ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
+        hatch(ui, rect, ink);
+    });
+}
+
+fn color(rating: Rating) -> Color32 {
+    let [r, g, b] = rating_color(rating);
+    Color32::from_rgb(r, g, b)
+}
+
+/// Draws slanted lines over a rectangle.
+fn hatch(ui: &Ui, rect: Rect, ink: Color32) {
+    let painter = ui.painter_at(rect);
+    // Lines of neighbouring rectangles meet.
+    let mut x = (rect.left() / HATCH).floor() * HATCH - rect.height();
+    while x < rect.right() {
+        painter.line_segment([pos2(x, rect.bottom()), pos2(x + rect.height(), rect.top())], Stroke::new(1.0, ink));
+        x += HATCH;
+    }
+}
+
+/// Places of the chart in the window: the curve above the strips, on one axis of loads.
+struct Chart<'a> {
+    limits: &'a MethodLimits,
+    axis: &'a LoadAxis,
+    palette: Palette,
+    curve: Rect,
+    strips: Rect,
+    row: f32,
+    /// `true` if the loads at the ends of the strips have room.
+    has_ends: bool,
+    /// `true` if the curve has room.
+    has_curve: bool,
+}
+
+impl<'a> Chart<'a> {
+    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis) -> Self {
+        let has_ends = whole.width() >= WITH_ENDS;
+        let (left, right) = (whole.left() + NAMES, whole.right() - if has_ends { ENDS } else { 24.0 });
+        let count = limits.strips.len().max(1) as f32;
+        let room = whole.height() - 3.0 * LINE;
+        let row = (SHARE * room / count).clamp(ROW[0], ROW[1]);
+        let has_curve = room - row * count >= MIN_CURVE;
+        let row = if has_curve { row } else { (room / count).clamp(ROW[0], ROW[1]) };
+        let bottom = whole.bottom() - 2.0 * LINE;
+        let top = bottom - row * count;
+        Self {
+            limits,
+            axis,
+            palette: Palette::new(ui.visuals()),
+            curve: Rect::from_min_max(pos2(left, whole.top() + LINE), pos2(right, top - 8.0)),
+            strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
+            row,
+            has_ends,
+            has_curve,
+        }
+    }
+
+    /// Returns the place of a part of the load.
+    fn x(&self, factor: f64) -> f32 {
+        let [from, to] = RANGE.map(f64::ln);
+        let part = ((factor.clamp(RANGE[0], RANGE[1]).ln() - from) / (to - from)) as f32;
+        egui::lerp(self.strips.x_range(), part)
+    }
+
+    /// Returns the part of the load at a place.
+    fn factor(&self, x: f32) -> f64 {
+        let part = f64::from((x - self.strips.left()) / self.strips.width().max(1.0)).clamp(0.0, 1.0);
+        let [from, to] = RANGE.map(f64::ln);
+        (from + part * (to - from)).exp()
+    }
+
+    fn text(&self, ui: &Ui, at: egui::Pos2, align: Align2, text: &str, color: Color32) {
+        ui.painter().text(at, align, text, FontId::proportional(SMALL), color);
+    }
+
+    /// Lets the pointer and the arrow keys set the load; returns the new part of the load.
+    fn handle(&self, ui: &Ui, factor: f64) -> Option<f64> {
+        /// Factor by which an arrow key changes the load.
+        const STEP: f64 = 1.05;
+        let area = self.curve.union(self.strips);
+        let response = ui.interact(area, ui.scope_id().with("load"), Sense::drag());
+        let value = factor * self.axis.full;
+        response.widget_info(|| WidgetInfo::slider(true, value, tr("Load")));
+        let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+        if response.dragged() {
+            return response.interact_pointer_pos().map(|at| self.factor(at.x));
+        }
+        if !response.has_focus() {
+            return None;
+        }
+        let arrows = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        let [less, more] = [egui::Key::ArrowLeft, egui::Key::ArrowRight].map(|key| ui.input(|i| i.num_presses(key)));
+        let change = STEP.powf(more as f64 - less as f64);
+        (change != 1.0).then(|| (factor * change).clamp(RANGE[0], RANGE[1]))
+    }
+
+    /// Draws the length of the reference displacement over the load, both logarithmic, and the axis of loads.
+    fn curve(&self, ui: &Ui) {
+        let Self { palette, curve, strips, .. } = self;
+        let painter = ui.painter();
+        for decade in -2..=1 {
+            let (factor, stroke) = (10f64.powi(decade), Stroke::new(1.0, palette.line));
+            painter.line_segment([pos2(self.x(factor), curve.top()), pos2(self.x(factor), strips.bottom())], stroke);
+            let at = pos2(self.x(factor), strips.bottom() + 2.0);
+            self.text(ui, at, Align2::CENTER_TOP, &load_text(self.axis, factor), palette.text);
+        }
+        let at = pos2(strips.center().x, strips.bottom() + LINE);
+        self.text(ui, at, Align2::CENTER_TOP, &said(&self.axis.name), palette.secondary);
+        let Some(up) = self.up() else { return };
+        for decade in up.decades() {
+            let y = up.place(10f64.powi(decade));
+            painter.line_segment([pos2(curve.left(), y), pos2(curve.right(), y)], Stroke::new(1.0, palette.line));
+            let text = engineering(10f64.powi(decade), "m");
+            self.text(ui, pos2(curve.left() - 8.0, y), Align2::RIGHT_CENTER, &text, palette.secondary);
+        }
+        for known in self.limits.reference.split(|(_, u)| u.is_none()) {
+            let lengths = known.iter().filter_map(|(factor, u)| Some((*factor, u.map(|u| Vector2::norm(&u))?)));
+            let points = lengths.filter(|(_, u)| *u > 0.0).map(|(factor, u)| pos2(self.x(factor), up.place(u)));
+            painter.line(points.collect(), Stroke::new(2.0, palette.exact));
+        }
+        if self.has_ends {
+            let at = pos2(curve.right() + 10.0, curve.top());
+            let text = tr("reference displacement\nof the first probe");
+            self.text(ui, at, Align2::LEFT_TOP, text, palette.exact);
+        }
+    }
+
+    /// Returns the vertical axis of the curve; `None` if no reference displacement is known, or the curve has no room.
+    fn up(&self) -> Option<Up> {
+        if !self.has_curve {
+            return None;
+        }
+        let lengths = self.limits.reference.iter().filter_map(|(_, u)| u.map(|u| u.norm())).filter(|u| *u > 0.0);
+        let [low, high] = lengths.fold([f64::INFINITY, 0.0_f64], |[low, high], u| [low.min(u), high.max(u)]);
+        let range = [low, high].map(f64::log10);
+        range.iter().all(|v| v.is_finite()).then(|| Up { range: [range[0] - 0.1, range[1] + 0.1], rect: self.curve })
+    }
+
+    /// Shows a strip; a click uses its method and element.
+    fn strip(&self, ui: &Ui, row: usize, strip: &Strip, scene: &Scene, actions: &mut Vec<Action>) {
+        let Self { palette, strips, .. } = self;
+        let top = strips.top() + self.row * row as f32;
+        let right = strips.right() + if self.has_ends { ENDS } else { 0.0 };
+        let rect = Rect::from_min_max(pos2(strips.left() - NAMES, top), pos2(right, top + self.row));
+        let name = format!("{} {}", strip.element.id(), tr(strip.method.id()));
+        let is_used = scene.element() == strip.element && scene.solver.method == strip.method;
+        let [good, usable, converges, law] = strip.words(self.axis).map(|words| said(&words));
+        let text = fill!(
+            "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; converges to: %{converges}; strains above \
+             10 %: %{law}",
+            name = name.as_str(),
+            good = good,
+            usable = usable,
+            converges = converges,
+            law = law
+        );
+        let response = ui.interact(rect, ui.scope_id().with(("strip", row)), Sense::click());
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, &text));
+        let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };
+        let fill = if is_used { palette.chosen } else { Color32::TRANSPARENT };
+        ui.painter().rect(rect, 3.0, fill, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
+        let ink = if is_used { palette.text } else { palette.method(strip.method) };
+        self.text(ui, pos2(strips.left() - 10.0, rect.center().y), Align2::RIGHT_CENTER, &name, ink);
+        for piece in strip.pieces() {
+            let [from, to] = piece.range.map(|factor| self.x(factor));
+            let bar = Rect::from_min_max(pos2(from, top + 1.0), pos2(to, top + self.row - 2.0));
+            ui.painter().rect_filled(bar, 0.0, color(piece.rating));
+            if piece.is_beyond_law {
+                hatch(ui, bar, Color32::from_black_alpha(200));
+            }
+        }
+        if let Some(end) = strip.end(self.axis).filter(|_| self.has_ends) {
+            let at = pos2(strips.right() + 10.0, rect.center().y);
+            self.text(ui, at, Align2::LEFT_CENTER, &said(&end), palette.text);
+        }
+        if response.on_hover_text(text).clicked() && !is_used {
+            let mut own = scene.clone().with_method(strip.method);
+            own.set_element(strip.element);
+            actions.push(Action::Edit("Method", Box::new(own)));
+        }
+    }
+
+    /// Draws the line of the scene's load, and a ring at the displacement of the body.
+    fn load_line(&self, ui: &Ui, factor: f64, displacement: Option<f64>) {
+        let (x, color) = (self.x(factor), self.palette.load);
+        ui.painter().line_segment([pos2(x, self.curve.top()), pos2(x, self.strips.bottom())], Stroke::new(2.0, color));
+        let half = 60.0_f32.min(0.5 * self.strips.width());
+        let at = x.clamp(self.strips.left() + half - NAMES, self.strips.right() - half + 24.0);
+        self.text(ui, pos2(at, self.curve.top() - 1.0), Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
+        if let (Some(up), Some(u)) = (self.up(), displacement.filter(|u| *u > 0.0)) {
+            ui.painter().circle_stroke(pos2(x, up.place(u)), 5.0, Stroke::new(2.0, color));
+        }
+    }
+}
+
+/// Logarithmic vertical axis.
+struct Up {
+    /// Logarithms of the ends.
+    range: [f64; 2],
+    rect: Rect,
+}
+
+impl Up {
+    fn place(&self, value: f64) -> f32 {
+        let part = ((value.log10() - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0) as f32;
+        egui::lerp(self.rect.bottom()..=self.rect.top(), part)
+    }
+
+    /// Returns the powers of ten that have room for their labels.
+    fn decades(&self) -> impl Iterator<Item = i32> {
+        let (low, high) = (self.range[0].ceil() as i32, self.range[1].floor() as i32);
+        let room = (self.rect.height() / LINE).max(1.0) as i32;
+        (low..=high).step_by(((high - low) / room + 1).max(1) as usize)
+    }
+}

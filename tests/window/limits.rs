@@ -1,0 +1,158 @@
+//! Tests of the mode Limits: its numbers are those of `warpbeam limits`, and its line and strips set load, method and
+//! element.
+
+use std::ops::ControlFlow;
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::common::scene;
+use warpbeam::app::Lab;
+use warpbeam::scene::{ElementKind, MethodKind, Source};
+use warpbeam::simulation::Simulation;
+use warpbeam::study::figure::LoadAxis;
+use warpbeam::study::limits::MethodLimits;
+
+fn harness(id: &str) -> Harness<'static, Lab> {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    )
+}
+
+/// Waits until every result is known.
+fn wait(harness: &mut Harness<'_, Lab>) {
+    for _ in 0..6000 {
+        if !harness.state().is_computing() {
+            return harness.run_steps(3);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        harness.step();
+    }
+    unreachable!("waited in vain for the limits")
+}
+
+/// Opens Limits, and waits for its strips.
+fn opened(id: &str) -> Harness<'static, Lab> {
+    let mut harness = harness(id);
+    harness.key_press(Key::M);
+    harness.run_steps(3);
+    wait(&mut harness);
+    harness
+}
+
+fn force(lab: &Lab) -> f64 {
+    LoadAxis::of(lab.scene()).full
+}
+
+/// Presses at `from`, moves to `to`, and releases there.
+fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2) {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let middle = from + 0.5 * (to - from);
+    for event in [
+        Event::PointerMoved(from),
+        button(from, true),
+        Event::PointerMoved(middle),
+        Event::PointerMoved(to),
+        button(to, false),
+    ] {
+        harness.input_mut().events.push(event);
+        harness.step();
+    }
+    harness.run_steps(2);
+}
+
+/// Every strip has the words of the command, in the window's order.
+#[test]
+fn strips_are_those_of_the_command() {
+    let harness = opened("article");
+    let scene = scene("article");
+    let limits = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
+    let axis = LoadAxis::of(&scene);
+    assert_eq!(limits.strips.len(), 9);
+    for strip in &limits.strips {
+        let [good, usable, converges, law] = strip.words(&axis).map(|words| words.to_string());
+        harness.get_by_label(&format!(
+            "{} {}: within 1 % to: {good}; within 5 % to: {usable}; converges to: {converges}; strains above 10 %: {law}",
+            strip.element.id(),
+            strip.method.id()
+        ));
+    }
+}
+
+/// A click on a strip sets its method and element; one undo takes both back. The limits stay.
+#[test]
+fn a_click_on_a_strip_sets_method_and_element() {
+    let mut harness = opened("article");
+    let used = |lab: &Lab| (lab.scene().element(), lab.scene().solver.method);
+    let before = used(harness.state());
+    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
+    drag(&mut harness, row.center(), row.center());
+    assert_eq!(used(harness.state()), (ElementKind::Q4, MethodKind::Newton));
+    assert!(harness.query_by(|node| node.label().is_some_and(|label| label.starts_with("t3 warped:"))).is_some());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(used(harness.state()), before);
+}
+
+/// The line follows the pointer, and its load is where the axis has it: a drag by a third of the axis is a factor of
+/// ten. The limits are not computed again; one undo restores the load.
+#[test]
+fn the_line_sets_the_load() {
+    let mut harness = opened("article");
+    let before = force(harness.state());
+    let area = harness.get_by_role_and_label(Role::Slider, "Load").rect();
+    let middle = Pos2::new(area.left() + area.width() * 2.0 / 3.0, area.top() + 4.0);
+    drag(&mut harness, middle, middle - egui::vec2(area.width() / 3.0, 0.0));
+    let ratio = force(harness.state()) / before;
+    assert!((ratio - 0.1).abs() < 0.002, "{ratio}");
+    let is_strip = |label: String| label.starts_with("t3 warped:") && label.contains("49.3 kN");
+    assert!(harness.query_by(|node| node.label().is_some_and(is_strip)).is_some(), "the limits are those of before");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(force(harness.state()), before);
+    // With the focus on the line, an arrow key changes the load in small steps.
+    harness.get_by_role_and_label(Role::Slider, "Load").focus();
+    harness.step();
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(3);
+    let ratio = force(harness.state()) / before;
+    assert!((ratio - 1.05).abs() < 0.01, "{ratio}");
+}
+
+/// Another body has other limits, which replace those of the body before.
+#[test]
+fn an_edit_of_the_body_computes_the_limits_again() {
+    let mut harness = opened("article");
+    let mut longer = harness.state().scene().clone();
+    longer.beam.as_mut().unwrap().length *= 2.0;
+    harness.state_mut().set_scene(longer.clone()).unwrap();
+    harness.run_steps(2);
+    wait(&mut harness);
+    let limits = MethodLimits::of(&longer, &|_| ControlFlow::Continue(())).unwrap();
+    let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
+    let usable = linear.words(&LoadAxis::of(&longer))[1].to_string();
+    let found = |label: String| label.starts_with("t6 linear:") && label.contains(&format!("within 5 % to: {usable};"));
+    assert!(harness.query_by(|node| node.label().is_some_and(found)).is_some(), "{usable}");
+}
+
+#[test]
+fn a_motion_has_no_limits() {
+    let mut harness = harness("swing");
+    harness.key_press(Key::M);
+    harness.run_steps(3);
+    harness.get_by_label("Limits are those of equilibria. Compare and Budget judge the integrators of a motion.");
+}
