@@ -381,13 +381,17 @@ impl Search {
             && largest(&state.displacement) <= UNIT * problem.system().size()
     }
 
+    /// Returns `true` if the state is an equilibrium of large rotations without a mouse spring.
+    pub fn can_be_certified(&self, problem: &Problem) -> bool {
+        problem.mouse_spring().is_none() && self.is_equilibrium() && self.kinematics() != Kinematics::Linear
+    }
+
     /// Implements [`super::Simulation::certify`].
     pub fn certify(&mut self, problem: &Problem, state: &State) -> Certificate {
         if let Some(certificate) = self.certificate {
             return certificate;
         }
-        let holds = problem.mouse_spring().is_some();
-        if holds || !self.is_equilibrium() || self.kinematics() == Kinematics::Linear {
+        if !self.can_be_certified(problem) {
             return Certificate::default();
         }
         let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);

@@ -31,6 +31,12 @@ impl Equilibrium<'_> {
         self.search.certificate()
     }
 
+    /// Returns `true` if the state can be certified, and has not been since the last change.
+    #[cfg(feature = "app")]
+    pub(crate) fn needs_certificate(self) -> bool {
+        self.search.certificate().is_none() && self.search.can_be_certified(&self.body.problem)
+    }
+
     /// Returns the decisions of `auto`; `None` for other methods.
     #[doc(hidden)]
     #[must_use]

@@ -1,7 +1,9 @@
 //! Background solve of large models, one at a time. The last snapshot stays on display; edits change the requested
 //! scene, which the next solve uses.
 
-use web_time::Instant;
+use std::sync::Arc;
+
+use web_time::{Duration, Instant};
 
 use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
@@ -9,11 +11,14 @@ use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
 use crate::app::task::quality::Quality;
 use crate::app::task::solve::{
-    Bodies, MAX_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, SolveStart, Solved,
+    Bodies, MAX_PANE_UNKNOWNS, MAX_UNKNOWNS, Model, Phase, Rejected, Snapshot, SolveRequest, SolveStart, Solved,
 };
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Equilibrium, Simulation, Status};
+
+/// Time after which the meshing of a body that is solved between two frames is shown.
+const SOON: Duration = Duration::from_millis(500);
 
 /// Background work of a session.
 #[derive(Debug)]
@@ -25,7 +30,7 @@ pub(super) struct Background {
     is_large: bool,
     work: SolveState,
     /// Model of a cancelled or rejected solve that is not displayed: the next solve continues with it.
-    returned: Option<(Bodies, Option<DisplayGeometry>)>,
+    returned: Option<(Bodies, Option<Arc<DisplayGeometry>>)>,
     /// Initial state of the next solve.
     start: SolveStart,
     iterations: Option<u32>,
@@ -143,7 +148,10 @@ impl Session {
     pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
         match &self.background.work {
             SolveState::Running { solve, rollback: Some(rollback) } => {
-                Some((solve.scene(), solve.phase(), rollback.since.elapsed().as_secs()))
+                let (scene, since) = (solve.scene(), rollback.since.elapsed());
+                // A mesh is usually made within this time.
+                let is_soon_over = scene.unknowns() <= self.background.most_unknowns && since < SOON;
+                (!is_soon_over).then(|| (scene, solve.phase(), since.as_secs()))
             }
             _ => None,
         }
@@ -160,8 +168,12 @@ impl Session {
         self.background.is_large && self.needs_work(&self.scene)
     }
 
+    /// Returns `true` if a scene takes too long for the time between two frames: a new mesh takes longer than an
+    /// iteration.
     fn is_large(&self, scene: &Scene) -> bool {
-        scene.unknowns() > self.background.most_unknowns
+        let most = self.background.most_unknowns;
+        let is_new = !has_mesh_of(scene, self.simulation.scene());
+        scene.unknowns() > if is_new { most.min(MAX_PANE_UNKNOWNS) } else { most }
     }
 
     fn needs_work(&self, scene: &Scene) -> bool {
@@ -340,6 +352,7 @@ impl Session {
         let residuals = std::mem::replace(&mut self.residuals, residuals);
         let geometry = geometry.map(|geometry| std::mem::replace(&mut self.geometry, geometry));
         self.timings = *self.simulation.last_iteration();
+        self.note_size();
         let is_another_document = self.background.work.rollback().is_some_and(|rollback| {
             if rollback.snapshot.is_none() {
                 rollback.quality = std::mem::take(&mut self.quality);
@@ -373,11 +386,13 @@ impl Session {
         self.keep_rollback();
         let model = if is_new { Some(Model::New) } else { self.take_model() };
         let Some(model) = model else { return };
+        // Iterations of a body that is not that large are made between two frames.
+        let is_made_here = !self.running || self.scene.unknowns() <= self.background.most_unknowns;
         let request = SolveRequest {
             scene: self.scene.clone(),
             model,
             start: std::mem::take(&mut self.background.start),
-            iterations: self.background.iterations.take().or((!self.running).then_some(0)),
+            iterations: self.background.iterations.take().or(is_made_here.then_some(0)),
             residuals: self.residuals.clone(),
             is_displayed: true,
         };

@@ -1,10 +1,16 @@
 //! Motion of one of several compared settings of a scene, whose time steps are timed.
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 use web_time::Instant;
 
+use crate::app::session::compared_solve::Equations;
+use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
+use crate::app::task::solve::{MAX_PANE_UNKNOWNS, Model, SolveRequest, SolveStart};
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::Scene;
-use crate::sentence::Sentence;
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Simulation, Status, probe_results};
 
 /// Motion of a scene, for comparison with others.
@@ -13,6 +19,10 @@ pub(crate) struct ComparedMotion {
     /// Scene that the simulation has, or was refused for.
     scene: Option<Scene>,
     simulation: Option<Box<Simulation>>,
+    /// Background work that meshes the scene, if that is large.
+    setting_up: Option<Box<BackgroundSolve>>,
+    /// Display geometry of a mesh that was made in the background.
+    geometry: Option<Arc<DisplayGeometry>>,
     /// Reason for which there is no simulation.
     refused: Option<Sentence>,
     /// Computing time of a step, s: an exponentially weighted mean.
@@ -50,11 +60,24 @@ impl ComparedMotion {
         self.simulation().is_some_and(|simulation| !simulation.is_at_rest())
     }
 
-    /// Applies a changed scene. Returns `true` if the motion has to restart, because beam, mesh or any `[dynamics]`
-    /// setting has changed.
-    pub(crate) fn set_scene(&mut self, wanted: Scene) -> bool {
+    /// Returns `true` while the scene is meshed in the background.
+    pub(crate) fn is_setting_up(&self) -> bool {
+        self.setting_up.is_some()
+    }
+
+    /// Returns the equations of the motion, for motions on the same mesh.
+    pub(crate) fn equations(&self) -> Option<Equations> {
+        let simulation = self.simulation()?;
+        Some(Equations::new(simulation.scene(), simulation.system(), self.geometry.clone()))
+    }
+
+    /// Applies a changed scene; a mesh that is among `equations` is not made again, and a large one is made in the
+    /// background. Returns `true` if the motion has to restart, because beam, mesh or any `[dynamics]` setting has
+    /// changed, or the mesh is ready.
+    pub(crate) fn set_scene(&mut self, wanted: Scene, equations: &[Equations]) -> bool {
+        let is_ready = self.poll();
         if self.scene.as_ref() == Some(&wanted) {
-            return false;
+            return is_ready;
         }
         let before = self.scene.as_ref().filter(|_| self.simulation.is_some());
         let goes_on = before.is_some_and(|before| {
@@ -62,15 +85,64 @@ impl ComparedMotion {
         });
         let made = match self.simulation.take().filter(|_| goes_on) {
             Some(mut simulation) => simulation.change_scene(&wanted).map(|()| simulation),
-            None => Simulation::new(&wanted).map(Box::new),
+            None => {
+                (self.setting_up, self.geometry, self.seconds) = (None, None, None);
+                match Equations::of(equations, &wanted) {
+                    Some(system) => Simulation::with_system(&wanted, system).map(Box::new),
+                    None if wanted.unknowns() > MAX_PANE_UNKNOWNS => {
+                        self.set_up(&wanted);
+                        self.scene = Some(wanted);
+                        return true;
+                    }
+                    None => Simulation::new(&wanted).map(Box::new),
+                }
+            }
         };
         self.refused = made.as_ref().err().map(Sentence::from);
         self.simulation = made.ok();
-        if !goes_on {
-            self.seconds = None;
-        }
         self.scene = Some(wanted);
         !goes_on
+    }
+
+    /// Starts to mesh a scene in the background.
+    fn set_up(&mut self, scene: &Scene) {
+        let request = SolveRequest {
+            scene: scene.clone(),
+            model: Model::New,
+            start: SolveStart::Present,
+            iterations: Some(0),
+            residuals: Vec::new(),
+            is_displayed: false,
+        };
+        match BackgroundSolve::start(request) {
+            Ok(solve) => (self.setting_up, self.refused) = (Some(Box::new(solve)), None),
+            Err(error) => self.refused = Some(error.to_string().into()),
+        }
+    }
+
+    /// Takes the motion whose mesh was made in the background; returns `true` if it is ready.
+    fn poll(&mut self) -> bool {
+        let Some(solve) = &mut self.setting_up else { return false };
+        let ended = loop {
+            match solve.poll() {
+                SolveUpdate::None => return false,
+                SolveUpdate::Progress(_) => {}
+                SolveUpdate::Done(ended) => break Some(ended),
+                SolveUpdate::Cancelled | SolveUpdate::Died => break None,
+            }
+        };
+        self.setting_up = None;
+        match ended {
+            Some(Ok(solved)) => {
+                self.geometry = solved.snapshot.geometry;
+                self.simulation = Some(Box::new(solved.snapshot.bodies.simulation));
+            }
+            Some(Err(rejected)) => self.refused = Some((&rejected.error).into()),
+            None => {
+                self.refused = Some(sentence!("the solve ended unexpectedly: change a value to solve again"));
+            }
+        }
+        true
     }
 
     /// Returns to the start.
@@ -110,21 +182,45 @@ mod tests {
             scene.moving(integrator, 0.01)
         };
         let mut motion = ComparedMotion::default();
-        assert!(motion.set_scene(fall(9.81, IntegratorKind::TrBdf2)));
+        assert!(motion.set_scene(fall(9.81, IntegratorKind::TrBdf2), &[]));
         (0..5).for_each(|_| motion.step());
         let tip = motion.tip().unwrap();
         assert!(tip.y < 0.0 && motion.step_seconds().is_some());
-        assert!(!motion.set_scene(fall(20.0, IntegratorKind::TrBdf2)), "the motion continues");
+        assert!(!motion.set_scene(fall(20.0, IntegratorKind::TrBdf2), &[]), "the motion continues");
         assert_eq!(motion.tip(), Some(tip));
-        assert!(motion.set_scene(fall(20.0, IntegratorKind::ImplicitEuler)));
+        assert!(motion.set_scene(fall(20.0, IntegratorKind::ImplicitEuler), &[]));
         assert!(motion.step_seconds().is_none() && motion.tip() == Some(Vector2::zeros()));
+    }
+
+    /// Neither another integrator nor another damping makes the mesh again; a large mesh is made in the background.
+    #[test]
+    fn a_mesh_is_made_once_and_a_large_one_in_the_background() {
+        let scene = |cells: u32, damping: f64, integrator| {
+            let scene = Scene::beam(20.0, 0.5).with_cells(cells, 2).clamp("left").gravity([0.0, -9.81]);
+            let mut scene = scene.probe("tip", "right").moving(integrator, 0.01);
+            scene.dynamics.damping.stiffness = damping;
+            scene
+        };
+        let mut motion = ComparedMotion::default();
+        assert!(motion.set_scene(scene(1000, 0.0, IntegratorKind::TrBdf2), &[]));
+        assert!(motion.is_setting_up() && motion.simulation().is_none() && !motion.moves());
+        while !motion.set_scene(scene(1000, 0.0, IntegratorKind::TrBdf2), &[]) {
+            std::thread::yield_now();
+        }
+        assert!(motion.moves() && motion.equations().unwrap().has_geometry());
+        let system = motion.simulation().unwrap().system().clone();
+        for (damping, integrator) in [(1e-3, IntegratorKind::TrBdf2), (1e-3, IntegratorKind::ImplicitEuler)] {
+            let equations: Vec<_> = motion.equations().into_iter().collect();
+            assert!(motion.set_scene(scene(1000, damping, integrator), &equations));
+            assert!(Arc::ptr_eq(motion.simulation().unwrap().system(), &system), "{integrator:?}");
+        }
     }
 
     #[test]
     fn an_unstable_motion_stops_and_names_the_reason() {
         let scene = Scene::beam(2.0, 0.5).clamp("left").gravity([0.0, -9.81]);
         let mut motion = ComparedMotion::default();
-        motion.set_scene(scene.moving(IntegratorKind::SymplecticEuler, 0.01));
+        motion.set_scene(scene.moving(IntegratorKind::SymplecticEuler, 0.01), &[]);
         for _ in 0..1000 {
             if !motion.is_sound() {
                 break;

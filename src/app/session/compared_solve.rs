@@ -9,6 +9,7 @@ use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
 use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveStart};
 use crate::assembly::System;
+use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Beam, MeshFile, Scene};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{ProbeResult, Simulation, Status, probe_results};
@@ -33,6 +34,8 @@ pub(crate) struct ComparedSolve {
     /// `true` while a solve from rest only measures the cost; the equilibrium found before stays on display.
     measures: bool,
     end: Option<PaneEnd>,
+    /// Display geometry of a mesh that was made in the background.
+    geometry: Option<Arc<DisplayGeometry>>,
 }
 
 /// Result of a pane's solve from rest.
@@ -133,6 +136,12 @@ impl ComparedSolve {
             ComparedBody::Here(simulation) => Some(simulation),
             _ => None,
         }
+    }
+
+    /// Returns the equations of the simulation, for solves on the same mesh.
+    pub(crate) fn equations(&self) -> Option<Equations> {
+        let simulation = self.simulation()?;
+        Some(Equations::new(simulation.scene(), simulation.system(), self.geometry.clone()))
     }
 
     /// Returns the simulation whose state is to be displayed; `None` if the last displayed one stays.
@@ -254,7 +263,10 @@ impl ComparedSolve {
             match away.solve.poll() {
                 SolveUpdate::Progress(_) => {}
                 SolveUpdate::None => return false,
-                SolveUpdate::Done(Ok(solved)) => break ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation)),
+                SolveUpdate::Done(Ok(solved)) => {
+                    self.geometry = solved.snapshot.geometry.or_else(|| self.geometry.take());
+                    break ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation));
+                }
                 SolveUpdate::Done(Err(rejected)) => break ComparedBody::Refused((&rejected.error).into()),
                 SolveUpdate::Cancelled => {
                     self.given = None;
@@ -285,6 +297,9 @@ impl ComparedSolve {
         // A state cannot be transferred to another mesh.
         let simulation = simulation.filter(|simulation| has_mesh_of(simulation.scene(), &scene));
         self.from_rest = simulation.is_none();
+        if simulation.is_none() {
+            self.geometry = None;
+        }
         let system = Equations::of(equations, &scene);
         let model = model(simulation, system);
         self.is_large = scene.unknowns() > MAX_PANE_UNKNOWNS;
@@ -382,18 +397,35 @@ pub(crate) struct Equations {
     beam: Option<Beam>,
     mesh: Option<MeshFile>,
     system: Arc<System>,
+    /// Display geometry of the mesh, if it is known.
+    geometry: Option<Arc<DisplayGeometry>>,
 }
 
 impl Equations {
     /// Creates the entry for the equations of a scene.
-    pub(crate) fn new(scene: &Scene, system: &Arc<System>) -> Self {
-        Self { beam: scene.beam.clone(), mesh: scene.mesh.clone(), system: system.clone() }
+    pub(crate) fn new(scene: &Scene, system: &Arc<System>, geometry: Option<Arc<DisplayGeometry>>) -> Self {
+        Self { beam: scene.beam.clone(), mesh: scene.mesh.clone(), system: system.clone(), geometry }
     }
 
     /// Returns the equations for a scene's mesh, if they are among `all`.
-    fn of(all: &[Self], scene: &Scene) -> Option<Arc<System>> {
+    pub(super) fn of(all: &[Self], scene: &Scene) -> Option<Arc<System>> {
         let own = all.iter().find(|own| own.beam == scene.beam && own.mesh == scene.mesh);
         own.map(|own| own.system.clone())
+    }
+
+    pub(crate) fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Returns `true` if the display geometry is known.
+    #[cfg(test)]
+    pub(crate) fn has_geometry(&self) -> bool {
+        self.geometry.is_some()
+    }
+
+    /// Returns the display geometry of a system's mesh, if it is among `all`.
+    pub(crate) fn geometry_of(all: &[Self], system: &System) -> Option<Arc<DisplayGeometry>> {
+        all.iter().filter(|own| own.system.shares_mesh(system)).find_map(|own| own.geometry.clone())
     }
 }
 

@@ -17,18 +17,22 @@ pub(crate) mod undo;
 
 use std::io;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use nalgebra::Vector2;
 use thiserror::Error;
+use web_time::{Duration, Instant};
 
+use crate::app::platform::IS_PAGE;
 use crate::app::session::background::Background;
+use crate::app::session::compared_solve::Equations;
 use crate::app::session::document::{Document, SaveError};
 use crate::app::session::facts::{Facts, ShownFacts};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
 use crate::app::task::solve::{SolveStart, note_residual, solve_linear};
+use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
@@ -37,6 +41,12 @@ use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Reference, StudyError, is_known_unstable};
 use crate::timings::Timings;
+
+/// Time of iterations after which a displayed frame makes no more.
+const MAX_FRAME_WORK: Duration = Duration::from_millis(8);
+/// Number of unknowns above which a result is certified in the background: its eigenvalues then take longer than
+/// [`MAX_FRAME_WORK`].
+const MAX_CERTIFIED_HERE: usize = 2000;
 
 /// Change of the model that can be undone.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,7 +133,7 @@ pub(crate) struct Session {
     simulation: Simulation,
     /// Solution of linear theory; `None` if it could not be set up.
     linear: Option<Simulation>,
-    geometry: DisplayGeometry,
+    geometry: Arc<DisplayGeometry>,
     background: Background,
     running: bool,
     /// Iterations per displayed frame.
@@ -134,6 +144,8 @@ pub(crate) struct Session {
     residuals: Vec<f64>,
     playback: Playback,
     quality: Quality,
+    /// Certification of a copy of the displayed body.
+    certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Last equilibrium, displayed in place of a state that diverges.
     converged: Option<Simulation>,
     /// Equilibrium before the body was grabbed, which its release restores.
@@ -154,7 +166,7 @@ impl Session {
             linear,
             scene,
             undo: UndoHistory::default(),
-            geometry: DisplayGeometry::new(simulation.system().mesh()),
+            geometry: Arc::new(DisplayGeometry::new(simulation.system().mesh())),
             simulation,
             background: Background::default(),
             running: true,
@@ -163,6 +175,7 @@ impl Session {
             residuals: Vec::new(),
             playback: Playback::default(),
             quality: Quality::default(),
+            certifying: None,
             converged: None,
             before_grab: None,
             facts: Facts::default(),
@@ -194,6 +207,11 @@ impl Session {
 
     pub(crate) fn geometry(&self) -> &DisplayGeometry {
         &self.geometry
+    }
+
+    /// Returns the equations of the displayed body, for bodies on the same mesh.
+    pub(crate) fn equations(&self) -> Equations {
+        Equations::new(self.simulation.scene(), self.simulation.system(), Some(self.geometry.clone()))
     }
 
     pub(crate) fn playback(&self) -> &Playback {
@@ -272,7 +290,7 @@ impl Session {
 
     /// Returns the last equilibrium on the displayed mesh.
     pub(crate) fn converged(&self) -> Option<&Simulation> {
-        self.converged.as_ref().filter(|kept| std::sync::Arc::ptr_eq(kept.system(), self.simulation.system()))
+        self.converged.as_ref().filter(|kept| Arc::ptr_eq(kept.system(), self.simulation.system()))
     }
 
     /// Returns the parts that have changed since the last call.
@@ -374,7 +392,7 @@ impl Session {
         self.simulation.change_scene(&scene)?;
         self.drop_background();
         if !has_mesh_of(&scene, &before) {
-            self.geometry = DisplayGeometry::new(self.simulation.system().mesh());
+            self.geometry = Arc::new(DisplayGeometry::new(self.simulation.system().mesh()));
         }
         self.scene = scene;
         self.note_size();
@@ -493,7 +511,7 @@ impl Session {
         self.running = false;
     }
 
-    /// Makes the iterations of one displayed frame, or the time steps that are due at `now`, s (any clock that runs in
+    /// Makes the iterations of one displayed frame, fewer if they take long, or the time steps that are due at `now`, s (any clock that runs in
     /// real time). Returns `true` if it has iterated.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         self.poll();
@@ -506,7 +524,14 @@ impl Session {
             self.timings = *self.simulation.last_iteration();
             return false;
         }
-        self.iterate(self.iterations);
+        self.timings = Timings::default();
+        let since = Instant::now();
+        for _ in 0..self.iterations {
+            self.iterate_once();
+            if since.elapsed() >= MAX_FRAME_WORK {
+                break;
+            }
+        }
         true
     }
 
@@ -523,12 +548,14 @@ impl Session {
             return;
         }
         self.timings = Timings::default();
-        for _ in 0..iterations {
-            if *self.simulation.status() == Status::Running {
-                self.simulation.step();
-                self.timings.add(self.simulation.last_iteration());
-                note_residual(&self.simulation, &mut self.residuals);
-            }
+        (0..iterations).for_each(|_| self.iterate_once());
+    }
+
+    fn iterate_once(&mut self) {
+        if *self.simulation.status() == Status::Running {
+            self.simulation.step();
+            self.timings.add(self.simulation.last_iteration());
+            note_residual(&self.simulation, &mut self.residuals);
         }
     }
 
@@ -573,6 +600,51 @@ impl Session {
         self.quality.update(&self.simulation);
     }
 
+    /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
+    fn request_certificate(&mut self) -> bool {
+        if let Some(task) = &self.certifying {
+            match task.poll() {
+                Update::None | Update::Progress(()) => return true,
+                Update::Done(certified) => {
+                    let (simulation, quality) = *certified;
+                    let own = &self.simulation;
+                    let is_current = simulation.state() == own.state()
+                        && simulation.scene() == own.scene()
+                        && simulation.status() == own.status()
+                        && own.mouse_spring().is_none();
+                    if is_current {
+                        (self.simulation, self.quality) = (simulation, quality);
+                    }
+                }
+                Update::Died => self.certify(),
+            }
+            self.certifying = None;
+        }
+        let is_known = !self.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
+            && self.quality.is_of(&self.simulation);
+        let is_small = self.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
+        let copy = self.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
+        let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {
+            let work = move |_: &Reporter<_, _>| {
+                let mut quality = Quality::default();
+                copy.certify();
+                quality.update(&copy);
+                Box::new((copy, quality))
+            };
+            Task::start("certify", work).ok()
+        });
+        self.certifying = started;
+        if self.certifying.is_none() {
+            self.certify();
+        }
+        self.certifying.is_some()
+    }
+
+    /// Returns `true` while the result is certified in the background.
+    pub(crate) fn is_certifying(&self) -> bool {
+        self.certifying.is_some()
+    }
+
     /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Results
     /// of a motion are not requested during a press, so that dragging a slider stays smooth.
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
@@ -583,10 +655,8 @@ impl Session {
             return false;
         }
         // A background solve has certified its result.
-        if !self.is_in_background() {
-            self.certify();
-        }
-        self.facts.request_at_rest(&self.scene, shown)
+        let certifies = !self.is_in_background() && self.request_certificate();
+        self.facts.request_at_rest(&self.scene, shown) || certifies
     }
 
     /// Cancels the computation of limits, unless it is for this scene.

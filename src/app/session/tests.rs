@@ -313,3 +313,75 @@ fn restored_edits_know_what_their_file_contained() {
         recovery.keep(None).unwrap();
     }
 }
+
+/// Returns a cantilever with about this many thousand unknowns.
+fn large(thousands: u32) -> Scene {
+    cantilever(-1000.0).with_cells(28 * thousands, 4)
+}
+
+/// The eigenvalues of a large body are computed in the background, and are those of the body itself.
+#[test]
+fn a_large_result_is_certified_in_the_background() {
+    let scene = large(3).with_method(MethodKind::Newton);
+    let mut session = session(scene.clone());
+    while session.iterates() {
+        session.iterate(1);
+    }
+    let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
+    assert!(session.request_facts(ShownFacts::default(), false) && session.is_certifying());
+    assert_eq!(certificate(&session), None, "it is not computed between two frames");
+    while session.is_certifying() {
+        session.request_facts(ShownFacts::default(), false);
+        std::thread::yield_now();
+    }
+    let mut own = Simulation::new(&scene).unwrap();
+    own.solve();
+    assert_eq!(certificate(&session), Some(own.certify()));
+    assert!(session.quality().mesh_error_percent.is_some());
+    // An edit in the meantime keeps its own result.
+    session.apply(with_force(&session, -1100.0)).unwrap();
+    while session.iterates() {
+        session.iterate(1);
+    }
+    session.request_facts(ShownFacts::default(), false);
+    session.apply(with_force(&session, -1200.0)).unwrap();
+    while session.iterates() || session.is_certifying() {
+        session.iterate(1);
+        session.request_facts(ShownFacts::default(), false);
+    }
+    own.set_force(LoadId::nth(0), [0.0, -1200.0]).unwrap();
+    own.solve();
+    assert!((tip(&session) - own.probe("tip").unwrap().y).abs() < 1e-6);
+    assert_eq!(certificate(&session).unwrap().stable, Some(true));
+}
+
+/// A mesh of thousands of unknowns is made in the background, and iterates between frames once it is there.
+#[test]
+fn a_large_mesh_is_made_in_the_background() {
+    let mut session = session(cantilever(-1000.0));
+    session.solve(ShownFacts::default());
+    let (before, finer) = (session.simulation().system().dofs(), large(5));
+    session.apply(Edit::Scene("Cells", Box::new(finer.clone()))).unwrap();
+    assert!(session.is_working(), "the mesh is not made between two frames");
+    assert_eq!((session.simulation().system().dofs(), session.work().is_none()), (before, true));
+    wait(&mut session);
+    assert_eq!(session.simulation().scene(), &finer);
+    assert!(!session.is_in_background() && session.simulation().iterations() == 0 && session.linear().is_some());
+    assert!(session.advance(0.0) && session.simulation().iterations() >= 1);
+    // Its loads are edited between frames.
+    session.apply(with_force(&session, -900.0)).unwrap();
+    assert!(!session.is_working());
+    session.apply(Edit::Undo).unwrap();
+    session.apply(Edit::Undo).unwrap();
+    assert_eq!(session.simulation().system().dofs(), before);
+}
+
+/// A displayed frame ends in time, however many iterations are asked for.
+#[test]
+fn a_frame_makes_as_many_iterations_as_it_has_time_for() {
+    let mut session = session(large(12));
+    session.set_iterations(100);
+    assert!(session.advance(0.0));
+    let made = session.simulation().iterations();
+    assert!((1..100).contains(&made) && session.iterates(), "{made} iterations");
+}

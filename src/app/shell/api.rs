@@ -275,7 +275,7 @@ impl Lab {
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = !session.is_motion() && (at_rest || limits);
-        session.is_working() || plots || learns || at_rest
+        session.is_working() || session.is_certifying() || plots || learns || at_rest
     }
 
     /// Restores the saved settings.

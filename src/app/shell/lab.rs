@@ -87,6 +87,7 @@ impl Desk {
             direction: panel.force_direction(),
             opening: OpeningLoads::of(&session.document().original),
             eases,
+            own: session.equations(),
         }
     }
 }
@@ -195,7 +196,7 @@ impl Lab {
             let Desk { session, motions, .. } = &mut self.desk;
             session.poll();
             session.rest();
-            motions.advance(session.scene(), now, session.is_running());
+            motions.advance(session.scene(), &session.equations(), now, session.is_running());
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
@@ -241,7 +242,7 @@ impl Lab {
             lesson.learn.wait(session.scene());
         }
         if view.mode == Mode::Compare {
-            compare.solve_to_end(session.scene(), session.simulation().system(), view.bars);
+            compare.solve_to_end(session.scene(), &session.equations(), view.bars);
         }
         if has_search {
             self.show_last_line();

@@ -237,8 +237,6 @@ impl Lab {
         let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
         let input = CompareInput {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
-            shown: session.simulation().scene(),
-            system: session.simulation().system(),
             reference: session.facts().reference.get(session.scene()),
             reference_failure: session.facts().reference.failure(session.scene()),
             running: session.is_running(),

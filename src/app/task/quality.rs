@@ -33,7 +33,8 @@ impl Quality {
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));
     }
 
-    fn is_of(&self, simulation: &Simulation) -> bool {
+    /// Returns `true` if the quality is that of the simulation's state.
+    pub(crate) fn is_of(&self, simulation: &Simulation) -> bool {
         let (u, material) = (simulation.displacement(), simulation.problem().material());
         self.of.as_ref().is_some_and(|(known, of)| known == u && of == material)
     }

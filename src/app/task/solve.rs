@@ -39,10 +39,10 @@ impl Bodies {
     }
 
     /// Returns the display geometry of a new mesh.
-    pub(crate) fn geometry(&self) -> DisplayGeometry {
+    pub(crate) fn geometry(&self) -> Arc<DisplayGeometry> {
         // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
         let _ = self.simulation.system().recovery();
-        DisplayGeometry::new(self.simulation.system().mesh())
+        Arc::new(DisplayGeometry::new(self.simulation.system().mesh()))
     }
 }
 
@@ -50,7 +50,7 @@ impl Bodies {
 #[derive(Debug)]
 pub(crate) enum Model {
     /// Existing model, with its display geometry if that has not been displayed yet.
-    Existing(Box<(Bodies, Option<DisplayGeometry>)>),
+    Existing(Box<(Bodies, Option<Arc<DisplayGeometry>>)>),
     /// New model on existing equations.
     Equations(Arc<System>),
     /// New model, which is meshed first.
@@ -89,7 +89,7 @@ pub(crate) struct SolveRequest {
     /// Residuals recorded before the solve.
     pub residuals: Vec<f64>,
     /// `true` if the main view shows the model: the solve then reports snapshots, and also computes the solution of
-    /// linear theory, the display geometry and the quality.
+    /// linear theory and the quality.
     pub is_displayed: bool,
 }
 
@@ -98,7 +98,7 @@ pub(crate) struct SolveRequest {
 pub(crate) struct Snapshot {
     pub bodies: Bodies,
     /// Display geometry of a new mesh.
-    pub geometry: Option<DisplayGeometry>,
+    pub geometry: Option<Arc<DisplayGeometry>>,
     pub residuals: Vec<f64>,
 }
 
@@ -131,7 +131,7 @@ pub(crate) struct Solved {
 #[derive(Debug)]
 pub(crate) struct Rejected {
     pub error: SimulationError,
-    pub model: Option<(Bodies, Option<DisplayGeometry>)>,
+    pub model: Option<(Bodies, Option<Arc<DisplayGeometry>>)>,
 }
 
 pub(crate) type SolveOutcome = Result<Box<Solved>, Box<Rejected>>;
@@ -169,7 +169,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Rejected`].
-    pub(crate) fn set_up(self, scene: &Scene) -> Result<(Bodies, Option<DisplayGeometry>), Box<Rejected>> {
+    pub(crate) fn set_up(self, scene: &Scene) -> Result<(Bodies, Option<Arc<DisplayGeometry>>), Box<Rejected>> {
         let made = match self {
             Self::Existing(own) if own.0.simulation.scene() == scene => return Ok(*own),
             Self::Existing(mut own) => {
@@ -192,9 +192,9 @@ impl Model {
 /// [`Rejected`].
 pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
     let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
-    let needs_geometry = is_displayed && matches!(model, Model::New);
+    let is_new = matches!(model, Model::New);
     let (mut bodies, mut geometry) = model.set_up(&scene)?;
-    if needs_geometry {
+    if is_new {
         geometry = Some(bodies.geometry());
     }
     start.apply(&mut bodies.simulation);

@@ -1,8 +1,6 @@
 //! Comparison of two to four settings side by side: one load, one camera, one colour range, and the load curve under
 //! them.
 
-use std::sync::Arc;
-
 use egui::{Align2, Color32, Context, FontId, Panel, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
 use web_time::{Duration, Instant};
@@ -24,7 +22,6 @@ use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::app::widgets::text::{UNKNOWN, semibold};
-use crate::assembly::System;
 use crate::format::{engineering, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
@@ -58,9 +55,6 @@ const LOW_FOR_TWO_ROWS: f32 = 680.0;
 /// Input of the comparison of equilibria.
 pub(crate) struct CompareInput<'a> {
     pub common: PaneInput<'a>,
-    /// Scene that the existing equations belong to.
-    pub shown: &'a Scene,
-    pub system: &'a Arc<System>,
     pub reference: Option<&'a Reference>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
@@ -135,15 +129,14 @@ impl Compare {
     }
 
     /// Returns the existing equations that the panes can share.
-    fn equations(&self, scene: &Scene, system: &Arc<System>) -> Vec<Equations> {
-        let own = std::iter::once(Equations::new(scene, system));
-        own.chain(self.panes.list.iter().filter_map(Pane::equations)).collect()
+    fn equations(&self, own: &Equations) -> Vec<Equations> {
+        std::iter::once(own.clone()).chain(self.panes.list.iter().flat_map(Pane::equations)).collect()
     }
 
     /// Solves all panes, and waits for them; `times` them, too.
-    pub(crate) fn solve_to_end(&mut self, scene: &Scene, system: &Arc<System>, times: bool) {
+    pub(crate) fn solve_to_end(&mut self, scene: &Scene, own: &Equations, times: bool) {
         self.trace.set_scene(scene);
-        let mut equations = self.equations(scene, system);
+        let mut equations = self.equations(own);
         for pane in &mut self.panes.list {
             pane.solve.solve_to_end(pane.setting.apply(scene), &equations);
             equations.extend(pane.equations());
@@ -159,7 +152,7 @@ impl Compare {
         let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
         self.trace.set_scene(input.common.scene);
         let equations =
-            if self.is_changed(input.common.scene) { self.equations(input.shown, input.system) } else { Vec::new() };
+            if self.is_changed(input.common.scene) { self.equations(&input.common.own) } else { Vec::new() };
         let mut is_new = false;
         let share = WORK / u32::try_from(self.panes.list.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes.list {
@@ -272,8 +265,10 @@ impl Compare {
     /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Interaction {
         self.advance(ui.ctx(), input);
+        let mut known = self.equations(&input.common.own);
         for pane in &mut self.panes.list {
-            pane.update_display(input.common.view, ui.visuals());
+            pane.update_display(input.common.view, ui.visuals(), &known);
+            known.extend(pane.equations());
         }
         let range = self.share_colors(input.common.view);
         let whole = ui.available_rect_before_wrap();
@@ -314,7 +309,7 @@ impl Compare {
     /// converged are ignored.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>) {
         let Some(size) = self.panes.common_size() else { return };
-        let (low, high) = input.system.mesh().bounds();
+        let (low, high) = input.common.own.system().mesh().bounds();
         let rest = [low, high];
         let iterates = self.is_iterating();
         let margins = self.margins(input, size);

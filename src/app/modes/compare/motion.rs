@@ -10,6 +10,7 @@ use super::setting::PaneSetting;
 use crate::app::language::{fill, joined, percent, said, sentence, tr};
 use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::compared_motion::ComparedMotion;
+use crate::app::session::compared_solve::Equations;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::widgets::palette::Palette;
@@ -65,7 +66,13 @@ impl ComparedPane for MotionPane {
     }
 
     fn condition(&self) -> Condition {
-        if self.motion.is_sound() { Condition::Result } else { Condition::Failed }
+        if self.motion.is_setting_up() {
+            Condition::Outdated
+        } else if self.motion.is_sound() {
+            Condition::Result
+        } else {
+            Condition::Failed
+        }
     }
 
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay) {
@@ -107,7 +114,12 @@ impl MotionCompare {
 
     /// Returns `true` while a body moves.
     pub(crate) fn moves(&self) -> bool {
-        self.panes.list.iter().any(|pane| pane.motion.moves())
+        self.panes.list.iter().any(|pane| pane.motion.moves()) || self.is_setting_up()
+    }
+
+    /// Returns `true` while a pane's scene is meshed in the background.
+    fn is_setting_up(&self) -> bool {
+        self.panes.list.iter().any(|pane| pane.motion.is_setting_up())
     }
 
     /// Restarts all motions.
@@ -131,15 +143,19 @@ impl MotionCompare {
 
     /// Applies the scene, and makes the time steps that are due at `now`, s. All panes are at the same time: a slow one
     /// slows all of them down.
-    pub(crate) fn advance(&mut self, scene: &Scene, now: f64, running: bool) {
+    /// They wait for those that are still being meshed. `own` are the equations of the body in Explore.
+    pub(crate) fn advance(&mut self, scene: &Scene, own: &Equations, now: f64, running: bool) {
         let mut starts_over = false;
+        let known = self.panes.list.iter().filter_map(|pane| pane.motion.equations());
+        let mut equations: Vec<Equations> = std::iter::once(own.clone()).chain(known).collect();
         for pane in &mut self.panes.list {
-            starts_over |= pane.motion.set_scene(pane.setting.apply(scene));
+            starts_over |= pane.motion.set_scene(pane.setting.apply(scene), &equations);
+            equations.extend(pane.motion.equations());
         }
         if starts_over {
             self.reset();
         }
-        if !running || !self.moves() {
+        if !running || self.is_setting_up() || !self.moves() {
             return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
@@ -203,9 +219,12 @@ impl MotionCompare {
 
     /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Interaction {
+        let mut known = vec![input.own.clone()];
         for MotionPane { motion, display, .. } in &mut self.panes.list {
+            known.extend(motion.equations());
             if let Some(simulation) = motion.simulation() {
-                display.update(simulation, input.view, Some(self.played));
+                display.update(simulation, input.view, Some(self.played), &known);
+                known.extend(display.equations(simulation.scene()));
             }
             display.body_mesh.color(ui.visuals(), input.view.field);
         }

@@ -98,10 +98,10 @@ impl Pane {
         self.solve.simulation()
     }
 
-    /// Returns the equations of the simulation, for other panes with the same mesh.
-    pub(super) fn equations(&self) -> Option<Equations> {
-        let simulation = self.simulation()?;
-        Some(Equations::new(simulation.scene(), simulation.system()))
+    /// Returns the equations of the simulation and of the displayed body, for other panes with the same mesh.
+    pub(super) fn equations(&self) -> impl Iterator<Item = Equations> {
+        let scene = self.simulation().map(Simulation::scene);
+        self.solve.equations().into_iter().chain(scene.and_then(|scene| self.display.equations(scene)))
     }
 
     /// Restarts from rest.
@@ -135,9 +135,9 @@ impl Pane {
     }
 
     /// Updates the displayed mesh.
-    pub(super) fn update_display(&mut self, view: &ViewOptions, visuals: &egui::Visuals) {
+    pub(super) fn update_display(&mut self, view: &ViewOptions, visuals: &egui::Visuals, known: &[Equations]) {
         if let Some(simulation) = self.solve.displayed() {
-            self.display.update(simulation, view, None);
+            self.display.update(simulation, view, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
     }

@@ -9,6 +9,7 @@ use super::grid::{self, Grid};
 use super::setting::{PANES, PaneSetting};
 use crate::app::diagnosis::Errors;
 use crate::app::language::{fill, tr};
+use crate::app::session::compared_solve::Equations;
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::ForceArrows;
@@ -35,6 +36,8 @@ pub(crate) struct PaneInput<'a> {
     pub opening: OpeningLoads,
     /// `true` if camera movements are animated.
     pub eases: bool,
+    /// Equations of the body in Explore, which panes share if their mesh is the same.
+    pub own: Equations,
 }
 
 /// Displayed body of a pane, and the pointer over it.
@@ -42,7 +45,7 @@ pub(crate) struct PaneInput<'a> {
 pub(super) struct PaneDisplay {
     /// Equations of the displayed body.
     pub system: Option<Arc<System>>,
-    geometry: DisplayGeometry,
+    geometry: Arc<DisplayGeometry>,
     pub body_mesh: BodyMesh,
     /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     pub range: Option<[f64; 2]>,
@@ -52,16 +55,29 @@ pub(super) struct PaneDisplay {
 }
 
 impl PaneDisplay {
-    /// Displays the state of a simulation; `played` is the playing time of a motion, s.
-    pub(super) fn update(&mut self, simulation: &Simulation, view: &ViewOptions, played: Option<f64>) {
+    /// Displays the state of a simulation; `played` is the playing time of a motion, s. The display geometry is taken
+    /// from `known` if it is there.
+    pub(super) fn update(
+        &mut self,
+        simulation: &Simulation,
+        view: &ViewOptions,
+        played: Option<f64>,
+        known: &[Equations],
+    ) {
         let system = simulation.system();
         if self.system.as_ref().is_none_or(|displayed| !Arc::ptr_eq(displayed, system)) {
-            self.geometry = DisplayGeometry::new(system.mesh());
+            let shared = Equations::geometry_of(known, system);
+            self.geometry = shared.unwrap_or_else(|| Arc::new(DisplayGeometry::new(system.mesh())));
             (self.body_mesh, self.range) = (BodyMesh::default(), None);
             self.system = Some(system.clone());
         }
         self.body_mesh.update(simulation, &self.geometry, view, played);
         self.range = Some(self.body_mesh.range);
+    }
+
+    /// Returns the equations of a scene on the displayed mesh.
+    pub(super) fn equations(&self, scene: &Scene) -> Option<Equations> {
+        Some(Equations::new(scene, self.system.as_ref()?, Some(self.geometry.clone())))
     }
 
     /// Returns the loads of the displayed body at a simulated time, s.
