@@ -8,8 +8,10 @@ use crate::app::task::keyed::{Computed, Keyed, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
-use crate::progress::Observer;
+use crate::format::number;
+use crate::progress::{Observer, Progress};
 use crate::scene::{DynamicsSettings, Scene, SolverSettings};
+use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
 use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference, StudyError, time_from_rest};
@@ -28,7 +30,7 @@ facts! {
     /// Reference solution that errors are measured against.
     ReferenceFact by without_settings = "reference": Reference, find_reference;
     /// Load–displacement curve.
-    CurveFact = "curve": Curve, |scene, observe| Ok(curve(scene, observe));
+    CurveFact = "curve": Curve, curve;
     /// End of the load path from rest, and the jumps on it.
     PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
     /// Limits of every method and element.
@@ -36,15 +38,25 @@ facts! {
     /// Time of a solve from rest.
     TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.
-    FrequencyFact = "frequency": f64, |scene, _| Ok(natural_frequency(scene));
+    FrequencyFact = "frequency": f64, |scene, observe| Ok(natural_frequency(scene, observe));
 }
 
-fn curve(scene: &Scene, observe: Observer<'_>) -> Option<Curve> {
+/// Largest number of unknowns of a body whose load curve is computed: a curve takes hundreds of iterations.
+const MAX_CURVE_UNKNOWNS: u64 = 100_000;
+
+fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
+    if scene.unknowns() > MAX_CURVE_UNKNOWNS {
+        return Err(sentence!(
+            "the load curve of more than %{n} unknowns takes minutes: `warpbeam curve` computes it",
+            n = number(MAX_CURVE_UNKNOWNS as f64)
+        ));
+    }
     let own = || SentScene(scene.clone());
     if let Some(curve) = LoadCurve::observed(scene, observe) {
-        return Some(Curve::Beam(Box::new((curve, own()))));
+        return Ok(Some(Curve::Beam(Box::new((curve, own())))));
     }
-    Some(Curve::Path(Box::new((LoadPath::observed(scene, observe)?, own()))))
+    let path = LoadPath::observed(scene, observe);
+    Ok(path.map(|path| Curve::Path(Box::new((path, own())))))
 }
 
 /// Results that are computed only while they are shown.
@@ -143,9 +155,13 @@ fn found<V>(found: Result<V, StudyError>) -> Computed<V> {
     found.map(Some).map_err(|error| (&error).into())
 }
 
-/// Returns the lowest natural frequency of a scene's body about rest, Hz.
-fn natural_frequency(scene: &Scene) -> Option<f64> {
+/// Returns the lowest natural frequency of a scene's body about rest, Hz. It asks before it meshes, and before it
+/// factorizes.
+fn natural_frequency(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
+    let goes_on = |fraction: f64| observe(Progress::at(fraction)).continue_value();
+    goes_on(0.0)?;
     let simulation = Simulation::new(scene).ok()?;
+    goes_on(0.5)?;
     let problem = simulation.problem();
     let mass = Mass::new(problem.system(), scene.material.area_density());
     Some(lowest_frequency(problem, &mass)? / TAU)
@@ -159,6 +175,14 @@ mod tests {
     use super::*;
     use crate::app::task::keyed::Fact;
     use crate::scene::open;
+
+    /// The load curve of a very large body is refused at once, with the command that computes it.
+    #[test]
+    fn the_curve_of_a_very_large_body_is_refused() {
+        let scene = Scene::beam(10.0, 1.0).with_cells(4000, 40).clamp("left").force("right", [0.0, -1.0]);
+        let refused = CurveFact::compute(&scene.probe("tip", "right"), &|_| ControlFlow::Continue(())).unwrap_err();
+        assert!(refused.to_string().contains("`warpbeam curve`"), "{refused}");
+    }
 
     /// A cancelled computation ends before its first solve: each search asks before each of its steps.
     #[test]
@@ -176,5 +200,7 @@ mod tests {
             let all = [asked::<ReferenceFact>(&scene), asked::<CurveFact>(&scene), asked::<PathFact>(&scene)];
             assert!(all.iter().all(|asked| (1..4).contains(asked)), "{id}: {all:?}");
         }
+        let swing = open(&crate::scene::Source { name: "swing".into(), assignments: Vec::new() }).unwrap();
+        assert_eq!(asked::<FrequencyFact>(&swing), 1);
     }
 }

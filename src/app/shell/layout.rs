@@ -187,7 +187,7 @@ impl Lab {
                 load_curve::show(
                     ui,
                     facts.curve.latest(),
-                    !facts.curve.is_pending(session.scene()),
+                    (!facts.curve.is_pending(session.scene()), facts.curve.failure(session.scene())),
                     view.curve_plot,
                     actions,
                 );

@@ -113,7 +113,10 @@ impl BackgroundSolve {
                     self.phase = phase;
                     continue;
                 }
-                Update::Progress(SolveProgress::Snapshot(snapshot)) => SolveUpdate::Progress(snapshot),
+                Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
+                    drop(receipt);
+                    SolveUpdate::Progress(snapshot)
+                }
                 Update::Done(outcome) => SolveUpdate::Done(outcome),
                 Update::Died => match &self.runner {
                     Runner::Worker(solve) if solve.is_cancelled() => SolveUpdate::Cancelled,

@@ -11,7 +11,7 @@ use web_time::{Duration, Instant};
 use crate::app::task::quality::Quality;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::solve::{
-    Bodies, Model, Phase, Rejected, Snapshot, SolveOutcome, SolveProgress, SolveRequest, SolveStart, Solved,
+    Bodies, Model, Phase, Receipt, Rejected, Snapshot, SolveOutcome, SolveProgress, SolveRequest, SolveStart, Solved,
     linear_scene, run,
 };
 use crate::app::task::thread::{Reporter, Task, Update, Work};
@@ -67,7 +67,7 @@ impl Work for SolveWork {
         };
         let solved = run(request, &|progress| match progress {
             SolveProgress::Phase(phase) => reporter.report(SentProgress::Phase(phase)),
-            SolveProgress::Snapshot(snapshot) => match sent(*snapshot) {
+            SolveProgress::Snapshot(snapshot, _) => match sent(*snapshot) {
                 Some(found) => reporter.report(SentProgress::Found(Box::new(found))),
                 None => ControlFlow::Continue(()),
             },
@@ -222,7 +222,8 @@ impl RemoteSolve {
         let copy = bodies.snapshot();
         self.model = Ok(Model::Existing(Box::new((bodies, None))));
         copy.map_or(Update::None, |bodies| {
-            Update::Progress(SolveProgress::Snapshot(Box::new(Snapshot { bodies, geometry, residuals })))
+            let snapshot = Box::new(Snapshot { bodies, geometry, residuals });
+            Update::Progress(SolveProgress::Snapshot(snapshot, Receipt::default()))
         })
     }
 }
@@ -246,7 +247,9 @@ mod tests {
             match solve.next(true) {
                 Update::Done(outcome) => break (outcome, geometries),
                 Update::Died => panic!("no result"),
-                Update::Progress(SolveProgress::Snapshot(shown)) => geometries += usize::from(shown.geometry.is_some()),
+                Update::Progress(SolveProgress::Snapshot(shown, _)) => {
+                    geometries += usize::from(shown.geometry.is_some())
+                }
                 Update::None | Update::Progress(_) => {}
             }
         }
@@ -319,7 +322,9 @@ mod tests {
         solve.cancelled.set(Instant::now().checked_sub(GRACE));
         let first = loop {
             match solve.next(true) {
-                Update::Progress(SolveProgress::Snapshot(shown)) => break Some(shown.bodies.simulation.iterations()),
+                Update::Progress(SolveProgress::Snapshot(shown, _)) => {
+                    break Some(shown.bodies.simulation.iterations());
+                }
                 Update::Done(_) | Update::Died => break None,
                 Update::None | Update::Progress(SolveProgress::Phase(_)) => {}
             }

@@ -116,7 +116,19 @@ pub(crate) enum Phase {
 #[derive(Debug)]
 pub(crate) enum SolveProgress {
     Phase(Phase),
-    Snapshot(Box<Snapshot>),
+    Snapshot(Box<Snapshot>, Receipt),
+}
+
+/// Receipt of a snapshot, dropped when the snapshot has been received: until then no other one is made, so that those of
+/// a hidden window, which receives none, do not pile up.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Receipt(Arc<()>);
+
+impl Receipt {
+    /// Returns `true` if no copy is left.
+    fn is_received(&self) -> bool {
+        Arc::strong_count(&self.0) == 1
+    }
 }
 
 /// Solved model: the original, not a copy.
@@ -204,7 +216,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> Contr
             bodies.linear = solve_linear(&scene, bodies.simulation.system(), known);
         }
     }
-    let (mut made, mut shown) = (0, None::<Instant>);
+    let (mut made, mut shown, receipt) = (0, None::<Instant>, Receipt::default());
     while bodies.simulation.motion().is_none()
         && *bodies.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
@@ -215,10 +227,11 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> Contr
         made += 1;
         if is_displayed
             && shown.is_none_or(|shown| shown.elapsed() >= SNAPSHOT)
+            && receipt.is_received()
             && let Some(bodies) = bodies.snapshot()
         {
             let snapshot = Snapshot { bodies, geometry: geometry.take(), residuals: residuals.clone() };
-            let _ = report(SolveProgress::Snapshot(Box::new(snapshot)));
+            let _ = report(SolveProgress::Snapshot(Box::new(snapshot), receipt.clone()));
             shown = Some(Instant::now());
         }
     }
@@ -231,4 +244,41 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> Contr
         quality = Some(own);
     }
     Ok(Box::new(Solved { snapshot: Snapshot { bodies, geometry, residuals }, quality }))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    /// The snapshots of a hidden window, which receives none, do not pile up.
+    #[test]
+    fn a_snapshot_waits_until_the_one_before_has_been_received() {
+        let scene = Scene::beam(20.0, 1.0).with_cells(600, 9).clamp("left").force("right", [0.0, -100.0]);
+        let request = || SolveRequest {
+            scene: scene.clone(),
+            model: Model::New,
+            start: SolveStart::Rest,
+            iterations: None,
+            residuals: Vec::new(),
+            is_displayed: true,
+        };
+        let (held, received) = (RefCell::new(Vec::new()), RefCell::new(0));
+        for holds in [true, false] {
+            run(request(), &|progress| {
+                if matches!(progress, SolveProgress::Snapshot(..)) {
+                    *received.borrow_mut() += u32::from(!holds);
+                    held.borrow_mut().extend(holds.then_some(progress));
+                } else {
+                    // The next snapshot is due after this time.
+                    std::thread::sleep(SNAPSHOT);
+                }
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+        }
+        assert_eq!(held.borrow().len(), 1);
+        assert!(*received.borrow() > 1);
+    }
 }

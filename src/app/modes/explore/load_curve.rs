@@ -12,7 +12,7 @@ use crate::app::view_options::CurvePlot;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::{MethodKind, Scene};
-use crate::sentence::sentence;
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::Status;
 use crate::study::figure::{
     Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis, leaves_the_axes,
@@ -25,18 +25,18 @@ use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 pub(crate) fn show(
     ui: &mut Ui,
     curve: Option<&Curve>,
-    looked_for: bool,
+    (looked_for, failure): (bool, Option<&Sentence>),
     chosen: Option<CurvePlot>,
     actions: &mut Vec<Action>,
 ) {
     let whole = ui.available_rect_before_wrap();
     let Some(curve) = curve else {
         ui.centered_and_justified(|ui| {
-            ui.weak(tr(if looked_for {
-                "No load curve: in linear theory it is a straight line."
-            } else {
-                "The load curve is computed after the solve."
-            }));
+            ui.weak(match failure {
+                Some(reason) => said(reason),
+                None if looked_for => tr("No load curve: in linear theory it is a straight line.").to_owned(),
+                None => tr("The load curve is computed after the solve.").to_owned(),
+            });
         });
         return;
     };
