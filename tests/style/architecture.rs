@@ -299,3 +299,24 @@ fn circles(imports: &Imports) -> Vec<String> {
     }
     circles.into_iter().collect()
 }
+
+/// A worker of the web page looks its work up by name: work without an entry never ends there.
+#[test]
+fn all_background_work_has_an_entry_for_the_page() {
+    let entries = std::fs::read_to_string("src/app/window/worker.rs").unwrap();
+    let mut kinds = BTreeSet::new();
+    for path in rust_files(Path::new("src/app")) {
+        let source = std::fs::read_to_string(path).unwrap();
+        let source = source.split("#[cfg(test)]").next().unwrap();
+        for block in source.split("facts! {").skip(1) {
+            let lines = block.split("\n}\n").next().unwrap().lines().filter_map(|line| line.split_once(" = \""));
+            let names = lines.map(|(kind, _)| kind.split(" by ").next().unwrap().trim());
+            kinds.extend(names.map(|name| format!("FactWork<{name}>")));
+        }
+        let works = source.split("impl Work for ").skip(1);
+        kinds.extend(works.map(|rest| rest.split(' ').next().unwrap().to_owned()));
+    }
+    assert!(kinds.len() >= 12, "{kinds:?}");
+    let missing: Vec<_> = kinds.iter().filter(|kind| !entries.contains(&format!("entry::<{kind}>()"))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}

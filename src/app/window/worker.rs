@@ -4,7 +4,7 @@ use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::{ElementErrors, Rho};
 use crate::app::platform;
-use crate::app::session::facts::{CurveFact, FrequencyFact, PathFact, ReferenceFact, TimeFact};
+use crate::app::session::facts::{CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, TimeFact};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
@@ -17,9 +17,10 @@ const fn entry<W: Work>() -> WorkerEntry {
     (W::NAME, serve::<W>)
 }
 
-const ENTRIES: [WorkerEntry; 11] = [
+const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<ReferenceFact>>(),
     entry::<FactWork<CurveFact>>(),
+    entry::<FactWork<LimitsFact>>(),
     entry::<FactWork<PathFact>>(),
     entry::<FactWork<TimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
