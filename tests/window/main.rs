@@ -15,6 +15,7 @@ mod language;
 mod learn;
 mod limits;
 mod motions;
+mod numbers;
 mod panel;
 mod pictures;
 mod soak;

@@ -264,9 +264,10 @@ fn settings(
         let best = meeting.first().copied();
         let apply = ui.add_enabled(best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
         let apply = apply.on_hover_text(tr("Use the fastest setting that meets both limits")).on_disabled_hover_text(
-            tr(match budget.current {
-                true => "No measured setting meets both limits",
-                false => "The body or its load has changed since.",
+            tr(match (budget.study, budget.current) {
+                (None, _) => "Nothing measured yet: it takes about a minute.",
+                (Some(_), true) => "No measured setting meets both limits",
+                (Some(_), false) => "The body or its load has changed since.",
             }),
         );
         if let (true, Some(best)) = (apply.clicked(), best) {
