@@ -149,7 +149,9 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
     let mut limits: Vec<String> = Vec::new();
     let Deformation { max_strain, inverted_elements, .. } = *deformation;
     let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
-    limits.extend(inversion.iter().chain(&strain_warning(max_strain)).map(ToString::to_string));
+    // The strains of a diverging iteration mean nothing.
+    let strain = strain_warning(max_strain).filter(|_| !matches!(simulation.status(), Status::Diverged(_)));
+    limits.extend(inversion.iter().chain(&strain).map(ToString::to_string));
     if simulation.passes_through_itself() {
         limits.push("the body passes through itself: contact is not modelled".to_owned());
     }

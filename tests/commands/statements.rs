@@ -74,6 +74,14 @@ fn inverted_elements_give_a_warning() {
     assert!(!warnings(&json).iter().any(|said| said.contains("inverted")), "{json}");
 }
 
+/// The last state of a diverging iteration has no strain, and no note about it.
+#[test]
+fn a_diverging_iteration_has_no_strain() {
+    let (code, json) = solve_object(&["cantilever", "--set", "load.0.force=[0,-9000]"]);
+    assert_eq!((code, json["status"].as_str(), json["max_strain"].is_null()), (Some(1), Some("diverged"), true));
+    assert!(!warnings(&json).iter().any(|said| said.contains("strains reach")), "{json}");
+}
+
 /// An integrator that loses more than a tenth of the energy put in, and a pulse of few time steps, are noted.
 #[test]
 fn lost_energy_and_short_pulses_are_noted() {
