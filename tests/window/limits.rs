@@ -100,8 +100,10 @@ fn a_click_on_a_strip_sets_method_and_element() {
     let used = |lab: &Lab| (lab.scene().element(), lab.scene().solver.method);
     let before = used(harness.state());
     let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
+    let load = force(harness.state());
     drag(&mut harness, row.center(), row.center());
     assert_eq!(used(harness.state()), (ElementKind::Q4, MethodKind::Newton));
+    assert_eq!(force(harness.state()), load, "a click does not move the line");
     assert!(harness.query_by(|node| node.label().is_some_and(|label| label.starts_with("t3 warped:"))).is_some());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);

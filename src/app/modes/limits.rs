@@ -223,7 +223,8 @@ impl<'a> Chart<'a> {
         let value = factor * self.axis.full;
         response.widget_info(|| WidgetInfo::slider(true, value, tr("Load")));
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        if response.dragged() {
+        // A press that is a click belongs to a strip.
+        if response.dragged() && ui.input(|i| i.pointer.is_decidedly_dragging()) {
             return response.interact_pointer_pos().map(|at| self.factor(at.x));
         }
         if !response.has_focus() {
