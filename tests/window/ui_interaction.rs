@@ -1341,3 +1341,68 @@ fn a_warning_stays_until_it_is_closed() {
     harness.run();
     assert!(harness.query_by_role_and_label(Role::Button, "Close").is_none());
 }
+
+/// Clicks with the secondary button.
+fn open_menu(harness: &mut Harness<'_, Lab>, pos: Pos2) {
+    harness.hover_at(pos);
+    harness.run();
+    for pressed in [true, false] {
+        let button = egui::PointerButton::Secondary;
+        harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        harness.step();
+    }
+    harness.run();
+}
+
+/// The menu of a point adds a force, a support and a probe there, and removes them; undo takes each back.
+#[test]
+fn the_menu_of_a_point_adds_and_removes_objects() {
+    let mut harness = harness("cantilever");
+    let before = harness.state().scene().clone();
+    let at = Vector2::new(5.0, 0.0);
+    let count = |lab: &Lab| {
+        let scene = lab.scene();
+        [scene.loads.len(), scene.supports.len(), scene.probes.len()]
+    };
+    let start = count(harness.state());
+    for (number, add, remove) in [
+        (0, "Add a force here", "Remove this force"),
+        (1, "Hold this point", "Remove this support"),
+        (2, "Add a probe here", "Remove the probe p1"),
+    ] {
+        let pos = on_body(harness.state(), at);
+        open_menu(&mut harness, pos);
+        harness.get_by_label(add).click();
+        harness.run();
+        let mut more = start;
+        more[number] += 1;
+        assert_eq!(count(harness.state()), more, "{add}");
+        assert_eq!(*harness.state().simulation().status(), Status::Converged, "{add}");
+        assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "it is put on a node");
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run();
+        assert_eq!(*harness.state().scene(), before, "{add}: undone");
+        harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        harness.run();
+        let pos = on_body(harness.state(), at);
+        open_menu(&mut harness, pos);
+        harness.get_by_label(remove).click();
+        harness.run();
+        assert_eq!(count(harness.state()), start, "{remove}");
+    }
+    // A probe stays at its material point, and Details has its displacement.
+    let pos = on_body(harness.state(), at);
+    open_menu(&mut harness, pos);
+    harness.get_by_label("Add a probe here").click();
+    harness.run();
+    unfold(&mut harness, "stable");
+    let Load::Force { force, .. } = harness.state().scene().loads[0] else { unreachable!("a force") };
+    let [x, y] = [0, 1].map(|i| harness.state().simulation().probe("p1").unwrap()[i]);
+    let row = warpbeam::format::engineering_pair([x, y], "m");
+    assert!(harness.query_by_label(&row).is_some(), "{row} under {force:?}");
+    // Beside the body there is no menu.
+    let beside = harness.state().view_rect().left_top() + vec2(40.0, 160.0);
+    harness.key_press(Key::Escape);
+    open_menu(&mut harness, beside);
+    assert!(harness.query_by_label("Add a probe here").is_none());
+}

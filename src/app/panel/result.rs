@@ -112,7 +112,9 @@ fn time(duration: std::time::Duration) -> String {
 }
 
 fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
-    for probe in simulation.problem().probes().iter().take(1) {
+    /// Largest number of probes that are shown.
+    const MAX_PROBES: usize = 8;
+    for probe in simulation.problem().probes().iter().take(MAX_PROBES) {
         let u = probe.mean(simulation.displacement());
         row(&format!("{} x, y", tr(&probe.name)), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }

@@ -272,6 +272,8 @@ impl Lab {
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect();
+        let chosen = viewport.show_menu(&response, &content);
+        actions.extend(chosen.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
         self.desk.session.keep_converged();

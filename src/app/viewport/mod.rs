@@ -4,6 +4,7 @@ pub(crate) mod arrow;
 pub(crate) mod body_mesh;
 pub(crate) mod camera_controller;
 pub(crate) mod handle;
+pub(crate) mod menu;
 pub(crate) mod moment_arrow;
 pub(crate) mod overlay;
 pub(crate) mod pointer;

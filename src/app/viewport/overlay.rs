@@ -1,5 +1,6 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
+use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
 use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
@@ -19,7 +20,7 @@ use crate::format::{engineering, prefix, round_down, three_digits, ticks};
 use crate::render::Camera;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, Load, MethodKind, Scene};
+use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
 use crate::simulation::SupportReaction;
 
 /// Content of the overlays.
@@ -157,6 +158,23 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         loads(painter, &projection, overlay, &palette, visuals);
         weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
+        probes(painter, &projection, overlay, visuals);
+    }
+}
+
+/// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
+fn probes(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, visuals: &Visuals) {
+    const RADIUS: f32 = 3.5;
+    let mesh = overlay.system.mesh();
+    for own in &overlay.scene.probes {
+        let Place::At(at) = own.place else { continue };
+        let Some(place) = mesh.locate(at.into()).and_then(|point| probe::place(mesh, overlay.positions, point)) else {
+            continue;
+        };
+        let (at, color) = (projection.point(place), visuals.strong_text_color());
+        painter.circle(at, RADIUS, visuals.extreme_bg_color, Stroke::new(1.5, color));
+        let beside = at + vec2(8.0, -4.0);
+        boxed_text(painter, beside, Align2::LEFT_BOTTOM, tr(&own.name), visuals, color, 160.0);
     }
 }
 

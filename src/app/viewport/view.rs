@@ -6,18 +6,18 @@ use nalgebra::Vector2;
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::arrow::{ForceArrows, force_range};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
-use crate::app::viewport::probe;
 use crate::app::viewport::projection::{Projection, viewport};
+use crate::app::viewport::{menu, probe};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
-use crate::scene::MethodKind;
+use crate::scene::{MethodKind, Scene};
 use crate::simulation::{Field, Simulation, Status};
 
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
@@ -113,6 +113,8 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
+    /// Material point whose menu was opened.
+    menu: Option<MaterialPoint>,
     body: BodyMesh,
     /// `true` while the last equilibrium is drawn in place of a state that diverges.
     shows_converged: bool,
@@ -131,6 +133,7 @@ impl BodyView {
             rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
             probe: None,
+            menu: None,
             body: BodyMesh::default(),
             shows_converged: false,
             swept: None,
@@ -308,6 +311,23 @@ impl BodyView {
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
             self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
         }
+    }
+
+    /// Shows the menu of the material point that was clicked with the secondary button; returns the scene that was
+    /// chosen.
+    pub(crate) fn show_menu(&mut self, response: &Response, content: &Content<'_>) -> Option<Scene> {
+        /// Distance within which the menu removes an object, points.
+        const NEAR: f64 = 14.0;
+        if content.card.is_some() || content.is_apart() || content.session.is_in_background() {
+            self.menu = None;
+        } else if response.secondary_clicked() {
+            self.menu = self.pointer.over_body().map(|(point, _)| point);
+        }
+        let (scene, system) = (content.session.scene(), content.simulation().system());
+        let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
+        let opening = OpeningLoads::of(&content.session.document().original);
+        let [usual, _] = force_range(opening, &scene.material, system);
+        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), usual)
     }
 
     /// Returns the loads of the last frame's arrows.
