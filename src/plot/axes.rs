@@ -23,7 +23,7 @@ pub(super) const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
 
 /// A logarithmic axis.
-pub(super) struct Decades {
+pub(crate) struct Decades {
     from: f64,
     to: f64,
     ends: [f64; 2],
@@ -42,6 +42,20 @@ impl Decades {
         Self { from: low.floor(), to: high.ceil().max(low.floor() + 1.0), ends }
     }
 
+    /// The range of these positive values, widened by a part of a decade, between two places.
+    #[cfg(feature = "app")]
+    pub fn around([low, high]: [f64; 2], part: f64, ends: [f64; 2]) -> Self {
+        Self { from: low.log10() - part, to: high.log10() + part, ends }
+    }
+
+    /// Returns the value at a place; the inverse of [`Self::place`].
+    #[cfg(feature = "app")]
+    pub fn value(&self, place: f64) -> f64 {
+        let [start, end] = self.ends;
+        let fraction = if end == start { 0.0 } else { (place - start) / (end - start) };
+        10f64.powf(self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0))
+    }
+
     pub fn place(&self, value: f64) -> f64 {
         let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
         let [start, end] = self.ends;
@@ -50,7 +64,7 @@ impl Decades {
 
     /// Iterates over the positions and the values of the decades.
     pub fn values(&self) -> impl Iterator<Item = (f64, f64)> {
-        let decades = (self.from as i32..=self.to as i32).map(|e| 10f64.powi(e));
+        let decades = (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e));
         decades.map(|value| (self.place(value), value))
     }
 

@@ -11,7 +11,7 @@ use crate::app::session::Session;
 use crate::app::session::facts::without_methods;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
-use crate::plot::rating_color;
+use crate::plot::{Decades, rating_color};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
@@ -34,21 +34,30 @@ const MIN_CURVE: f32 = 40.0;
 const ROW: [f32; 2] = [13.0, 19.0];
 
 /// State of Limits: the scene whose limits are shown.
-#[derive(Debug, Default)]
-pub(crate) struct Limits {
+#[derive(Debug)]
+pub(crate) struct LimitMap {
     /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
     base: Option<Scene>,
     /// Lab's scene after its load was set here, and its part of the base's loads.
     placed: Option<(Scene, f64)>,
+    /// Part of the base's loads that the lab's scene has.
+    factor: f64,
 }
 
-impl Limits {
+impl Default for LimitMap {
+    fn default() -> Self {
+        Self { base: None, placed: None, factor: 1.0 }
+    }
+}
+
+impl LimitMap {
     /// Turns to the lab's scene. A load that was set here does not change the limits, nor do method and element.
     pub(crate) fn turn_to(&mut self, scene: &Scene) {
         let scene = without_methods(scene);
-        let is_placed = self.placed.as_ref().is_some_and(|(placed, _)| *placed == scene);
-        if !is_placed && self.base.as_ref() != Some(&scene) {
-            *self = Self { base: Some(scene), placed: None };
+        let placed = self.placed.as_ref().filter(|(placed, _)| *placed == scene);
+        self.factor = placed.map_or(1.0, |(_, factor)| *factor);
+        if placed.is_none() && self.base.as_ref() != Some(&scene) {
+            *self = Self { base: Some(scene), ..Self::default() };
         }
     }
 
@@ -57,17 +66,11 @@ impl Limits {
         self.base.as_ref()
     }
 
-    /// Returns the part of the base's loads that the lab's scene has.
-    fn factor(&self, scene: &Scene) -> f64 {
-        let scene = without_methods(scene);
-        self.placed.as_ref().filter(|(placed, _)| *placed == scene).map_or(1.0, |(_, factor)| *factor)
-    }
-
     /// Returns the lab's scene under a part of the base's loads, rounded to three digits.
     fn place(&mut self, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene {
         let factor = three_digits(factor * axis.full) / axis.full;
         let mut placed = scene.clone();
-        placed.scale_loads(factor / self.factor(scene));
+        placed.scale_loads(factor / self.factor);
         self.placed = Some((without_methods(&placed), factor));
         placed
     }
@@ -100,8 +103,8 @@ impl Limits {
         ui.horizontal(legend);
         let axis = LoadAxis::of(&base);
         let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
-        let chart = Chart::new(ui, below, limits, &axis);
-        let load = chart.handle(ui, self.factor(scene));
+        let chart = StripChart::new(ui, below, limits, &axis);
+        let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
             let placed = self.place(scene, &axis, factor);
             if placed != *scene {
@@ -112,7 +115,7 @@ impl Limits {
         for (row, strip) in limits.strips.iter().enumerate() {
             chart.strip(ui, row, strip, scene, actions);
         }
-        chart.load_line(ui, load.unwrap_or_else(|| self.factor(scene)), first_probe(shown));
+        chart.load_line(ui, load.unwrap_or(self.factor), first_probe(shown));
     }
 }
 
@@ -160,9 +163,10 @@ fn hatch(ui: &Ui, rect: Rect, ink: Color32) {
 }
 
 /// Places of the chart in the window: the curve above the strips, on one axis of loads.
-struct Chart<'a> {
+struct StripChart<'a> {
     limits: &'a MethodLimits,
     axis: &'a LoadAxis,
+    across: Decades,
     palette: Palette,
     curve: Rect,
     strips: Rect,
@@ -173,7 +177,7 @@ struct Chart<'a> {
     has_curve: bool,
 }
 
-impl<'a> Chart<'a> {
+impl<'a> StripChart<'a> {
     fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis) -> Self {
         let has_ends = whole.width() >= WITH_ENDS;
         let (left, right) = (whole.left() + NAMES, whole.right() - if has_ends { ENDS } else { 24.0 });
@@ -187,6 +191,7 @@ impl<'a> Chart<'a> {
         Self {
             limits,
             axis,
+            across: Decades::around(RANGE, 0.0, [left, right].map(f64::from)),
             palette: Palette::new(ui.visuals()),
             curve: Rect::from_min_max(pos2(left, whole.top() + LINE), pos2(right, top - 8.0)),
             strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
@@ -198,16 +203,7 @@ impl<'a> Chart<'a> {
 
     /// Returns the place of a part of the load.
     fn x(&self, factor: f64) -> f32 {
-        let [from, to] = RANGE.map(f64::ln);
-        let part = ((factor.clamp(RANGE[0], RANGE[1]).ln() - from) / (to - from)) as f32;
-        egui::lerp(self.strips.x_range(), part)
-    }
-
-    /// Returns the part of the load at a place.
-    fn factor(&self, x: f32) -> f64 {
-        let part = f64::from((x - self.strips.left()) / self.strips.width().max(1.0)).clamp(0.0, 1.0);
-        let [from, to] = RANGE.map(f64::ln);
-        (from + part * (to - from)).exp()
+        self.across.place(factor) as f32
     }
 
     fn text(&self, ui: &Ui, at: egui::Pos2, align: Align2, text: &str, color: Color32) {
@@ -225,7 +221,7 @@ impl<'a> Chart<'a> {
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         // A press that is a click belongs to a strip.
         if response.dragged() && ui.input(|i| i.pointer.is_decidedly_dragging()) {
-            return response.interact_pointer_pos().map(|at| self.factor(at.x));
+            return response.interact_pointer_pos().map(|at| self.across.value(f64::from(at.x)));
         }
         if !response.has_focus() {
             return None;
@@ -241,24 +237,26 @@ impl<'a> Chart<'a> {
     fn curve(&self, ui: &Ui) {
         let Self { palette, curve, strips, .. } = self;
         let painter = ui.painter();
-        for decade in -2..=1 {
-            let (factor, stroke) = (10f64.powi(decade), Stroke::new(1.0, palette.line));
-            painter.line_segment([pos2(self.x(factor), curve.top()), pos2(self.x(factor), strips.bottom())], stroke);
-            let at = pos2(self.x(factor), strips.bottom() + 2.0);
+        for (x, factor) in self.across.values().map(|(place, factor)| (place as f32, factor)) {
+            let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
+            painter.line_segment(ends, Stroke::new(1.0, palette.line));
+            let at = pos2(x, strips.bottom() + 2.0);
             self.text(ui, at, Align2::CENTER_TOP, &load_text(self.axis, factor), palette.text);
         }
         let at = pos2(strips.center().x, strips.bottom() + LINE);
         self.text(ui, at, Align2::CENTER_TOP, &said(&self.axis.name), palette.secondary);
         let Some(up) = self.up() else { return };
-        for decade in up.decades() {
-            let y = up.place(10f64.powi(decade));
+        // Only as many decades as have room for their labels.
+        let room = (curve.height() / LINE).max(1.0) as usize;
+        let step = up.values().count().saturating_sub(1) / room + 1;
+        for (y, length) in up.values().step_by(step).map(|(place, length)| (place as f32, length)) {
             painter.line_segment([pos2(curve.left(), y), pos2(curve.right(), y)], Stroke::new(1.0, palette.line));
-            let text = engineering(10f64.powi(decade), "m");
-            self.text(ui, pos2(curve.left() - 8.0, y), Align2::RIGHT_CENTER, &text, palette.secondary);
+            let at = pos2(curve.left() - 8.0, y);
+            self.text(ui, at, Align2::RIGHT_CENTER, &engineering(length, "m"), palette.secondary);
         }
         for known in self.limits.reference.split(|(_, u)| u.is_none()) {
             let lengths = known.iter().filter_map(|(factor, u)| Some((*factor, u.map(|u| Vector2::norm(&u))?)));
-            let points = lengths.filter(|(_, u)| *u > 0.0).map(|(factor, u)| pos2(self.x(factor), up.place(u)));
+            let points = lengths.filter(|(_, u)| *u > 0.0).map(|(factor, u)| pos2(self.x(factor), up.place(u) as f32));
             painter.line(points.collect(), Stroke::new(2.0, palette.exact));
         }
         if self.has_ends {
@@ -269,14 +267,13 @@ impl<'a> Chart<'a> {
     }
 
     /// Returns the vertical axis of the curve; `None` if no reference displacement is known, or the curve has no room.
-    fn up(&self) -> Option<Up> {
-        if !self.has_curve {
-            return None;
-        }
+    fn up(&self) -> Option<Decades> {
+        /// Space above and below the curve, decades.
+        const EDGE: f64 = 0.1;
         let lengths = self.limits.reference.iter().filter_map(|(_, u)| u.map(|u| u.norm())).filter(|u| *u > 0.0);
-        let [low, high] = lengths.fold([f64::INFINITY, 0.0_f64], |[low, high], u| [low.min(u), high.max(u)]);
-        let range = [low, high].map(f64::log10);
-        range.iter().all(|v| v.is_finite()).then(|| Up { range: [range[0] - 0.1, range[1] + 0.1], rect: self.curve })
+        let range = lengths.fold([f64::INFINITY, 0.0_f64], |[low, high], u| [low.min(u), high.max(u)]);
+        let ends = [self.curve.bottom(), self.curve.top()].map(f64::from);
+        (self.has_curve && range[1].is_finite() && range[1] > 0.0).then(|| Decades::around(range, EDGE, ends))
     }
 
     /// Shows a strip; a click uses its method and element.
@@ -331,28 +328,7 @@ impl<'a> Chart<'a> {
         let at = x.clamp(self.strips.left() + half - NAMES, self.strips.right() - half + 24.0);
         self.text(ui, pos2(at, self.curve.top() - 1.0), Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
         if let (Some(up), Some(u)) = (self.up(), displacement.filter(|u| *u > 0.0)) {
-            ui.painter().circle_stroke(pos2(x, up.place(u)), 5.0, Stroke::new(2.0, color));
+            ui.painter().circle_stroke(pos2(x, up.place(u) as f32), 5.0, Stroke::new(2.0, color));
         }
-    }
-}
-
-/// Logarithmic vertical axis.
-struct Up {
-    /// Logarithms of the ends.
-    range: [f64; 2],
-    rect: Rect,
-}
-
-impl Up {
-    fn place(&self, value: f64) -> f32 {
-        let part = ((value.log10() - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0) as f32;
-        egui::lerp(self.rect.bottom()..=self.rect.top(), part)
-    }
-
-    /// Returns the powers of ten that have room for their labels.
-    fn decades(&self) -> impl Iterator<Item = i32> {
-        let (low, high) = (self.range[0].ceil() as i32, self.range[1].floor() as i32);
-        let room = (self.rect.height() / LINE).max(1.0) as i32;
-        (low..=high).step_by(((high - low) / room + 1).max(1) as usize)
     }
 }

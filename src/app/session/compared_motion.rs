@@ -6,11 +6,11 @@ use nalgebra::Vector2;
 use web_time::Instant;
 
 use crate::app::session::compared_solve::Equations;
-use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
+use crate::app::task::background_solve::BackgroundSolve;
 use crate::app::task::solve::{MAX_PANE_UNKNOWNS, Model, SolveRequest, SolveStart};
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::Scene;
-use crate::sentence::{Sentence, sentence};
+use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status, probe_results};
 
 /// Motion of a scene, for comparison with others.
@@ -87,14 +87,14 @@ impl ComparedMotion {
             Some(mut simulation) => simulation.change_scene(&wanted).map(|()| simulation),
             None => {
                 (self.setting_up, self.geometry, self.seconds) = (None, None, None);
-                let system = Equations::of(equations, &wanted);
+                let model = Equations::of(equations, &wanted).map_or(Model::New, Model::Equations);
                 if wanted.unknowns() > MAX_PANE_UNKNOWNS {
-                    self.set_up(&wanted, system.map_or(Model::New, Model::Equations));
+                    self.set_up(&wanted, model);
                     self.scene = Some(wanted);
                     return true;
                 }
-                let made = system.map_or_else(|| Simulation::new(&wanted), |own| Simulation::with_system(&wanted, own));
-                made.map(Box::new)
+                let made = model.set_up(&wanted).map_err(|rejected| rejected.error);
+                made.map(|(bodies, _)| Box::new(bodies.simulation))
             }
         };
         self.refused = made.as_ref().err().map(Sentence::from);
@@ -122,24 +122,14 @@ impl ComparedMotion {
     /// Takes the motion that was set up in the background; returns `true` if it is ready.
     fn poll(&mut self) -> bool {
         let Some(solve) = &mut self.setting_up else { return false };
-        let ended = loop {
-            match solve.poll() {
-                SolveUpdate::None => return false,
-                SolveUpdate::Progress(_) => {}
-                SolveUpdate::Done(ended) => break Some(ended),
-                SolveUpdate::Cancelled | SolveUpdate::Died => break None,
-            }
-        };
+        let Some(ended) = solve.poll_end() else { return false };
         self.setting_up = None;
         match ended {
-            Some(Ok(solved)) => {
+            Ok(solved) => {
                 self.geometry = solved.snapshot.geometry;
                 self.simulation = Some(Box::new(solved.snapshot.bodies.simulation));
             }
-            Some(Err(rejected)) => self.refused = Some((&rejected.error).into()),
-            None => {
-                self.refused = Some(sentence!("the solve ended unexpectedly: change a value to solve again"));
-            }
+            Err(reason) => self.refused = reason,
         }
         true
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use web_time::{Duration, Instant};
 
 use crate::app::session::has_mesh_of;
-use crate::app::task::background_solve::{BackgroundSolve, SolveUpdate};
+use crate::app::task::background_solve::BackgroundSolve;
 use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveStart};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
@@ -259,24 +259,16 @@ impl ComparedSolve {
         if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
             away.solve.cancel();
         }
-        self.body = loop {
-            match away.solve.poll() {
-                SolveUpdate::Progress(_) => {}
-                SolveUpdate::None => return false,
-                SolveUpdate::Done(Ok(solved)) => {
-                    self.geometry = solved.snapshot.geometry.or_else(|| self.geometry.take());
-                    break ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation));
-                }
-                SolveUpdate::Done(Err(rejected)) => break ComparedBody::Refused((&rejected.error).into()),
-                SolveUpdate::Cancelled => {
-                    self.given = None;
-                    break ComparedBody::None;
-                }
-                SolveUpdate::Died => {
-                    break ComparedBody::Refused(sentence!(
-                        "the solve ended unexpectedly: change a value to solve again"
-                    ));
-                }
+        let Some(ended) = away.solve.poll_end() else { return false };
+        self.body = match ended {
+            Ok(solved) => {
+                self.geometry = solved.snapshot.geometry.or_else(|| self.geometry.take());
+                ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation))
+            }
+            Err(Some(reason)) => ComparedBody::Refused(reason),
+            Err(None) => {
+                self.given = None;
+                ComparedBody::None
             }
         };
         if self.given == self.wanted {

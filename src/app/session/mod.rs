@@ -511,8 +511,8 @@ impl Session {
         self.running = false;
     }
 
-    /// Makes the iterations of one displayed frame, fewer if they take long, or the time steps that are due at `now`, s (any clock that runs in
-    /// real time). Returns `true` if it has iterated.
+    /// Makes the iterations of one displayed frame, fewer if they take long, or the time steps that are due at `now`, s
+    /// (any clock that runs in real time). Returns `true` if it has iterated.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         self.poll();
         if self.is_in_background() || !self.iterates() {
@@ -626,9 +626,7 @@ impl Session {
         let copy = self.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
         let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {
             let work = move |_: &Reporter<_, _>| {
-                let mut quality = Quality::default();
-                copy.certify();
-                quality.update(&copy);
+                let quality = Quality::certified(&mut copy);
                 Box::new((copy, quality))
             };
             Task::start("certify", work).ok()

@@ -6,7 +6,7 @@ use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
 use crate::app::modes::learn;
-use crate::app::modes::limits::Limits;
+use crate::app::modes::limits::LimitMap;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
 use crate::app::view_options::{Drawer, Mode, Toggle};
@@ -40,7 +40,7 @@ impl Lab {
             *budget = Budget::default();
             *compare = Compare::default();
             *motions = MotionCompare::default();
-            *limits = Limits::default();
+            *limits = LimitMap::default();
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;

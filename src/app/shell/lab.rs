@@ -3,7 +3,7 @@
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
 use crate::app::modes::learn::{self, Learn};
-use crate::app::modes::limits::Limits;
+use crate::app::modes::limits::LimitMap;
 use crate::app::panel::PanelState;
 use crate::app::readout::Readout;
 use crate::app::session::document::Document;
@@ -45,7 +45,7 @@ pub(super) struct Desk {
     pub budget: Budget,
     pub compare: Compare,
     pub motions: MotionCompare,
-    pub limits: Limits,
+    pub limits: LimitMap,
 }
 
 impl Desk {
@@ -58,7 +58,7 @@ impl Desk {
             budget: Budget::default(),
             compare: Compare::default(),
             motions: MotionCompare::default(),
-            limits: Limits::default(),
+            limits: LimitMap::default(),
         }
     }
 

@@ -2,9 +2,10 @@
 
 use crate::app::platform::IS_PAGE;
 use crate::app::task::remote_solve::RemoteSolve;
-use crate::app::task::solve::{Model, Phase, Snapshot, SolveOutcome, SolveProgress, SolveRequest, run};
+use crate::app::task::solve::{Model, Phase, Snapshot, SolveOutcome, SolveProgress, SolveRequest, Solved, run};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::scene::{Analysis, Scene};
+use crate::sentence::{Sentence, sentence};
 
 /// Update of a background solve.
 #[derive(Debug)]
@@ -93,6 +94,23 @@ impl BackgroundSolve {
     /// Returns the next update without waiting for it.
     pub(crate) fn poll(&mut self) -> SolveUpdate {
         self.next(false)
+    }
+
+    /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended. Snapshots are
+    /// dropped. A solve that was cancelled before it had a model has no reason.
+    pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Solved>, Option<Sentence>>> {
+        loop {
+            return Some(match self.poll() {
+                SolveUpdate::None => return None,
+                SolveUpdate::Progress(_) => continue,
+                SolveUpdate::Done(Ok(solved)) => Ok(solved),
+                SolveUpdate::Done(Err(rejected)) => Err(Some((&rejected.error).into())),
+                SolveUpdate::Cancelled => Err(None),
+                SolveUpdate::Died => {
+                    Err(Some(sentence!("the solve ended unexpectedly: change a value to solve again")))
+                }
+            });
+        }
     }
 
     /// Waits for the next update.

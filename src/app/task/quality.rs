@@ -20,6 +20,14 @@ pub(crate) struct Quality {
 }
 
 impl Quality {
+    /// Certifies the result of a simulation, and computes its quality.
+    pub(crate) fn certified(simulation: &mut Simulation) -> Self {
+        let mut quality = Self::default();
+        simulation.certify();
+        quality.update(simulation);
+        quality
+    }
+
     /// Computes the quality of the current state, unless it is already known.
     pub(crate) fn update(&mut self, simulation: &Simulation) {
         if self.is_of(simulation) {

@@ -238,10 +238,7 @@ pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> Contr
     let mut quality = None;
     let has_ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
     if is_displayed && has_ended && report(SolveProgress::Phase(Phase::Certifying)).is_continue() {
-        bodies.simulation.certify();
-        let mut own = Quality::default();
-        own.update(&bodies.simulation);
-        quality = Some(own);
+        quality = Some(Quality::certified(&mut bodies.simulation));
     }
     Ok(Box::new(Solved { snapshot: Snapshot { bodies, geometry, residuals }, quality }))
 }

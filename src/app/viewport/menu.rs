@@ -8,7 +8,7 @@ use crate::assembly::System;
 use crate::scene::{Axis, Load, Place, Probe, Scene, Support};
 
 /// Entry of the menu: its text, and the scene that it leads to.
-type Entry = (String, Scene);
+type MenuEntry = (String, Scene);
 
 /// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the scene that
 /// was chosen. Objects within `near`, m, can be removed; a new force has the magnitude `usual`, N.
@@ -31,22 +31,26 @@ pub(crate) fn show(
     chosen
 }
 
+/// Returns a scene after an edit.
+fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
+    let mut scene = scene.clone();
+    edit(&mut scene);
+    scene
+}
+
 /// Returns the entries that add an object. Forces and supports act on nodes, so they are put on the nearest one.
-fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> Vec<Entry> {
-    let nodes = system.mesh().nodes().iter();
-    let node = nodes.min_by(|a, b| (*a - at).norm_squared().total_cmp(&(*b - at).norm_squared())).copied();
-    let node: [f64; 2] = node.unwrap_or(at).into();
-    let [mut force, mut support, mut probe] = [(); 3].map(|()| scene.clone());
-    force.loads.push(Load::force(node, [0.0, -usual]));
-    support.supports.push(Support::new(node, &[Axis::X, Axis::Y]));
+fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [MenuEntry; 3] {
+    let mesh = system.mesh();
+    let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
     let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
     let name = (1..).map(|n| format!("p{n}")).find(is_free).unwrap_or_default();
-    probe.probes.push(Probe { name, place: Place::At(rounded(system, at).into()) });
-    vec![
-        (tr("Add a force here").to_owned(), force),
-        (tr("Hold this point").to_owned(), support),
-        (tr("Add a probe here").to_owned(), probe),
+    let probe = Probe { name, place: Place::At(rounded(system, at).into()) };
+    [
+        ("Add a force here", edited(scene, |scene| scene.loads.push(Load::force(node, [0.0, -usual])))),
+        ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
+        ("Add a probe here", edited(scene, |scene| scene.probes.push(probe))),
     ]
+    .map(|(text, scene)| (tr(text).to_owned(), scene))
 }
 
 /// Rounds a point to a thousandth of the body's size, if the body has that point.
@@ -59,30 +63,21 @@ fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// Returns the entries that remove an object at a point near `at`.
-fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<Entry> {
+fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
     let is_near = |place: &Place| match place {
         Place::At(point) => (Vector2::from(*point) - at).norm() <= near,
         Place::Edge(_) => false,
     };
-    let mut entries = Vec::new();
-    for (i, probe) in scene.probes.iter().enumerate().filter(|(_, probe)| is_near(&probe.place)) {
-        let mut without = scene.clone();
-        without.probes.remove(i);
-        entries.push((fill!("Remove the probe %{name}", name = probe.name.as_str()), without));
-    }
-    for (i, load) in scene.loads.iter().enumerate() {
-        if let Load::Force { place, .. } = load
-            && is_near(place)
-        {
-            let mut without = scene.clone();
-            without.loads.remove(i);
-            entries.push((tr("Remove this force").to_owned(), without));
-        }
-    }
-    for (i, _) in scene.supports.iter().enumerate().filter(|(_, support)| is_near(&support.place)) {
-        let mut without = scene.clone();
-        without.supports.remove(i);
-        entries.push((tr("Remove this support").to_owned(), without));
-    }
-    entries
+    let is_near_force = |load: &Load| matches!(load, Load::Force { place, .. } if is_near(place));
+    let probes = scene.probes.iter().enumerate().filter(|(_, probe)| is_near(&probe.place)).map(|(i, probe)| {
+        let text = fill!("Remove the probe %{name}", name = probe.name.as_str());
+        (text, edited(scene, |scene| _ = scene.probes.remove(i)))
+    });
+    let forces = scene.loads.iter().enumerate().filter(|(_, load)| is_near_force(load));
+    let forces =
+        forces.map(|(i, _)| (tr("Remove this force").to_owned(), edited(scene, |scene| _ = scene.loads.remove(i))));
+    let supports = scene.supports.iter().enumerate().filter(|(_, support)| is_near(&support.place));
+    let supports = supports
+        .map(|(i, _)| (tr("Remove this support").to_owned(), edited(scene, |scene| _ = scene.supports.remove(i))));
+    probes.chain(forces).chain(supports).collect()
 }

@@ -117,7 +117,7 @@ impl MotionCompare {
         self.panes.list.iter().any(|pane| pane.motion.moves()) || self.is_setting_up()
     }
 
-    /// Returns `true` while a pane's scene is meshed in the background.
+    /// Returns `true` while the motion of a pane is set up in the background.
     fn is_setting_up(&self) -> bool {
         self.panes.list.iter().any(|pane| pane.motion.is_setting_up())
     }
@@ -142,8 +142,8 @@ impl MotionCompare {
     }
 
     /// Applies the scene, and makes the time steps that are due at `now`, s. All panes are at the same time: a slow one
-    /// slows all of them down.
-    /// They wait for those that are still being meshed. `own` are the equations of the body in Explore.
+    /// slows all of them down, and they wait for those that are being set up. `own` are the equations of the body in
+    /// Explore.
     pub(crate) fn advance(&mut self, scene: &Scene, own: &Equations, now: f64, running: bool) {
         let mut starts_over = false;
         let known = self.panes.list.iter().filter_map(|pane| pane.motion.equations());
