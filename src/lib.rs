@@ -171,7 +171,8 @@ pub use nalgebra;
 pub use mesh::{GmshError, Mesh, MeshError, Segment};
 pub use scene::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MeshFile, MethodKind, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SolverSettings, Start, Support,
+    MeshFile, MethodKind, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SectionLine, SolverSettings, Start,
+    Support,
 };
 // Solve it.
 pub use assembly::SystemError;
@@ -185,7 +186,7 @@ pub use rotation::Rotation;
 pub use scene::{LoadId, SupportId};
 pub use state::{State, StateError};
 // Read results.
-pub use section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
+pub use section::{Section, SectionError, SectionForces, SectionPoint};
 pub use sentence::Sentence;
 pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, Reaction, SupportReaction};
 pub use stress::{NodalStress, PlaneTensor};

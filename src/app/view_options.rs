@@ -121,6 +121,8 @@ pub(crate) enum Drawer {
     Curve,
     /// Energy, tip, phase and spectrum of a motion.
     Motion,
+    /// Stress along the sections of the scene, and N, V and M along its beam.
+    Section,
 }
 
 impl Drawer {
@@ -132,10 +134,16 @@ impl Drawer {
         }
     }
 
+    /// Returns `true` if the scene has what the drawer shows.
+    pub(crate) fn suits(self, scene: &Scene) -> bool {
+        self == Self::of(scene) || self == Self::Section && scene.analysis == Analysis::Static
+    }
+
     /// Returns the drawer's name and a description of its content.
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
             Self::Curve => ("Load curve", "Load against deflection (L)"),
+            Self::Section => ("Sections", "Stress along the sections, and N, V and M along the beam (Q)"),
             Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
         }
     }

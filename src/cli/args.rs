@@ -203,10 +203,10 @@ pub(super) struct SectionArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
     /// Point of the cut on the body at rest: X and Y, or X alone if the line crosses the body in one place. Numbers are
-    /// in m, or have units: --at "30 mm,2 mm".
-    #[arg(long, value_name = "X[,Y]", value_parser = parse_place, required_unless_present = "along", allow_hyphen_values = true)]
+    /// in m, or have units: --at "30 mm,2 mm". Default: the sections of the scene.
+    #[arg(long, value_name = "X[,Y]", value_parser = parse_place, allow_hyphen_values = true)]
     pub at: Option<(f64, Option<f64>)>,
-    /// Direction of the cut's normal, counter-clockwise from the x axis: 30deg, or a number of radians. The normal
+    /// Direction of the cut's normal, counter-clockwise from the x axis, with --at: 30deg, or a number of radians. The normal
     /// points to the part in front.
     #[arg(long, value_name = "ANGLE", value_parser = parse_angle, default_value = "0deg", allow_hyphen_values = true)]
     pub angle: f64,

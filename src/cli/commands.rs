@@ -9,7 +9,7 @@ use super::memory::PeakMemory;
 use super::outputs::Outputs;
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
-use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, simulate, text};
+use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text};
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
@@ -33,6 +33,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let fits = |option, given| check_fit((&source, &scene), (option, given), false, "it is about equilibria");
     fits("--reference full", effort == Some(Effort::Full))?;
     fits("--certificate", certificate)?;
+    // A line that misses the body is refused before the solve.
+    sections_of(&source, &simulation)?;
     let set_up = began.elapsed();
     let watch = Watch::new();
     let certifies = certificate || !no_certificate && simulation.system().dofs() <= MAX_CERTIFIED;
@@ -62,6 +64,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     }
     let recovered = Instant::now();
     let stress = simulation.stress_result();
+    let has_forces = !matches!(status, Status::Diverged(_));
+    let sections = if has_forces { sections_of(&source, &simulation)? } else { Vec::new() };
     let stress_time = recovered.elapsed();
     let sought = Instant::now();
     let is_static = scene.analysis == Analysis::Static;
@@ -103,6 +107,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         mesh: simulation.system().mesh(),
         solution: &solution,
         stress: &stress,
+        sections: &sections,
         path,
         reference: reference.as_ref(),
         claims: &claims,

@@ -35,7 +35,7 @@ pub(super) struct Contexts {
 impl Contexts {
     /// Computes the contexts of a result.
     pub(super) fn of(solved: &SolvedScene<'_>) -> Self {
-        let SolvedScene { scene, mesh, solution, stress, .. } = *solved;
+        let SolvedScene { scene, mesh, solution, stress, sections, .. } = *solved;
         let (low, high) = mesh.bounds();
         let size = (high - low).norm();
         let deformation = &solution.deformation;
@@ -50,6 +50,10 @@ impl Contexts {
         for support in &solution.supports {
             forces.push(support.force.norm());
             moments.push(support.moment);
+        }
+        for section in sections {
+            forces.push(section.force.norm());
+            moments.push(section.forces.moment);
         }
         for load in &scene.loads {
             match load {

@@ -39,23 +39,26 @@ pub(super) struct ShotArgs {
     /// Add the load–deflection curve.
     #[arg(long)]
     pub curve: bool,
-    /// Add the plot of error against time, measured now.
+    /// Add the stress along the first section of the scene, or N along the beam if it has none.
     #[arg(long, conflicts_with = "curve")]
+    pub sections: bool,
+    /// Add the plot of error against time, measured now.
+    #[arg(long, conflicts_with_all = ["curve", "sections"])]
     pub study: bool,
     /// Add the map of the loads up to which each method and element holds, as the window's Limits mode shows it.
-    #[arg(long, conflicts_with_all = ["curve", "study", "learn", "motion", "compare"])]
+    #[arg(long, conflicts_with_all = ["curve", "sections", "study", "learn", "motion", "compare"])]
     pub limits: bool,
     /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene. With
     /// --study the last one contains its table.
-    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "motion"])]
+    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "sections", "motion"])]
     pub learn: Option<u8>,
     /// For a dynamic scene: add the plot of its energy, and show the same motion with other integrators side by side.
-    #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "study"])]
+    #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "sections", "study"])]
     pub motion: Option<Vec<IntegratorKind>>,
     /// Show two to four panes side by side under one load. A pane is a method, an element, cells or an iteration limit,
     /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
-    #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "study", "motion"])]
+    #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
     pub compare: Option<PaneSettings>,
     /// Colour theme.
     #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]

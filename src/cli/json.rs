@@ -7,13 +7,14 @@ use serde_json::{Map, Value, json};
 
 use super::solved::SolvedScene;
 use crate::scene::{Analysis, Place, Scene, Support};
+use crate::section::{Section, SectionForces, SectionPoint};
 use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
     let known = |value: f64| if diverged { Value::Null } else { number(value) };
@@ -61,6 +62,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "claims": claims.iter().map(|claim| json!({ "claim": claim.id(), "text": claim.to_string() })).collect::<Value>(),
         "warnings": warnings,
         "probes": probes,
+        "sections": sections.iter().map(section).collect::<Value>(),
         "energy": {
             "elastic": known(solution.energy.elastic),
             "external": known(solution.energy.external),
@@ -153,6 +155,38 @@ fn support(support: &Support, reaction: &SupportReaction) -> Value {
     object.insert("force".to_owned(), pair(reaction.force));
     object.insert("moment".to_owned(), number(reaction.moment));
     Value::Object(object)
+}
+
+/// Returns a section as JSON.
+pub(super) fn section(section: &Section) -> Value {
+    let ends = |ends: [Vector2<f64>; 2]| json!(ends.map(pair));
+    let forces = |forces: &SectionForces| {
+        json!({
+            "normal_force": number(forces.normal),
+            "shear_force": number(forces.shear),
+            "moment": number(forces.moment),
+        })
+    };
+    let point = |point: &SectionPoint| {
+        json!({
+            "rest": pair(point.rest),
+            "along": number(point.along),
+            "normal_stress": point.stress.map(|stress| number(stress[0])),
+            "shear_stress": point.stress.map(|stress| number(stress[1])),
+            "beam_normal_stress": number(point.beam[0]),
+            "beam_shear_stress": number(point.beam[1]),
+        })
+    };
+    let mut object = forces(&section.forces);
+    object["at"] = pair(section.line.at);
+    object["angle"] = number(section.line.angle);
+    object["rest"] = ends(section.rest);
+    object["ends"] = ends(section.ends);
+    object["normal"] = pair(section.normal());
+    object["force"] = pair(section.force);
+    object["of_stress"] = forces(&section.stress_forces);
+    object["points"] = section.points.iter().map(point).collect::<Value>();
+    object
 }
 
 pub(super) fn pair(v: Vector2<f64>) -> Value {

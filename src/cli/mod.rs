@@ -15,7 +15,7 @@ use crate::export::ExportError;
 use crate::format::number;
 use crate::image::PictureError;
 use crate::scene::{self, Analysis, Scene, SceneError};
-use crate::section::SectionError;
+use crate::section::{Section, SectionError};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::StudyError;
 
@@ -67,6 +67,8 @@ enum CliError {
     NoPath(String),
     #[error("{scene}: {error}")]
     Section { scene: String, error: SectionError },
+    #[error("{0}: expected --at or --along, or a scene with a [[section]]")]
+    NoSection(String),
     #[error("--of {name}: expected one of {}", known.join(", "))]
     NoOrdinate { name: String, known: Vec<String> },
     #[error("standard output: {0}")]
@@ -170,6 +172,17 @@ fn check_fit(
         true => Err(CliError::Misfit { scene: named(source), option, moves, reason }),
         false => Ok(()),
     }
+}
+
+/// Computes the sections that the scene lists.
+fn sections_of(source: &scene::Source, simulation: &Simulation) -> Result<Vec<Section>, CliError> {
+    let lines = simulation.scene().sections.iter().enumerate();
+    lines
+        .map(|(i, &line)| {
+            let refused = |error| CliError::Section { scene: format!("{}: section.{i}", named(source)), error };
+            simulation.section(line).map_err(refused)
+        })
+        .collect()
 }
 
 fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {

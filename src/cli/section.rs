@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 use super::args::SectionArgs;
 use super::outputs::Outputs;
 use super::progress::Watch;
-use super::{CliError, commands, exit_code, json, named, simulate, text};
+use super::{CliError, commands, exit_code, json, named, sections_of, simulate, text};
 use crate::format::{Context, engineering, engineering_pair, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
-use crate::scene::{self, Analysis, Scene};
-use crate::section::{Section, SectionError, SectionForces, SectionLine, SectionPoint};
+use crate::scene::{self, Analysis, Scene, SectionLine};
+use crate::section::{Section, SectionError, SectionForces, SectionPoint};
 use crate::simulation::{Simulation, Status};
 use crate::study::section_chart::{self, COMPONENTS, SectionComponent};
 
@@ -25,8 +25,12 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     let (scene, mut simulation) = simulate(&source)?;
     let refused = |error: SectionError| CliError::Section { scene: named(&source), error };
     let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });
+    if line.is_none() && along.is_none() && scene.sections.is_empty() {
+        return Err(CliError::NoSection(named(&source)));
+    }
     // A line that misses the body is refused before the solve.
     line.map_or(Ok(()), |line| simulation.section(line).map(|_| ())).map_err(refused)?;
+    sections_of(&source, &simulation)?;
     let watch = Watch::new();
     match scene.analysis {
         Analysis::Static => watch.solve(&mut simulation),
@@ -40,20 +44,26 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     }
     let sections = match (line, along) {
         (Some(line), _) => vec![simulation.section(line).map_err(refused)?],
-        (None, count) => simulation.sections(usize::from(count.unwrap_or(2))).map_err(refused)?,
+        (None, Some(count)) => simulation.sections(usize::from(count)).map_err(refused)?,
+        (None, None) => sections_of(&source, &simulation)?,
     };
-    let of_one = sections.first().filter(|_| line.is_some());
-    outputs.write_table(|| of_one.map_or_else(|| forces_table(&sections), stress_table))?;
+    outputs.write_table(|| match (along, &sections[..]) {
+        (None, [section]) => stress_table(section),
+        _ => forces_table(&sections),
+    })?;
     outputs.write_picture(|| {
-        Ok(match of_one {
-            Some(section) => plot::figure(&section_chart::stress(section, &scene)),
-            None => Drawing::stacked(section_chart::forces(&sections, &scene).iter().map(plot::figure)),
+        Ok(match along {
+            None => Drawing::stacked(sections.iter().map(|cut| plot::figure(&section_chart::stress(cut, &scene)))),
+            Some(_) => Drawing::stacked(section_chart::forces(&sections, &scene).iter().map(plot::figure)),
         })
     })?;
-    text::print(&match (json, of_one) {
+    text::print(&match (json, along) {
         (true, _) => as_json(&scene, &simulation, &sections),
-        (false, Some(section)) => heading(&scene, &simulation) + &of_cut(section, &simulation),
-        (false, None) => heading(&scene, &simulation) + &along_beam(&sections, &simulation),
+        (false, Some(_)) => heading(&scene, &simulation) + &along_beam(&sections, &simulation),
+        (false, None) => {
+            let cuts: Vec<String> = sections.iter().map(|section| of_cut(section, &simulation)).collect();
+            heading(&scene, &simulation) + &cuts.join("\n")
+        }
     })?;
     Ok(exit_code(&status))
 }
@@ -74,20 +84,12 @@ fn heading(scene: &Scene, simulation: &Simulation) -> String {
     format!("{}: element {}, {}{part}\n", scene.name, scene.element().id(), simulation.status().word())
 }
 
-/// Contexts of the [`COMPONENTS`]: results below the rounding errors of the solve are 0.
-fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
-    let size = simulation.system().size();
-    let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
-    let forces = || sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
-    let force = Context::of_inexact(forces(), inexact);
-    [force, force, Context::of_inexact(forces().map(|force| force * size), inexact)]
-}
-
 fn of_cut(section: &Section, simulation: &Simulation) -> String {
     let pair = |v: Vector2<f64>| engineering_pair(v.into(), "m");
     let [[from, to], [now_from, now_to]] = [section.rest, section.ends].map(|ends| ends.map(pair));
     let mut text = format!("cut from {from} to {to} at rest, now from {now_from} to {now_to}\n");
-    for (component, within) in COMPONENTS.iter().zip(contexts(std::slice::from_ref(section), simulation)) {
+    for (component, within) in COMPONENTS.iter().zip(section_chart::contexts(std::slice::from_ref(section), simulation))
+    {
         let [value, of_stress] = [&section.forces, &section.stress_forces]
             .map(|forces| within.engineering((component.of)(forces), component.unit));
         let _ = writeln!(text, "{:<17} {value:>12}   of the recovered stress {of_stress}", component.name);
@@ -129,7 +131,7 @@ fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
 fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
     let columns: Vec<(&SectionComponent, Vec<f64>)> = COMPONENTS
         .iter()
-        .zip(contexts(sections, simulation))
+        .zip(section_chart::contexts(sections, simulation))
         .map(|(component, within)| {
             let values = sections.iter().map(|section| within.rounded((component.of)(&section.forces)));
             (component, values.collect())
@@ -162,41 +164,11 @@ fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
 }
 
 fn as_json(scene: &Scene, simulation: &Simulation, sections: &[Section]) -> String {
-    let ends = |ends: [Vector2<f64>; 2]| json!(ends.map(json::pair));
-    let forces = |forces: &SectionForces| {
-        json!({
-            "normal_force": json::number(forces.normal),
-            "shear_force": json::number(forces.shear),
-            "moment": json::number(forces.moment),
-        })
-    };
-    let point = |point: &SectionPoint| {
-        json!({
-            "rest": json::pair(point.rest),
-            "along": json::number(point.along),
-            "normal_stress": point.stress.map(|stress| json::number(stress[0])),
-            "shear_stress": point.stress.map(|stress| json::number(stress[1])),
-            "beam_normal_stress": json::number(point.beam[0]),
-            "beam_shear_stress": json::number(point.beam[1]),
-        })
-    };
-    let section = |section: &Section| {
-        let mut object = forces(&section.forces);
-        object["at"] = json::pair(section.line.at);
-        object["angle"] = json::number(section.line.angle);
-        object["rest"] = ends(section.rest);
-        object["ends"] = ends(section.ends);
-        object["normal"] = json::pair(section.normal());
-        object["force"] = json::pair(section.force);
-        object["of_stress"] = forces(&section.stress_forces);
-        object["points"] = section.points.iter().map(point).collect::<Value>();
-        object
-    };
     let object = json!({
         "scene": scene.name,
         "status": simulation.status().id(),
         "load_fraction": simulation.equilibrium().map(|equilibrium| json::number(equilibrium.load_factor())),
-        "sections": sections.iter().map(section).collect::<Value>(),
+        "sections": sections.iter().map(json::section).collect::<Value>(),
     });
     format!("{object:#}\n")
 }

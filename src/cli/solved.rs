@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::mesh::Mesh;
 use crate::scene::Scene;
+use crate::section::Section;
 use crate::simulation::{Solution, StressResult};
 use crate::study::{Claim, PathSummary, Reference};
 use crate::timings::Timings;
@@ -58,6 +59,8 @@ pub(super) struct SolvedScene<'a> {
     pub mesh: &'a Mesh,
     pub solution: &'a Solution,
     pub stress: &'a StressResult,
+    /// Sections of the scene; none if the iteration diverged.
+    pub sections: &'a [Section],
     /// Jumps and buckling on the load path to the result; `None` if unknown.
     pub path: Option<PathSummary>,
     pub reference: Option<&'a Reference>,

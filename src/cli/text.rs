@@ -10,13 +10,14 @@ use super::CliError;
 use super::contexts::Contexts;
 use super::solved::SolvedScene;
 use crate::export::csv_field;
-use crate::format::{count, engineering, engineering_pair, prefix};
+use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 #[cfg(feature = "app")]
 use crate::render::AdapterReport;
 use crate::scene::{Analysis, Place, Scene, Support, registry};
 use crate::simulation::{MotionResult, Solution, Status};
 use crate::study::{
-    Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, path_chart, support_name, support_text,
+    Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, path_chart, section_chart, support_name,
+    support_text,
 };
 
 /// Prints to standard output. A closed pipe, as after `head`, is not an error.
@@ -60,7 +61,7 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
     let within = Contexts::of(solved);
     let mut text = format!(
         "{}: element {}, {}, {}\n",
@@ -175,6 +176,12 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         );
     }
     text.push_str(&reactions(scene, solution, &within));
+    for section in sections {
+        let at = pair(section.line.at, "m");
+        let angle = engineering(three_digits(section.line.angle.to_degrees()), "°");
+        let forces = section_chart::text(section, &[within.force, within.force, within.moment]);
+        let _ = writeln!(text, "section at {at}, normal at {angle}: {forces}");
+    }
     let joules = |energy: f64| within.energy.engineering(energy, "J");
     let _ = write!(
         text,

@@ -20,6 +20,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         size,
         no_panel,
         curve,
+        sections,
         study,
         limits,
         learn,
@@ -32,14 +33,27 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
     let (panel, adapter) = (!no_panel, adapter.adapter);
-    let options =
-        app::ShotOptions { size, panel, curve, study, limits, learn, motion, compare, theme, language, adapter };
+    let options = app::ShotOptions {
+        size,
+        panel,
+        curve,
+        sections,
+        study,
+        limits,
+        learn,
+        motion,
+        compare,
+        theme,
+        language,
+        adapter,
+    };
     check_suffix(&output, &[".png"], ".png")?;
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
     fits("--compare", !options.compare.is_empty(), false, "it shows equilibria; for a motion, use --motion")?;
     fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;
+    fits("--sections", options.sections, false, "for a motion, use `warpbeam section`")?;
     fits("--motion", options.motion.is_some(), true, "it shows integrators; for an equilibrium, use --compare")?;
     fits(
         "--study",

@@ -77,9 +77,18 @@ pub(crate) fn bent(beam: &Beam, along: f64, across: f64) -> Vector2<f64> {
     if beam.rise == 0.0 {
         return Vector2::new(x, across);
     }
-    let slope = 4.0 * beam.rise * (1.0 - 2.0 * along) / beam.length;
+    let slope = axis_slope(beam, along);
     let axis = Vector2::new(x, beam.axis(along));
     axis + Vector2::new(-slope, 1.0) * (across / slope.hypot(1.0))
+}
+
+/// Returns the direction of the axis at `along`, rad, counter-clockwise from the x axis: the normal of a section.
+pub(crate) fn axis_angle(beam: &Beam, along: f64) -> f64 {
+    axis_slope(beam, along).atan()
+}
+
+fn axis_slope(beam: &Beam, along: f64) -> f64 {
+    4.0 * beam.rise * (1.0 - 2.0 * along) / beam.length
 }
 
 /// Inverts [`bent`]: returns `along` and `across`, m, of the point of the beam nearest to a position, m, to first

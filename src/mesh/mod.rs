@@ -14,7 +14,7 @@ mod gmsh;
 mod locate;
 mod refine;
 
-pub(crate) use beam::{bent, straightened};
+pub(crate) use beam::{axis_angle, bent, straightened};
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
 

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MethodKind, Place, Plane, Probe, Pulse, Scene, SolverSettings, Start, Support,
+    MethodKind, Place, Plane, Probe, Pulse, Scene, SectionLine, SolverSettings, Start, Support,
 };
 use crate::format::engineering;
 
@@ -59,6 +59,7 @@ impl Scene {
             supports: Vec::new(),
             loads: Vec::new(),
             probes: Vec::new(),
+            sections: Vec::new(),
             solver: SolverSettings::default(),
             dynamics: DynamicsSettings::default(),
             start: Start::default(),
@@ -276,6 +277,24 @@ impl Scene {
         self
     }
 
+    /// Adds a section through the point `at`, m, with its normal at `angle`, rad, from the x axis.
+    ///
+    /// ```
+    /// use warpbeam::{Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).section([4.0, 0.0], 0.0);
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// let section = beam.section(scene.sections[0])?;
+    /// assert!((section.forces.moment + 6.0).abs() < 1e-3); // 1 N at a distance of 6 m
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn section(mut self, at: impl Into<Vector2<f64>>, angle: f64) -> Self {
+        self.sections.push(SectionLine { at: at.into(), angle });
+        self
+    }
+
     /// Adds a load and returns its handle.
     ///
     /// ```
@@ -386,8 +405,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Changes the length and height of the beam, m, and moves loads, supports and probes at points with it. The number
-    /// of cells does not change. Does nothing if the scene has no beam.
+    /// Changes the length and height of the beam, m, and moves loads, supports and probes at points and sections with it. The
+    /// number of cells does not change. Does nothing if the scene has no beam.
     pub fn resize_beam(&mut self, length: f64, height: f64) {
         let Some(beam) = &mut self.beam else { return };
         let before = beam.clone();
@@ -398,12 +417,18 @@ impl Scene {
         });
         let supports = self.supports.iter_mut().map(|support| &mut support.place);
         let probes = self.probes.iter_mut().map(|probe| &mut probe.place);
+        let moved = |[x, y]: [f64; 2]| {
+            let along = x / before.length;
+            let across = (y - before.axis(along)) / before.height;
+            beam.point(along, across)
+        };
         for place in loads.chain(supports).chain(probes) {
-            if let Place::At([x, y]) = place {
-                let along = *x / before.length;
-                let across = (*y - before.axis(along)) / before.height;
-                [*x, *y] = beam.point(along, across);
+            if let Place::At(at) = place {
+                *at = moved(*at);
             }
+        }
+        for line in &mut self.sections {
+            line.at = moved(line.at.into()).into();
         }
     }
 

@@ -168,6 +168,13 @@ pub const KEYS: &[Key] = keys! {
     "probe.at": Pair(limits::COORDINATE), Optional("edge or at is required"), "[10.0, 0.0]",
         "Material point, at rest; the displacement is interpolated.";
 
+    "section": Tables, Default("[]"), "",
+        "Cuts through the body whose normal force, shear force and bending moment are printed.";
+    "section.at": Pair(limits::COORDINATE), Required("a point of the body, as in [5.0, 0.0]"), "[5.0, 0.0]",
+        "Point of the cut, at rest.";
+    "section.angle": Number(limits::ROTATION), Default("0.0"), r#""30°""#,
+        "Direction of the cut's normal, counter-clockwise from the x axis; a number without unit is in rad. The normal points to the part in front, whose force on the part behind is printed.";
+
     "solver": Table, Optional("Optional"), "",
         "Settings of the solver.";
     "solver.method": Choice(&["linear", "warped", "newton", "auto"]), Default(r#""newton""#), r#""warped""#,

@@ -1,4 +1,4 @@
-//! The data of a scene: a beam, its material, supports, loads and probes; builders, limits, units and validation.
+//! The data of a scene: a beam, its material, supports, loads, probes and sections; builders, limits, units and validation.
 //!
 //! [`crate::scene`] reads it from files and re-exports these types.
 
@@ -18,7 +18,7 @@ pub use build::{LoadId, SupportId};
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, ReadError, SceneError};
 pub use limits::OutOfRange;
-pub use place::{Axis, Load, Place, Probe, Support, TableError};
+pub use place::{Axis, Load, Place, Probe, SectionLine, Support, TableError};
 
 use crate::format::number;
 use crate::sentence::sentence;
@@ -55,6 +55,9 @@ pub struct Scene {
     /// Places whose displacements are measured.
     #[serde(rename = "probe", default)]
     pub probes: Vec<Probe>,
+    /// Lines along which the body is cut to print its section forces.
+    #[serde(rename = "section", default, skip_serializing_if = "Vec::is_empty")]
+    pub sections: Vec<SectionLine>,
     /// Settings of the equilibrium solver.
     #[serde(default)]
     pub solver: SolverSettings,
@@ -350,6 +353,9 @@ impl Scene {
                 let message = format!("expected a unique name, got \"{}\", which probe.{first} has", probe.name);
                 return Err(Invalid::new(format!("probe.{i}.name"), message));
             }
+        }
+        for (i, line) in self.sections.iter().enumerate() {
+            line.validate(&format!("section.{i}"))?;
         }
         check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
         check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;

@@ -192,6 +192,37 @@ pub struct Probe {
     pub place: Place,
 }
 
+/// Straight line through a body at rest, along which it is cut.
+///
+/// See [`Simulation::section`](crate::Simulation::section) for an example.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "SectionTable", into = "SectionTable")]
+pub struct SectionLine {
+    /// Rest position of a point of the line, m.
+    pub at: Vector2<f64>,
+    /// Direction of the line's normal, rad, counter-clockwise from the x axis. The normal points to the part of the
+    /// body in front of the line.
+    pub angle: f64,
+}
+
+impl SectionLine {
+    /// Returns the unit normal at rest.
+    #[must_use]
+    pub fn normal(&self) -> Vector2<f64> {
+        Vector2::new(self.angle.cos(), self.angle.sin())
+    }
+
+    /// Returns the unit tangent at rest: the normal, rotated counter-clockwise by 90°.
+    pub(crate) fn tangent(&self) -> Vector2<f64> {
+        Vector2::new(-self.angle.sin(), self.angle.cos())
+    }
+
+    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
+        Place::At(self.at.into()).validate(key)?;
+        check(&format!("{key}.angle"), limits::ROTATION, self.angle)
+    }
+}
+
 /// Load. Forces and gravity are dead loads: they keep their direction as the body rotates; a moment rotates with its
 /// edge.
 ///
@@ -332,6 +363,26 @@ impl From<Probe> for ProbeTable {
     fn from(probe: Probe) -> Self {
         let (edge, at) = probe.place.keys();
         Self { name: probe.name, edge, at }
+    }
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SectionTable {
+    at: [f64; 2],
+    #[serde(skip_serializing_if = "is_default", default)]
+    angle: f64,
+}
+
+impl From<SectionTable> for SectionLine {
+    fn from(SectionTable { at, angle }: SectionTable) -> Self {
+        Self { at: at.into(), angle }
+    }
+}
+
+impl From<SectionLine> for SectionTable {
+    fn from(SectionLine { at, angle }: SectionLine) -> Self {
+        Self { at: at.into(), angle }
     }
 }
 

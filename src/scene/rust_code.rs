@@ -5,7 +5,8 @@ use std::fmt::Debug;
 use std::path::Path;
 
 use super::{
-    Analysis, Axis, Beam, DynamicsSettings, Load, Material, MeshFile, Place, Scene, SolverSettings, Start, Support,
+    Analysis, Axis, Beam, DynamicsSettings, Load, Material, MeshFile, Place, Scene, SectionLine, SolverSettings, Start,
+    Support,
 };
 use crate::mesh::Mesh;
 
@@ -53,6 +54,9 @@ impl Scene {
         self.loads.iter().for_each(|load| code.load(load));
         for probe in &self.probes {
             code.call("probe", &[text(&probe.name), place(&probe.place)]);
+        }
+        for SectionLine { at, angle } in &self.sections {
+            code.call("section", &[pair((*at).into()), number(*angle)]);
         }
         if self.analysis == Analysis::Dynamic {
             code.motion(&self.dynamics, &self.start);

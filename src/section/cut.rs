@@ -5,31 +5,7 @@ use nalgebra::Vector2;
 use crate::assembly::NodeWeights;
 use crate::element::lagrange;
 use crate::mesh::{MaterialPoint, Mesh};
-
-/// Straight line through a body at rest.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SectionLine {
-    /// Rest position of a point of the line, m.
-    pub at: Vector2<f64>,
-    /// Direction of the line's normal, rad, counter-clockwise from the x axis. The normal points to the part of the
-    /// body in front of the line.
-    pub angle: f64,
-}
-
-impl SectionLine {
-    /// Returns the unit normal at rest.
-    #[must_use]
-    pub fn normal(&self) -> Vector2<f64> {
-        Vector2::new(self.angle.cos(), self.angle.sin())
-    }
-
-    /// Returns the unit tangent at rest: the normal, rotated counter-clockwise by 90°.
-    fn tangent(&self) -> Vector2<f64> {
-        Vector2::new(-self.angle.sin(), self.angle.cos())
-    }
-}
+use crate::model::SectionLine;
 
 /// Distance from the line that counts as rounding error, relative to the size of the body.
 const ON_THE_LINE: f64 = 1e-9;

@@ -15,12 +15,12 @@ mod load;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use cut::SectionLine;
-
 use crate::assembly::{Kinematics, Problem};
 use crate::element::Rotations;
+use crate::model::SectionLine;
 use crate::rotation::Rotation;
 use crate::scene::Plane;
+use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 use crate::stress::NodalStress;
 use cut::{Cut, CutPoint};
@@ -30,20 +30,31 @@ use load::{PlacedMesh, Wrench, beyond_nodes};
 ///
 /// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("{}", Sentence::from(self))]
 #[non_exhaustive]
 pub enum SectionError {
     /// The line does not cross the body.
-    #[error("expected a line that crosses the body at rest")]
     Missed,
     /// The line crosses the body in several places, and its point is in none of them.
-    #[error("expected a point of the body, got one outside it; the line crosses the body in {0} places")]
     Several(usize),
     /// The body has no axis.
-    #[error("expected a scene with [beam], which has an axis")]
     NoAxis,
     /// The forces leave the range of f64.
-    #[error("the section forces are not finite")]
     NotFinite,
+}
+
+impl From<&SectionError> for Sentence {
+    fn from(error: &SectionError) -> Self {
+        match error {
+            SectionError::Missed => sentence!("expected a line that crosses the body at rest"),
+            SectionError::Several(places) => sentence!(
+                "expected a point of the body, got one outside it; the line crosses the body in %{places} places",
+                places
+            ),
+            SectionError::NoAxis => sentence!("expected a scene with [beam], which has an axis"),
+            SectionError::NotFinite => sentence!("the section forces are not finite"),
+        }
+    }
 }
 
 /// Normal force, shear force and bending moment.
@@ -117,13 +128,13 @@ impl Section {
     }
 
     /// Computes the section of a state along a line. `load_factor` is that of an equilibrium, `None` in a motion;
-    /// `nodal` is the recovered stress of the state.
+    /// `nodal` is the recovered stress of the state, `None` to leave out the stress along the line.
     pub(crate) fn of(
         problem: &Problem,
         state: &State,
         kinematics: Kinematics,
         load_factor: Option<f64>,
-        nodal: &NodalStress,
+        nodal: Option<&NodalStress>,
         line: SectionLine,
     ) -> Result<Self, SectionError> {
         let system = problem.system();
@@ -164,7 +175,9 @@ impl Section {
         }
         section.force = sum.force;
         section.forces = section.components(sum);
-        section.add_stress(&cut, nodal, problem, |point| mean(&positions, point));
+        if let Some(nodal) = nodal {
+            section.add_stress(&cut, nodal, problem, |point| mean(&positions, point));
+        }
         let forces = section.forces;
         let is_finite = [forces.normal, forces.shear, forces.moment].iter().all(|v| v.is_finite());
         if is_finite { Ok(section) } else { Err(SectionError::NotFinite) }

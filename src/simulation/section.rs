@@ -1,8 +1,9 @@
 //! Sections of the current state.
 
 use super::{Equilibrium, Simulation};
-use crate::mesh::bent;
-use crate::section::{Section, SectionError, SectionLine};
+use crate::mesh::{axis_angle, bent};
+use crate::model::SectionLine;
+use crate::section::{Section, SectionError};
 use crate::stress::NodalStress;
 
 impl Simulation {
@@ -32,10 +33,16 @@ impl Simulation {
     /// # Errors
     /// [`SectionError::Missed`], [`SectionError::Several`], [`SectionError::NotFinite`].
     pub fn section(&self, line: SectionLine) -> Result<Section, SectionError> {
-        self.section_of(line, &self.nodal_stress())
+        self.section_of(line, Some(&self.nodal_stress()))
     }
 
-    fn section_of(&self, line: SectionLine, nodal: &NodalStress) -> Result<Section, SectionError> {
+    /// Computes as [`Self::section`], without the stress along the line.
+    #[cfg(feature = "app")]
+    pub(crate) fn section_forces(&self, line: SectionLine) -> Result<Section, SectionError> {
+        self.section_of(line, None)
+    }
+
+    fn section_of(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
         let load_factor = self.equilibrium().map(Equilibrium::load_factor);
         Section::of(self.problem(), self.state(), self.kinematics(), load_factor, nodal, line)
     }
@@ -51,10 +58,8 @@ impl Simulation {
         let intervals = count.saturating_sub(1).max(1) as f64;
         let line = |i: usize| {
             let along = i as f64 / intervals;
-            let [at, above] = [0.0, beam.height].map(|across| bent(beam, along, across));
-            let up = above - at;
-            SectionLine { at, angle: (-up.x).atan2(up.y) }
+            SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) }
         };
-        (0..count).map(|i| self.section_of(line(i), &nodal)).collect()
+        (0..count).map(|i| self.section_of(line(i), Some(&nodal))).collect()
     }
 }

@@ -1,9 +1,10 @@
 //! Section forces as figures: the stress along a cut, and N, V and M along a beam.
 
 use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
-use crate::format::{engineering, three_digits};
+use crate::format::{Context, engineering, three_digits};
 use crate::scene::Scene;
 use crate::section::{Section, SectionForces};
+use crate::simulation::Simulation;
 
 /// Component of section forces.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +25,26 @@ pub const COMPONENTS: [SectionComponent; 3] = [
     SectionComponent { name: "shear force V", symbol: "V", unit: "N", of: |forces| forces.shear },
     SectionComponent { name: "bending moment M", symbol: "M", unit: "N m", of: |forces| forces.moment },
 ];
+
+/// Returns the contexts of the [`COMPONENTS`] of sections of one state: results below the rounding errors of the solve
+/// are 0.
+#[must_use]
+pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
+    let size = simulation.system().size();
+    let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
+    let forces = || sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
+    let force = Context::of_inexact(forces(), inexact);
+    [force, force, Context::of_inexact(forces().map(|force| force * size), inexact)]
+}
+
+/// Formats the forces of a section: "N 12 kN, V 0 N, M -3.4 kN m".
+#[must_use]
+pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
+    let values = COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
+        format!("{symbol} {}", within.engineering(of(&section.forces), unit))
+    });
+    values.collect::<Vec<_>>().join(", ")
+}
 
 /// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle.
 #[must_use]
@@ -50,7 +71,9 @@ pub fn stress(section: &Section, scene: &Scene) -> Figure {
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(&series.name, series.ink, series.mark, String::new())).collect();
     rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
-        row(symbol, Ink::Scene, Mark::Disc, engineering(three_digits(of(&section.forces)), unit))
+        let [value, of_stress] =
+            [&section.forces, &section.stress_forces].map(|forces| engineering(three_digits(of(forces)), unit));
+        row(&format!("{symbol}; of the recovered stress {of_stress}"), Ink::Scene, Mark::Disc, value)
     }));
     Figure {
         title: format!("{}: stress in a cut", scene.name),

@@ -94,6 +94,7 @@ fn json_has_every_field_of_the_contract() {
             "claims",
             "warnings",
             "probes",
+            "sections",
             "energy",
             "reaction",
             "supports",

@@ -362,12 +362,13 @@ fn the_list_of_keys_is_that_of_the_reader() {
     }
 }
 
-/// Scene at rest with every kind of load, support and probe.
+/// Scene at rest with every kind of load, support, probe and section.
 const AT_REST: &str = "name = \"A\"\n[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\n[material]\nyoung = 1e6\n\
     poisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[support]]\nat = [10.0, 0.0]\nfix = [\"y\"]\n\
     [[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -1.0]\n[[load]]\nkind = \"force\"\nat = [5.0, 0.5]\n\
     force = [0.0, -1.0]\n[[load]]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n[[load]]\nkind = \"moment\"\n\
-    edge = \"right\"\nmoment = 1.0\n[[probe]]\nname = \"a\"\nedge = \"right\"\n[[probe]]\nname = \"b\"\nat = [5.0, 0.0]\n";
+    edge = \"right\"\nmoment = 1.0\n[[probe]]\nname = \"a\"\nedge = \"right\"\n[[probe]]\nname = \"b\"\nat = [5.0, 0.0]\n\
+    [[section]]\nat = [5.0, 0.0]\n";
 
 /// Returns a scene that has the table of a key, and the place of the key in it.
 fn scene_for(key: &Key) -> (toml::Table, Vec<String>) {
@@ -390,7 +391,7 @@ fn scene_for(key: &Key) -> (toml::Table, Vec<String>) {
         _ => "0",
     };
     let mut place: Vec<String> = key.path.split('.').map(str::to_owned).collect();
-    if ["support", "load", "probe"].contains(&first) && place.len() > 1 {
+    if ["support", "load", "probe", "section"].contains(&first) && place.len() > 1 {
         place.insert(1, index.to_owned());
     }
     (table, place)

@@ -91,3 +91,36 @@ fn wrong_lines_are_refused_with_one_message() {
     let output = warpbeam(&args);
     assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
 }
+
+/// `solve` prints the sections of the scene, with the values of `section`; a line beside the body is refused before the
+/// solve, with its key.
+#[test]
+fn sections_of_a_scene_are_printed_with_its_results() {
+    let lines = "section=[{at=[\"400 cm\", 0.0]}, {at=[7.0, 0.1], angle=\"20°\"}]";
+    let of = |command: &str, more: &[&str]| warpbeam(&[&[command, "cantilever", "--set", lines], more].concat());
+    let values = |command: &str| -> serde_json::Value {
+        let json: serde_json::Value = serde_json::from_str(&stdout(&of(command, &["--json"]))).unwrap();
+        json["sections"].clone()
+    };
+    let each = [&["--at", "4,0"][..], &["--at", "7,0.1", "--angle", "20deg"]]
+        .map(|args| sections(&[&["cantilever"], args].concat())["sections"][0].clone());
+    assert_eq!(values("solve").as_array().unwrap()[..], each);
+    assert_eq!(values("section").as_array().unwrap()[..], each);
+    // The part in front carries the force at the tip.
+    let force = each[0]["force"][1].as_f64().unwrap();
+    assert!((force + 1000.0).abs() < 1e-4, "{force}");
+    let text = stdout(&of("solve", &[]));
+    let line = text.lines().find(|line| line.starts_with("section at (7, 0.1) m, normal at 20°: N ")).unwrap();
+    assert!(line.contains(", V ") && line.contains(", M "), "{line}");
+    let text = stdout(&of("section", &[]));
+    assert_eq!(text.matches("of the recovered stress").count(), 6, "{text}");
+    for (command, place, value) in [("solve", "section.1", "[11.0, 0.0]"), ("section", "section.0", "[-1, 0]")] {
+        let refused = of(command, &["--set", &format!("{place}.at={value}")]);
+        assert_eq!(refused.status.code(), Some(2));
+        let message = format!("cantilever: {place}: expected a line that crosses the body at rest");
+        assert!(stderr(&refused).contains(&message), "{}", stderr(&refused));
+    }
+    let none = warpbeam(&["section", "cantilever"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(stderr(&none).contains("cantilever: expected --at or --along, or a scene with a [[section]]"));
+}

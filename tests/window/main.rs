@@ -18,5 +18,6 @@ mod motions;
 mod numbers;
 mod panel;
 mod pictures;
+mod sections;
 mod soak;
 mod ui_interaction;

@@ -29,6 +29,8 @@ pub struct ShotOptions {
     pub panel: bool,
     /// `true` if the load curve is shown.
     pub curve: bool,
+    /// `true` if the plots of the sections are shown.
+    pub sections: bool,
     /// `true` if the speed–accuracy study is measured and shown, in place of the load curve.
     pub study: bool,
     /// `true` if the limits of every method and element are shown.
@@ -53,6 +55,7 @@ impl Default for ShotOptions {
             size: [1280, 800],
             panel: true,
             curve: false,
+            sections: false,
             study: false,
             limits: false,
             motion: None,
@@ -93,6 +96,9 @@ pub fn shot(
     lab.set_language(options.language);
     if options.curve {
         lab.show_curve();
+    }
+    if options.sections {
+        lab.show_sections();
     }
     if let Some(card) = options.learn {
         lab.show_card(card);

@@ -22,6 +22,7 @@ mod edges;
 mod loads;
 mod motion;
 mod result;
+mod sections;
 mod supports;
 mod view;
 
@@ -109,6 +110,10 @@ pub(super) fn show(
         fold(ui, "Material", &summary, false, |ui| body::material(ui, input, state, actions));
         let summary = body::mesh_summary(input);
         fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
+        if !input.scene.sections.is_empty() {
+            let summary = sections::summary(input);
+            fold(ui, "Sections", &summary, true, |ui| sections::show(ui, input, state, view, actions));
+        }
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
         fold(ui, "File", tr("open, save, picture, movie"), false, |ui| view::keep(ui, actions));

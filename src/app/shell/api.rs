@@ -39,6 +39,11 @@ impl Lab {
         self.desk.view.drawer = Some(Drawer::Curve);
     }
 
+    /// Shows the plots of the sections under the body.
+    pub fn show_sections(&mut self) {
+        self.desk.view.drawer = Some(Drawer::Section);
+    }
+
     /// Shows the plots of a motion under the body.
     pub fn show_motion_plots(&mut self) {
         self.desk.view.drawer = Some(Drawer::Motion);
@@ -269,6 +274,7 @@ impl Lab {
         let plots = match view.drawer {
             Some(Drawer::Curve) => facts.curve.is_pending(scene),
             Some(Drawer::Motion) => facts.frequency.is_pending(scene),
+            Some(Drawer::Section) => self.desk.sections.is_pending(),
             _ => false,
         };
         let limits = view.mode == Mode::Limits && limits.base().is_none_or(|base| facts.limits.is_pending(base));

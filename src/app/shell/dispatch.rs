@@ -19,14 +19,15 @@ use crate::study::Extent;
 impl Lab {
     /// Updates the window after changes of the session.
     pub(super) fn apply_session_changes(&mut self) {
-        let Desk { session, viewport, view, panel, budget, compare, motions, limits } = &mut self.desk;
+        let Desk { session, viewport, view, panel, budget, compare, motions, limits, .. } = &mut self.desk;
         let changed = session.take_changed();
         if changed == Changed::default() {
             return;
         }
         if changed.scene {
             self.intro = None;
-            view.drawer = view.drawer.map(|_| Drawer::of(session.simulation().scene()));
+            let scene = session.simulation().scene();
+            view.drawer = view.drawer.map(|drawer| if drawer.suits(scene) { drawer } else { Drawer::of(scene) });
         }
         let mesh = session.simulation().system().mesh();
         if changed.mesh {
@@ -140,7 +141,7 @@ impl Lab {
                 self.desk.motions.fit();
             }
             // The drawer of the other kind of scene does not exist here.
-            Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(self.scene()) => {}
+            Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();

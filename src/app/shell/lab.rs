@@ -2,6 +2,7 @@
 
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
+use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::limits::LimitMap;
 use crate::app::panel::PanelState;
@@ -46,6 +47,7 @@ pub(super) struct Desk {
     pub compare: Compare,
     pub motions: MotionCompare,
     pub limits: LimitMap,
+    pub sections: SectionPlot,
 }
 
 impl Desk {
@@ -59,6 +61,7 @@ impl Desk {
             compare: Compare::default(),
             motions: MotionCompare::default(),
             limits: LimitMap::default(),
+            sections: SectionPlot::default(),
         }
     }
 
@@ -234,9 +237,12 @@ impl Lab {
         let (session, shown) = self.desk.shown_facts();
         session.solve(shown);
         self.apply_session_changes();
-        let Desk { session, view, compare, .. } = &mut self.desk;
+        let Desk { session, view, compare, sections, .. } = &mut self.desk;
         if session.is_motion() {
             return;
+        }
+        if view.drawer == Some(Drawer::Section) {
+            sections.wait(session.simulation());
         }
         if let Some(lesson) = &mut self.lesson {
             lesson.learn.wait(session.scene());
@@ -277,7 +283,7 @@ impl Lab {
             original: &session.document().original,
             scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
-            shown: session.converged().filter(|_| viewport.shows_converged()).unwrap_or(session.simulation()),
+            shown: viewport.shown_of(session),
             linear: session.linear(),
             running: session.is_running(),
             ended: match view.mode {

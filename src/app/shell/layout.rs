@@ -179,7 +179,7 @@ impl Lab {
 
     /// Shows the plots under the body, if they are open.
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let Desk { session, view, .. } = &mut self.desk;
+        let Desk { session, view, viewport, sections, .. } = &mut self.desk;
         let Some(drawer) = view.drawer else { return };
         let facts = session.facts();
         drawer_panel(ui).show(ui, |ui| match drawer {
@@ -191,6 +191,13 @@ impl Lab {
                     view.curve_plot,
                     actions,
                 );
+            }
+            Drawer::Section => {
+                let shown = viewport.shown_of(session);
+                if sections.request(shown) {
+                    ui.ctx().request_repaint_after(POLL);
+                }
+                sections.show(ui, shown, actions);
             }
             Drawer::Motion => {
                 let frequency = facts.frequency.get(session.scene()).copied();

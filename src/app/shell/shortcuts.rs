@@ -64,6 +64,9 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::Num4, "Colour: rotation angle", || Action::Color(Field::RotationAngle)),
     key(Key::Num5, "Colour: mesh error", || Action::Color(Field::MeshError)),
     key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Drawer(Drawer::Curve))),
+    key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
+        Action::Toggle(Toggle::Drawer(Drawer::Section))
+    }),
     key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),

@@ -49,13 +49,15 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
             number(ui, &palette, entry, wide);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let drawer = Drawer::of(input.scene);
-            let open = view.plots().is_some();
-            let (word, tip) = drawer.text();
-            let (word, tip) = (tr(word), tr(tip));
-            let icon = if open { Icon::Close } else { Icon::Open };
-            if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
-                actions.push(Action::Toggle(Toggle::Drawer(drawer)));
+            let has_sections = !input.scene.sections.is_empty() && Drawer::Section.suits(input.scene);
+            for drawer in std::iter::once(Drawer::of(input.scene)).chain(has_sections.then_some(Drawer::Section)) {
+                let open = view.plots() == Some(drawer);
+                let (word, tip) = drawer.text();
+                let (word, tip) = (tr(word), tr(tip));
+                let icon = if open { Icon::Close } else { Icon::Open };
+                if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
+                    actions.push(Action::Toggle(Toggle::Drawer(drawer)));
+                }
             }
             if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
                 sparkline(ui, &palette, input);

@@ -1,11 +1,12 @@
-//! Menu of a point of the body: loads, supports and probes to add there, and those to remove.
+//! Menu of a point of the body: loads, supports, probes and sections to add there, and those to remove.
 
 use egui::{Response, Ui};
 use nalgebra::Vector2;
 
 use crate::app::language::{fill, tr};
 use crate::assembly::System;
-use crate::scene::{Axis, Load, Place, Probe, Scene, Support};
+use crate::mesh::{axis_angle, straightened};
+use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
 
 /// Entry of the menu: its text, and the scene that it leads to.
 type MenuEntry = (String, Scene);
@@ -39,7 +40,7 @@ fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
 }
 
 /// Returns the entries that add an object. Forces and supports act on nodes, so they are put on the nearest one.
-fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [MenuEntry; 3] {
+fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [MenuEntry; 4] {
     let mesh = system.mesh();
     let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
     let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
@@ -49,8 +50,15 @@ fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [M
         ("Add a force here", edited(scene, |scene| scene.loads.push(Load::force(node, [0.0, -usual])))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
         ("Add a probe here", edited(scene, |scene| scene.probes.push(probe))),
+        ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, at))))),
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
+}
+
+/// Returns the section through a point that is normal to the axis of the beam, or vertical in a body without axis.
+fn normal_section(system: &System, at: Vector2<f64>) -> SectionLine {
+    let angle = system.beam().map_or(0.0, |beam| axis_angle(beam, straightened(beam, at)[0]));
+    SectionLine { at, angle }
 }
 
 /// Rounds a point to a thousandth of the body's size, if the body has that point.
@@ -59,6 +67,7 @@ fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
     // Quotients by a power of ten have short decimals.
     let rounded =
         at.map(|x| if step < 1.0 { (x / step).round() / (1.0 / step).round() } else { (x / step).round() * step });
+    let rounded = rounded.map(|x| if x == 0.0 { 0.0 } else { x });
     if system.mesh().locate(rounded).is_some() { rounded } else { at }
 }
 
@@ -79,5 +88,9 @@ fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
     let supports = scene.supports.iter().enumerate().filter(|(_, support)| is_near(&support.place));
     let supports = supports
         .map(|(i, _)| (tr("Remove this support").to_owned(), edited(scene, |scene| _ = scene.supports.remove(i))));
-    probes.chain(forces).chain(supports).collect()
+    let is_on_line = |line: &SectionLine| line.normal().dot(&(at - line.at)).abs() <= near;
+    let sections = scene.sections.iter().enumerate().filter(|(_, line)| is_on_line(line));
+    let sections = sections
+        .map(|(i, _)| (tr("Remove this section").to_owned(), edited(scene, |scene| _ = scene.sections.remove(i))));
+    probes.chain(forces).chain(supports).chain(sections).collect()
 }

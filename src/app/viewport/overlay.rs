@@ -12,6 +12,7 @@ use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, ForceArrows};
 use crate::app::viewport::handle::HotHandle;
+use crate::app::viewport::moment_arrow::MomentArrow;
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
@@ -21,6 +22,7 @@ use crate::render::Camera;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
+use crate::section::{Section, SectionForces};
 use crate::simulation::SupportReaction;
 
 /// Content of the overlays.
@@ -55,6 +57,8 @@ pub(crate) struct Overlay<'a> {
     pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
     /// Recorded past of the motion, and the same motion under other integrators.
     pub playback: &'a Playback,
+    /// Sections of the scene, each with its forces as text.
+    pub sections: &'a [(Section, String)],
     /// Reactions of the supports, if one of them moves.
     pub reactions: &'a [SupportReaction],
     /// Values of the field at both ends of the colour map.
@@ -159,6 +163,44 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
         probes(painter, &projection, overlay, visuals);
+        sections(painter, &projection, overlay, &palette, visuals);
+    }
+}
+
+/// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
+fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+    /// Length of an arrow and of the part of the cut outside the body, points.
+    const ARROW: f32 = 46.0;
+    const OUTSIDE: f32 = 8.0;
+    let seen = |v: Vector2<f64>| vec2(v.x as f32, -v.y as f32);
+    for (section, text) in overlay.sections {
+        let [from, to] = section.ends.map(|end| projection.point(end));
+        let (middle, tangent, normal) = (from + (to - from) * 0.5, seen(section.tangent()), seen(section.normal()));
+        if !(tangent.is_finite() && middle.is_finite()) {
+            continue;
+        }
+        let color = palette.support;
+        let stroke = Stroke::new(1.5, color);
+        painter.add(egui::Shape::dashed_line(&[from - tangent * OUTSIDE, to + tangent * OUTSIDE], stroke, 7.0, 3.0));
+        let SectionForces { normal: tension, shear, moment } = section.forces;
+        let least = 1e-6 * (section.force.norm() + moment.abs() / overlay.system.size());
+        for (force, axis) in [(tension, normal), (shear, tangent)] {
+            if force.abs() > least {
+                arrow::paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
+            }
+        }
+        if moment.abs() > least * overlay.system.size() {
+            MomentArrow::new(0, middle, moment, moment.abs()).paint_body_load(painter, color);
+        }
+        // The label is at the upper end, outside the body.
+        let (end, below) = if from.y <= to.y { (from, to) } else { (to, from) };
+        let outward = (end - below).normalized();
+        let anchor = match outward.x {
+            x if x > 0.1 => Align2::LEFT_BOTTOM,
+            x if x < -0.1 => Align2::RIGHT_BOTTOM,
+            _ => Align2::CENTER_BOTTOM,
+        };
+        boxed_text(painter, end + outward * (OUTSIDE + 4.0), anchor, text, visuals, color, 320.0);
     }
 }
 

@@ -18,7 +18,9 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{MethodKind, Scene};
+use crate::section::Section;
 use crate::simulation::{Field, Simulation, Status};
+use crate::study::section_chart;
 
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
 /// and the colour bar below.
@@ -290,7 +292,12 @@ impl BodyView {
 
     /// Returns the drawn body; animations are ignored.
     pub(crate) fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
-        content.session.converged().filter(|_| self.shows_converged).unwrap_or(content.simulation())
+        self.shown_of(content.session)
+    }
+
+    /// Returns the drawn body of a session; animations are ignored.
+    pub(crate) fn shown_of<'a>(&self, session: &'a Session) -> &'a Simulation {
+        session.converged().filter(|_| self.shows_converged).unwrap_or(session.simulation())
     }
 
     /// Returns the drawn body.
@@ -518,6 +525,7 @@ impl BodyView {
         let shown = self.drawn(content);
         let moves_support = simulation.problem().supports().move_the_body();
         let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
+        let sections = sections(shown);
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
@@ -536,6 +544,7 @@ impl BodyView {
             hot: self.pointer.hot_handle(),
             mouse_spring: simulation.mouse_spring(),
             playback: session.playback(),
+            sections: &sections,
             reactions: &reactions,
             color_range: self.body.range,
             note,
@@ -614,6 +623,18 @@ fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f
 }
 
 /// Returns the positions of a body's nodes, m.
+/// Returns the sections of a state, each with its forces as text.
+fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
+    let lines = simulation.scene().sections.iter();
+    let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
+    let named = sections.map(|section| {
+        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
+        let text = section_chart::text(&section, &contexts);
+        (section, text)
+    });
+    named.collect()
+}
+
 fn positions(simulation: &Simulation) -> impl Iterator<Item = Vector2<f64>> + '_ {
     simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u)
 }

@@ -314,6 +314,7 @@ impl<P: ComparedPane> Panes<P> {
         let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
         if let Some(((scene, time), system)) = model.zip(system) {
             let overlay = Overlay {
+                sections: &[],
                 apart: false,
                 scene,
                 wanted: None,

@@ -204,13 +204,18 @@ pub(crate) fn controls(
                 actions.push(Action::Plot(plot));
             }
         }
-        ui.menu_button(tr("Export"), |ui| {
-            for (file, tip) in FigureFile::ALL {
-                if ui.button(file.extension().to_uppercase()).on_hover_text(tr(tip)).clicked() {
-                    actions.push(Action::Export(Box::new(figure.clone()), file));
-                }
+        export_menu(ui, figure, actions);
+    });
+}
+
+/// Shows the menu that exports a figure.
+pub(crate) fn export_menu(ui: &mut Ui, figure: &Figure, actions: &mut Vec<Action>) {
+    ui.menu_button(tr("Export"), |ui| {
+        for (file, tip) in FigureFile::ALL {
+            if ui.button(file.extension().to_uppercase()).on_hover_text(tr(tip)).clicked() {
+                actions.push(Action::Export(Box::new(figure.clone()), file));
             }
-        });
+        }
     });
 }
 

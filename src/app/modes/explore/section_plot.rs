@@ -1,0 +1,173 @@
+//! Plots of sections: the stress along each section of the scene, and N, V and M along its beam.
+
+use egui::{Ui, UiBuilder};
+
+use crate::app::action::Action;
+use crate::app::language::{fill, said, tr};
+use crate::app::modes::explore::figure::{self, Parts};
+use crate::app::platform::IS_PAGE;
+use crate::app::task::thread::{Reporter, Task, Update};
+use crate::app::widgets::buttons::option_button;
+use crate::scene::Scene;
+use crate::section::{Section, SectionError};
+use crate::simulation::{Equilibrium, Simulation};
+use crate::state::State;
+use crate::study::figure::Figure;
+use crate::study::section_chart::{self, COMPONENTS};
+
+/// Sections of one equilibrium.
+#[derive(Debug)]
+struct Cuts {
+    of: (State, Scene),
+    /// Sections of the scene.
+    own: Vec<Result<Section, SectionError>>,
+    /// Sections along the beam; none if the body has no axis.
+    along: Vec<Section>,
+}
+
+impl Cuts {
+    fn of(simulation: &Simulation) -> Self {
+        /// Number of sections along a beam.
+        const ALONG: usize = 41;
+        let scene = simulation.scene();
+        Self {
+            own: scene.sections.iter().map(|&line| simulation.section(line)).collect(),
+            along: simulation.sections(ALONG).unwrap_or_default(),
+            of: (simulation.state().clone(), scene.clone()),
+        }
+    }
+
+    fn is_of(&self, simulation: &Simulation) -> bool {
+        self.of.0 == *simulation.state() && self.of.1 == *simulation.scene()
+    }
+}
+
+/// Figure of the sections.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum SectionFigure {
+    /// Stress along the section of the scene with this index.
+    Stress(usize),
+    /// Component along the beam, as an index of [`COMPONENTS`].
+    Along(usize),
+}
+
+/// Plots of the sections of the last equilibrium, computed once per state.
+#[derive(Debug, Default)]
+pub(crate) struct SectionPlot {
+    cuts: Option<Cuts>,
+    computing: Option<Task<(), Box<Cuts>>>,
+    shown: Option<SectionFigure>,
+}
+
+impl SectionPlot {
+    /// Largest number of unknowns of a body whose sections are computed on the window's thread.
+    const MAX_UNKNOWNS: usize = 2000;
+
+    /// Requests the sections of an equilibrium; returns `true` while they are pending.
+    pub(crate) fn request(&mut self, simulation: &Simulation) -> bool {
+        if let Some(task) = &self.computing {
+            match task.poll() {
+                Update::None | Update::Progress(()) => return true,
+                Update::Done(cuts) => self.cuts = Some(*cuts),
+                Update::Died => {}
+            }
+            self.computing = None;
+        }
+        let Some(equilibrium) = simulation.equilibrium().filter(|_| simulation.status().is_success()) else {
+            return false;
+        };
+        if self.cuts.as_ref().is_some_and(|cuts| cuts.is_of(simulation)) {
+            return false;
+        }
+        if simulation.system().dofs() > Self::MAX_UNKNOWNS && !IS_PAGE {
+            let copy = Equilibrium::snapshot(equilibrium);
+            self.computing = Task::start("sections", move |_: &Reporter<_, _>| Box::new(Cuts::of(&copy))).ok();
+        }
+        if self.computing.is_none() {
+            self.cuts = Some(Cuts::of(simulation));
+        }
+        self.computing.is_some()
+    }
+
+    /// Returns `true` while sections are being computed.
+    pub(crate) fn is_pending(&self) -> bool {
+        self.computing.is_some()
+    }
+
+    /// Computes the sections of an equilibrium, and waits for them.
+    pub(crate) fn wait(&mut self, simulation: &Simulation) {
+        if !self.cuts.as_ref().is_some_and(|cuts| cuts.is_of(simulation)) {
+            (self.cuts, self.computing) = (Some(Cuts::of(simulation)), None);
+        }
+    }
+
+    /// Shows the plots; a scene without a section, or whose first result is pending, gets the reason.
+    pub(crate) fn show(&mut self, ui: &mut Ui, simulation: &Simulation, actions: &mut Vec<Action>) {
+        let whole = ui.available_rect_before_wrap();
+        let cuts = self.cuts.as_ref().filter(|cuts| cuts.is_of(simulation));
+        let offered = cuts.map(Cuts::offered).unwrap_or_default();
+        let shown = self.shown.filter(|figure| offered.contains(figure)).or_else(|| offered.first().copied());
+        let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
+        let parts = Parts::of(whole);
+        ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
+            Some(Ok(drawn)) => _ = figure::plot(ui, "sections", drawn, None),
+            Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
+            None => _ = ui.centered_and_justified(|ui| ui.weak(tr("Sections are computed after the solve."))),
+        });
+        ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
+                for &figure in &offered {
+                    let (word, tip) = figure.text(offered.len() - COMPONENTS.len() > 1);
+                    if ui.add(option_button(Some(figure) == shown, &word)).on_hover_text(tr(tip)).clicked() {
+                        self.shown = Some(figure);
+                    }
+                }
+                if let Some(Ok(drawn)) = &drawn {
+                    figure::export_menu(ui, drawn, actions);
+                }
+            });
+            if let Some(Ok(drawn)) = &drawn {
+                figure::table(ui, drawn);
+            }
+        });
+        ui.advance_cursor_after_rect(whole);
+    }
+}
+
+impl SectionFigure {
+    /// Returns the words of the choice and a description; stresses are numbered if there are several.
+    fn text(self, is_numbered: bool) -> (String, &'static str) {
+        match self {
+            Self::Stress(i) if is_numbered => (fill!("Stress %{n}", n = i + 1), Self::STRESS),
+            Self::Stress(_) => (tr("Stress").to_owned(), Self::STRESS),
+            Self::Along(i) => {
+                let symbol = COMPONENTS.get(i).map_or("", |component| component.symbol);
+                (symbol.to_owned(), "Along the beam, in sections normal to its axis")
+            }
+        }
+    }
+
+    const STRESS: &'static str = "Normal and shear stress along the section, recovered and of beam theory";
+}
+
+impl Cuts {
+    fn offered(&self) -> Vec<SectionFigure> {
+        let along = if self.along.is_empty() { 0 } else { COMPONENTS.len() };
+        (0..self.own.len()).map(SectionFigure::Stress).chain((0..along).map(SectionFigure::Along)).collect()
+    }
+
+    fn figure(&self, shown: SectionFigure) -> Result<Figure, SectionError> {
+        let scene = &self.of.1;
+        match shown {
+            SectionFigure::Stress(i) => match self.own.get(i) {
+                Some(Ok(section)) => Ok(section_chart::stress(section, scene)),
+                Some(Err(error)) => Err(*error),
+                None => Err(SectionError::Missed),
+            },
+            SectionFigure::Along(i) => {
+                section_chart::forces(&self.along, scene).into_iter().nth(i).ok_or(SectionError::NoAxis)
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Tests of sections in the window: the menu adds them, the panel moves them, and the plots show them.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use nalgebra::Vector2;
+
+use crate::common::scene;
+use warpbeam::app::Lab;
+use warpbeam::scene::Source;
+use warpbeam::simulation::{Simulation, Status};
+use warpbeam::study::section_chart;
+
+fn harness(id: &str) -> Harness<'static, Lab> {
+    let scene = scene(id);
+    let simulation = Simulation::new(&scene).unwrap();
+    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    );
+    harness.run_steps(4);
+    harness
+}
+
+/// Returns the pixel of a material point.
+fn on_body(lab: &Lab, rest: [f64; 2]) -> Pos2 {
+    let simulation = lab.simulation();
+    let point = simulation.mesh().locate(rest.into()).unwrap();
+    let weights = simulation.mesh().weights(point).unwrap();
+    let place = |n: u32| simulation.mesh().nodes()[n as usize] + simulation.displacement()[n as usize];
+    let at: Vector2<f64> = weights.iter().map(|&(n, weight)| place(n) * weight).sum();
+    let [right, down] = lab.camera().to_view(at);
+    lab.view_rect().center() + egui::vec2(right as f32, down as f32)
+}
+
+fn choose(harness: &mut Harness<'_, Lab>, rest: [f64; 2], entry: &str) {
+    let pos = on_body(harness.state(), rest);
+    harness.hover_at(pos);
+    harness.run_steps(2);
+    for pressed in [true, false] {
+        let button = egui::PointerButton::Secondary;
+        harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        harness.step();
+    }
+    harness.run_steps(4);
+    harness.get_by_label(entry).click();
+    harness.run_steps(6);
+}
+
+/// Returns the text of the forces of the first section.
+fn forces(lab: &Lab) -> String {
+    let simulation = lab.simulation();
+    assert_eq!(*simulation.status(), Status::Converged);
+    let section = simulation.section(lab.scene().sections[0]).unwrap();
+    section_chart::text(&section, &section_chart::contexts(std::slice::from_ref(&section), simulation))
+}
+
+/// The menu adds a section normal to the axis; the panel shows the forces that the library computes, and its fields move
+/// the section; each is one step of undo, and the menu removes it.
+#[test]
+fn a_section_is_added_moved_and_removed() {
+    let mut harness = harness("cantilever");
+    let before = harness.state().scene().clone();
+    choose(&mut harness, [4.0, 0.0], "Add a section here");
+    let line = harness.state().scene().sections[0];
+    assert!((line.at - Vector2::new(4.0, 0.0)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
+    let simulation = harness.state().simulation();
+    let section = simulation.section(line).unwrap();
+    // The force at the tip, and its lever arm about the middle of the cut.
+    let arm = simulation.solution().probes[0].x - section.middle();
+    let moment = arm.perp(&Vector2::new(0.0, -1000.0));
+    assert!((section.force - Vector2::new(0.0, -1000.0)).norm() < 1e-4, "{section:?}");
+    assert!((section.forces.moment - moment).abs() < 1e-4 * moment.abs(), "{section:?} {moment}");
+    let text = forces(harness.state());
+    assert!(harness.query_by_label(&text).is_some(), "{text}");
+    harness.get_by_role_and_label(Role::SpinButton, "Cut x").focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("600 cm".to_owned()));
+    harness.key_press(Key::Enter);
+    harness.run_steps(6);
+    assert_eq!(harness.state().scene().sections[0].at.x, 6.0);
+    let moved = forces(harness.state());
+    assert!(moved != text && harness.query_by_label(&moved).is_some(), "{moved}");
+    for at in [Some(line.at), None] {
+        harness.key_press(Key::Escape);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(6);
+        assert_eq!(harness.state().scene().sections.first().map(|line| line.at), at);
+    }
+    assert_eq!(*harness.state().scene(), before);
+    choose(&mut harness, [4.0, 0.0], "Add a section here");
+    choose(&mut harness, [4.0, 0.1], "Remove this section");
+    assert_eq!(*harness.state().scene(), before);
+}
+
+/// The plots show the stress along the section with N, V and M, and these along the beam with their largest values.
+#[test]
+fn the_plots_have_the_values_of_the_library() {
+    let mut harness = harness("cantilever");
+    choose(&mut harness, [4.0, 0.0], "Add a section here");
+    harness.key_press(Key::Q);
+    harness.run_steps(6);
+    let simulation = harness.state().simulation();
+    let section = simulation.section(harness.state().scene().sections[0]).unwrap();
+    let rows = section_chart::stress(&section, harness.state().scene()).rows;
+    let row = rows.iter().find(|row| row.name.starts_with("M;")).unwrap();
+    assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
+    let along = simulation.sections(41).unwrap();
+    let row = section_chart::forces(&along, harness.state().scene())[2].rows[0].clone();
+    harness.get_by_label("M").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
+    // Another load has other values.
+    harness.state_mut().solve();
+    harness.key_press(Key::Q);
+    harness.run_steps(4);
+    assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_none(), "the plots are closed");
+}
