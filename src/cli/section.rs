@@ -53,8 +53,12 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     })?;
     outputs.write_picture(|| {
         Ok(match along {
-            None => Drawing::stacked(sections.iter().map(|cut| plot::figure(&section_chart::stress(cut, &scene)))),
-            Some(_) => Drawing::stacked(section_chart::forces(&sections, &scene).iter().map(plot::figure)),
+            None => Drawing::stacked(
+                sections.iter().map(|cut| plot::figure(&section_chart::stress(cut, &scene, &ToString::to_string))),
+            ),
+            Some(_) => Drawing::stacked(
+                section_chart::forces(&sections, &scene, &ToString::to_string).iter().map(plot::figure),
+            ),
         })
     })?;
     text::print(&match (json, along) {

@@ -24,7 +24,7 @@ pub enum Ordinate {
 }
 
 /// Function that renders a name.
-type Render<'a> = &'a dyn Fn(&Sentence) -> String;
+pub type Render<'a> = &'a dyn Fn(&Sentence) -> String;
 
 /// Draws the path over the displacement or angle of the moving support, or over the load; `render` translates its
 /// names.

@@ -1,9 +1,11 @@
 //! Section forces as figures: the stress along a cut, and N, V and M along a beam.
 
 use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
+use super::path_chart::Render;
 use crate::format::{Context, engineering, three_digits};
 use crate::scene::Scene;
 use crate::section::{Section, SectionForces};
+use crate::sentence::sentence;
 use crate::simulation::Simulation;
 
 /// Component of section forces.
@@ -46,13 +48,14 @@ pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
     values.collect::<Vec<_>>().join(", ")
 }
 
-/// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle.
+/// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle; `render` translates
+/// its names.
 #[must_use]
-pub fn stress(section: &Section, scene: &Scene) -> Figure {
+pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
     let recovered = |i: usize| section.points.iter().map(move |p| (p.stress.map(|stress| stress[i]), p.along));
     let beam = |i: usize| section.points.iter().map(move |p| (Some(p.beam[i]), p.along));
     let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| FigureSeries {
-        name: name.to_owned(),
+        name: render(&name.into()),
         ink,
         mark,
         may_leave: false,
@@ -69,15 +72,17 @@ pub fn stress(section: &Section, scene: &Scene) -> Figure {
         series("shear stress, beam theory", Ink::Exact, Mark::Dots, beam(1).collect()),
     ];
     let mut rows: Vec<FigureRow> =
-        series.iter().map(|series| row(&series.name, series.ink, series.mark, String::new())).collect();
+        series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();
     rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
         let [value, of_stress] =
             [&section.forces, &section.stress_forces].map(|forces| engineering(three_digits(of(forces)), unit));
-        row(&format!("{symbol}; of the recovered stress {of_stress}"), Ink::Scene, Mark::Disc, value)
+        let name = sentence!("%{symbol}; of the recovered stress %{value}", symbol, value = of_stress);
+        row(render(&name), Ink::Scene, Mark::Disc, value)
     }));
+    let quantity = |name: &str, unit| Quantity::new(render(&name.into()), unit);
     Figure {
-        title: format!("{}: stress in a cut", scene.name),
-        quantities: vec![Quantity::new("stress", "Pa"), Quantity::new("distance from the middle", "m")],
+        title: format!("{}: {}", render(&scene.name.as_str().into()), render(&"stress in a cut".into())),
+        quantities: vec![quantity("stress", "Pa"), quantity("distance from the middle", "m")],
         axes: [0, 1],
         series,
         rows,
@@ -85,34 +90,28 @@ pub fn stress(section: &Section, scene: &Scene) -> Figure {
     }
 }
 
-/// Draws N, V and M along a beam, each with its largest value.
+/// Draws N, V and M along a beam, each with its largest value; `render` translates the names.
 #[must_use]
-pub fn forces(sections: &[Section], scene: &Scene) -> [Figure; 3] {
+pub fn forces(sections: &[Section], scene: &Scene, render: Render<'_>) -> [Figure; 3] {
     COMPONENTS.map(|SectionComponent { name, unit, of: value, .. }| {
-        let ink = Ink::Method(scene.solver.method);
+        let (ink, name) = (Ink::Method(scene.solver.method), render(&name.into()));
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
         let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));
         let largest = largest.map(|section| {
-            let at = engineering(three_digits(section.line.at.x), "m");
-            row(&format!("largest, at {at}"), ink, Mark::Line, engineering(three_digits(value(&section.forces)), unit))
+            let at = sentence!("largest, at %{at}", at = engineering(three_digits(section.line.at.x), "m"));
+            row(render(&at), ink, Mark::Line, engineering(three_digits(value(&section.forces)), unit))
         });
         Figure {
-            title: format!("{}: {name}", scene.name),
-            quantities: vec![Quantity::new("x at rest", "m"), Quantity::new(name, unit)],
+            title: format!("{}: {name}", render(&scene.name.as_str().into())),
+            quantities: vec![Quantity::new(render(&"x at rest".into()), "m"), Quantity::new(name.clone(), unit)],
             axes: [0, 1],
-            series: vec![FigureSeries {
-                name: name.to_owned(),
-                ink,
-                mark: Mark::Line,
-                may_leave: false,
-                points: points.collect(),
-            }],
+            series: vec![FigureSeries { name, ink, mark: Mark::Line, may_leave: false, points: points.collect() }],
             rows: largest.into_iter().collect(),
             ..Figure::default()
         }
     })
 }
 
-fn row(name: &str, ink: Ink, mark: Mark, value: String) -> FigureRow {
-    FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false }
+fn row(name: String, ink: Ink, mark: Mark, value: String) -> FigureRow {
+    FigureRow { name, ink, mark, value, error: String::new(), is_bad: false }
 }

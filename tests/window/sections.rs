@@ -108,11 +108,11 @@ fn the_plots_have_the_values_of_the_library() {
     harness.run_steps(6);
     let simulation = harness.state().simulation();
     let section = simulation.section(harness.state().scene().sections[0]).unwrap();
-    let rows = section_chart::stress(&section, harness.state().scene()).rows;
+    let rows = section_chart::stress(&section, harness.state().scene(), &ToString::to_string).rows;
     let row = rows.iter().find(|row| row.name.starts_with("M;")).unwrap();
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
     let along = simulation.sections(41).unwrap();
-    let row = section_chart::forces(&along, harness.state().scene())[2].rows[0].clone();
+    let row = section_chart::forces(&along, harness.state().scene(), &ToString::to_string)[2].rows[0].clone();
     harness.get_by_label("M").click();
     harness.run_steps(4);
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
@@ -121,4 +121,19 @@ fn the_plots_have_the_values_of_the_library() {
     harness.key_press(Key::Q);
     harness.run_steps(4);
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_none(), "the plots are closed");
+}
+
+/// A body without axis has no section at first, and then only the stress along its own.
+#[test]
+fn a_body_without_axis_has_its_own_sections_only() {
+    let mut harness = harness("clip");
+    harness.key_press(Key::Q);
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("to add a section").is_some());
+    let node = harness.state().simulation().mesh().nodes()[0];
+    choose(&mut harness, node.into(), "Add a section here");
+    assert!(harness.query_by_label_contains("to add a section").is_none());
+    assert!(harness.query_by_label_contains("M; of the recovered stress").is_some());
+    assert!(harness.query_by_role_and_label(Role::Button, "N").is_none());
+    assert_eq!(harness.state().scene().sections.len(), 1);
 }

@@ -9,7 +9,8 @@ use crate::method::{Decision, IterationError, Reason, floor_text, rho_text};
 use crate::scene::limits::{CELLS, FORCE};
 use crate::scene::{self, Scene, SceneError, Source, units};
 use crate::sentence::Sentence;
-use crate::study::{Drive, Elsewhere, Jump, LoadPath, Reference, Setting, path_chart};
+use crate::simulation::Simulation;
+use crate::study::{Drive, Elsewhere, Jump, LoadPath, Reference, Setting, path_chart, section_chart};
 
 fn open(id: &str) -> Scene {
     scene::open(&Source { name: id.into(), assignments: Vec::new() }).unwrap()
@@ -79,6 +80,15 @@ fn the_sentences_of_the_library_are_translated() {
             name.to_string()
         });
     }
+    let render = |name: &Sentence| {
+        names.borrow_mut().push(both(name));
+        name.to_string()
+    };
+    let scene = open("cantilever");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.solve();
+    let along = simulation.sections(3).unwrap();
+    let _ = (section_chart::stress(&along[1], &scene, &render), section_chart::forces(&along, &scene, &render));
     texts.extend(names.into_inner());
     for [text, said] in texts {
         // Keys of a scene are not translated.

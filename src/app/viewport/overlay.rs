@@ -173,7 +173,9 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     let seen = |v: Vector2<f64>| vec2(v.x as f32, -v.y as f32);
-    for (section, text) in overlay.sections {
+    // A small view has room for the numbers of the sections only; the panel has their values.
+    let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
+    for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let [from, to] = section.ends.map(|end| projection.point(end));
         let (middle, tangent, normal) = (from + (to - from) * 0.5, seen(section.tangent()), seen(section.normal()));
         if !(tangent.is_finite() && middle.is_finite()) {
@@ -196,11 +198,19 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
         let (end, below) = if from.y <= to.y { (from, to) } else { (to, from) };
         let outward = (end - below).normalized();
         let anchor = match outward.x {
+            x if x > 0.7 => Align2::LEFT_CENTER,
+            x if x < -0.7 => Align2::RIGHT_CENTER,
             x if x > 0.1 => Align2::LEFT_BOTTOM,
             x if x < -0.1 => Align2::RIGHT_BOTTOM,
             _ => Align2::CENTER_BOTTOM,
         };
-        boxed_text(painter, end + outward * (OUTSIDE + 4.0), anchor, text, visuals, color, 320.0);
+        let label = match (is_roomy, overlay.sections.len()) {
+            (true, 1) => text.clone(),
+            (true, _) => format!("{}: {text}", i + 1),
+            (false, 1) => continue,
+            (false, _) => (i + 1).to_string(),
+        };
+        boxed_text(painter, end + outward * (OUTSIDE + 4.0), anchor, &label, visuals, color, 320.0);
     }
 }
 

@@ -112,13 +112,19 @@ impl SectionPlot {
         ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
             Some(Ok(drawn)) => _ = figure::plot(ui, "sections", drawn, None),
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
-            None => _ = ui.centered_and_justified(|ui| ui.weak(tr("Sections are computed after the solve."))),
+            None => {
+                let reason = match cuts {
+                    Some(_) => "Click the body with the secondary button to add a section.",
+                    None => "Sections are computed after the solve.",
+                };
+                ui.centered_and_justified(|ui| ui.weak(tr(reason)));
+            }
         });
         ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
                 for &figure in &offered {
-                    let (word, tip) = figure.text(offered.len() - COMPONENTS.len() > 1);
+                    let (word, tip) = figure.text(offered.contains(&SectionFigure::Stress(1)));
                     if ui.add(option_button(Some(figure) == shown, &word)).on_hover_text(tr(tip)).clicked() {
                         self.shown = Some(figure);
                     }
@@ -161,13 +167,14 @@ impl Cuts {
         let scene = &self.of.1;
         match shown {
             SectionFigure::Stress(i) => match self.own.get(i) {
-                Some(Ok(section)) => Ok(section_chart::stress(section, scene)),
+                Some(Ok(section)) => Ok(section_chart::stress(section, scene, &|name| said(name))),
                 Some(Err(error)) => Err(*error),
                 None => Err(SectionError::Missed),
             },
-            SectionFigure::Along(i) => {
-                section_chart::forces(&self.along, scene).into_iter().nth(i).ok_or(SectionError::NoAxis)
-            }
+            SectionFigure::Along(i) => section_chart::forces(&self.along, scene, &|name| said(name))
+                .into_iter()
+                .nth(i)
+                .ok_or(SectionError::NoAxis),
         }
     }
 }
