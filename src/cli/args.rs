@@ -208,7 +208,7 @@ pub(super) struct SectionArgs {
     pub at: Option<(f64, Option<f64>)>,
     /// Direction of the cut's normal, counter-clockwise from the x axis, with --at: 30deg, or a number of radians. The normal
     /// points to the part in front.
-    #[arg(long, value_name = "ANGLE", value_parser = parse_angle, default_value = "0deg", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = parse_angle, default_value = "0deg", requires = "at", allow_hyphen_values = true)]
     pub angle: f64,
     /// Print N, V and M in this number of sections normal to the axis of a beam, evenly spaced from end to end.
     #[arg(long, value_name = "COUNT", conflicts_with_all = ["at", "angle"], value_parser = clap::value_parser!(u16).range(2..=1000))]

@@ -173,8 +173,8 @@ pub(super) fn section(section: &Section) -> Value {
             "along": number(point.along),
             "normal_stress": point.stress.map(|stress| number(stress[0])),
             "shear_stress": point.stress.map(|stress| number(stress[1])),
-            "beam_normal_stress": number(point.beam[0]),
-            "beam_shear_stress": number(point.beam[1]),
+            "beam_normal_stress": point.beam.map(|beam| number(beam[0])),
+            "beam_shear_stress": point.beam.map(|beam| number(beam[1])),
         })
     };
     let mut object = forces(&section.forces);

@@ -29,8 +29,11 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         return Err(CliError::NoSection(named(&source)));
     }
     // A line that misses the body is refused before the solve.
-    line.map_or(Ok(()), |line| simulation.section(line).map(|_| ())).map_err(refused)?;
-    sections_of(&source, &simulation)?;
+    match (line, along) {
+        (Some(line), _) => _ = simulation.section(line).map_err(refused)?,
+        (None, Some(_)) => {}
+        (None, None) => _ = sections_of(&source, &simulation)?,
+    }
     let watch = Watch::new();
     match scene.analysis {
         Analysis::Static => watch.solve(&mut simulation),
@@ -90,8 +93,13 @@ fn heading(scene: &Scene, simulation: &Simulation) -> String {
 
 fn of_cut(section: &Section, simulation: &Simulation) -> String {
     let pair = |v: Vector2<f64>| engineering_pair(v.into(), "m");
+    let theory = match section.points.iter().any(|point| point.beam.is_some()) {
+        true => "beam theory: of a rectangular section",
+        false => "beam theory: only in cuts normal to the axis",
+    };
     let [[from, to], [now_from, now_to]] = [section.rest, section.ends].map(|ends| ends.map(pair));
-    let mut text = format!("cut from {from} to {to} at rest, now from {now_from} to {now_to}\n");
+    let angle = engineering(three_digits(section.line.angle.to_degrees()), "°");
+    let mut text = format!("cut from {from} to {to} at rest, normal at {angle}, now from {now_from} to {now_to}\n");
     for (component, within) in COMPONENTS.iter().zip(section_chart::contexts(std::slice::from_ref(section), simulation))
     {
         let [value, of_stress] = [&section.forces, &section.stress_forces]
@@ -99,13 +107,13 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
         let _ = writeln!(text, "{:<17} {value:>12}   of the recovered stress {of_stress}", component.name);
     }
     let stresses: Vec<f64> =
-        section.points.iter().flat_map(|point| point.stress.into_iter().flatten().chain(point.beam)).collect();
+        section.points.iter().flat_map(|point| point.stress.into_iter().chain(point.beam).flatten()).collect();
     let ((power, symbol), within) = (prefix(&stresses, "Pa"), Context::of(stresses));
     let along: Vec<f64> = section.points.iter().map(|point| point.along).collect();
     let ((along_power, along_symbol), along_within) = (prefix(&along, "m"), Context::of_inexact(along, 1e-6));
     let _ = writeln!(
         text,
-        "\nstress, {symbol}Pa (beam theory: of a rectangular section)\n{:>10}  {:>12} {:>12}  {:>12} {:>12}",
+        "\nstress, {symbol}Pa ({theory})\n{:>10}  {:>12} {:>12}  {:>12} {:>12}",
         format!("η, {along_symbol}m"),
         "normal",
         "beam theory",
@@ -114,20 +122,20 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
     );
     let short = |value: f64| in_power(within.rounded(value), power);
     for point in shown(&section.points) {
-        let [normal, shear] = match point.stress {
+        let cells = |stress: Option<[f64; 2]>| match stress {
             Some(stress) => stress.map(short),
             None => [(); 2].map(|()| "–".to_owned()),
         };
-        let [beam_normal, beam_shear] = point.beam.map(short);
+        let ([normal, shear], [beam_normal, beam_shear]) = (cells(point.stress), cells(point.beam));
         let along = in_power(along_within.rounded(point.along), along_power);
         let _ = writeln!(text, "{along:>10}  {normal:>12} {beam_normal:>12}  {shear:>12} {beam_shear:>12}");
     }
     text
 }
 
-/// Returns at most about a dozen of the values, the first and the last among them.
+/// Returns at most 25 of the values, the first and the last among them.
 fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
-    const MAX_ROWS: usize = 13;
+    const MAX_ROWS: usize = 25;
     let rows = values.len().min(MAX_ROWS);
     (0..rows).filter_map(move |row| values.get(row * (values.len() - 1) / (rows - 1).max(1)))
 }
@@ -181,8 +189,9 @@ fn as_json(scene: &Scene, simulation: &Simulation, sections: &[Section]) -> Stri
 fn stress_table(section: &Section) -> String {
     let mut text = "rest_x,rest_y,along,normal_stress,shear_stress,beam_normal_stress,beam_shear_stress\n".to_owned();
     for SectionPoint { rest, along, stress, beam } in &section.points {
-        let [normal, shear] = [0, 1].map(|i| stress.map_or_else(String::new, |stress| stress[i].to_string()));
-        let _ = writeln!(text, "{},{},{along},{normal},{shear},{},{}", rest.x, rest.y, beam[0], beam[1]);
+        let cells =
+            |of: &Option<[f64; 2]>| [0, 1].map(|i| of.map_or_else(String::new, |of| of[i].to_string())).join(",");
+        let _ = writeln!(text, "{},{},{along},{},{}", rest.x, rest.y, cells(stress), cells(beam));
     }
     text
 }
@@ -190,13 +199,13 @@ fn stress_table(section: &Section) -> String {
 /// Formats N, V and M along a beam as CSV.
 fn forces_table(sections: &[Section]) -> String {
     let mut text =
-        "x,y,normal_force,shear_force,moment,stress_normal_force,stress_shear_force,stress_moment\n".to_owned();
+        "x,y,normal_force,shear_force,moment,stress_normal_force,stress_shear_force,stress_moment,angle\n".to_owned();
     for Section { line, forces, stress_forces, .. } in sections {
         let _ = write!(text, "{},{}", line.at.x, line.at.y);
         for SectionForces { normal, shear, moment } in [forces, stress_forces] {
             let _ = write!(text, ",{normal},{shear},{moment}");
         }
-        text.push('\n');
+        let _ = writeln!(text, ",{}", line.angle);
     }
     text
 }

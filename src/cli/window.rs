@@ -8,7 +8,7 @@ use super::args::{ReferenceEffort, SolveArgs};
 use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
 use super::progress::Watch;
 use super::scene_args::{RequiredSceneArgs, SetArgs};
-use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, simulate, text};
+use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
 use crate::app;
 use crate::render;
 use crate::scene::{self, registry};
@@ -50,6 +50,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     check_suffix(&output, &[".png"], ".png")?;
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
+    sections_of(&source, &simulation)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
     fits("--compare", !options.compare.is_empty(), false, "it shows equilibria; for a motion, use --motion")?;
     fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;

@@ -12,12 +12,15 @@
 mod cut;
 mod load;
 
+use std::f64::consts::PI;
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::assembly::{Kinematics, Problem};
 use crate::element::Rotations;
-use crate::model::SectionLine;
+use crate::mesh::{axis_angle, straightened};
+use crate::model::{Beam, SectionLine};
 use crate::rotation::Rotation;
 use crate::scene::Plane;
 use crate::sentence::{Sentence, sentence};
@@ -81,8 +84,9 @@ pub struct SectionPoint {
     pub along: f64,
     /// Recovered Cauchy stress, Pa: normal stress n·σn and shear stress t·σn; `None` where it is undefined.
     pub stress: Option<[f64; 2]>,
-    /// Stresses of beam theory for a rectangular section, Pa: N/A − M η/I and V Q/(I t).
-    pub beam: [f64; 2],
+    /// Stresses of beam theory for a rectangular section, Pa: N/A − M η/I and V Q/(I t). `None` in a beam if the cut is
+    /// not normal to its axis.
+    pub beam: Option<[f64; 2]>,
 }
 
 /// Forces in a cut through the body: those that the part in front exerts on the part behind.
@@ -183,6 +187,14 @@ impl Section {
         if is_finite { Ok(section) } else { Err(SectionError::NotFinite) }
     }
 
+    /// Returns `true` if the cut is normal to the axis of a beam at rest, as beam theory assumes: 1° more would let a normal
+    /// stress σ appear as a shear stress of 0.017 σ.
+    fn is_normal_to_axis(&self, beam: &Beam) -> bool {
+        const TOLERANCE: f64 = 1.0 / 180.0 * PI;
+        let [along, _] = straightened(beam, (self.rest[0] + self.rest[1]) * 0.5);
+        (self.line.angle - axis_angle(beam, along)).sin().abs() < TOLERANCE.sin()
+    }
+
     fn components(&self, Wrench { force, moment }: Wrench) -> SectionForces {
         SectionForces { normal: force.dot(&self.normal()), shear: force.dot(&self.tangent()), moment }
     }
@@ -200,6 +212,7 @@ impl Section {
         let height = (self.ends[1] - self.ends[0]).norm();
         let area = height * material.thickness;
         let SectionForces { normal: force, shear, moment } = self.forces;
+        let is_normal = problem.system().beam().is_none_or(|beam| self.is_normal_to_axis(beam));
         let mut sum = Wrench::default();
         // Arm and traction per length, stress times thickness, at the point before; `None` after an undefined stress.
         let mut before: Option<(Vector2<f64>, [Vector2<f64>; 2])> = None;
@@ -213,10 +226,12 @@ impl Section {
                 rest: point.weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum(),
                 along,
                 stress: stress.map(|stress| [normal, tangent].map(|axis| axis.dot(&(stress * normal)))),
-                beam: [
-                    force / area - 12.0 * moment * along / (area * height * height),
-                    1.5 * shear / area * (1.0 - eta * eta),
-                ],
+                beam: is_normal.then(|| {
+                    [
+                        force / area - 12.0 * moment * along / (area * height * height),
+                        1.5 * shear / area * (1.0 - eta * eta),
+                    ]
+                }),
             });
             let thickness = match (material.plane, nodal.kinematics()) {
                 (Plane::Stress, Kinematics::Corotated) => material.thickness * (1.0 + local.strain(material).zz),

@@ -53,7 +53,7 @@ pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
 #[must_use]
 pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
     let recovered = |i: usize| section.points.iter().map(move |p| (p.stress.map(|stress| stress[i]), p.along));
-    let beam = |i: usize| section.points.iter().map(move |p| (Some(p.beam[i]), p.along));
+    let beam = |i: usize| section.points.iter().map(move |p| (p.beam.map(|beam| beam[i]), p.along));
     let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| FigureSeries {
         name: render(&name.into()),
         ink,
@@ -65,18 +65,19 @@ pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
             .collect(),
     };
     let method = Ink::Method(scene.solver.method);
-    let series = vec![
+    let mut series = vec![
         series("normal stress, recovered", method, Mark::Line, recovered(0).collect()),
         series("normal stress, beam theory", Ink::Exact, Mark::Dashes, beam(0).collect()),
         series("shear stress, recovered", method, Mark::Dots, recovered(1).collect()),
         series("shear stress, beam theory", Ink::Exact, Mark::Dots, beam(1).collect()),
     ];
+    series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();
     rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
         let [value, of_stress] =
             [&section.forces, &section.stress_forces].map(|forces| engineering(three_digits(of(forces)), unit));
-        let name = sentence!("%{symbol}; of the recovered stress %{value}", symbol, value = of_stress);
+        let name = sentence!("%{symbol}; stress: %{value}", symbol, value = of_stress);
         row(render(&name), Ink::Scene, Mark::Disc, value)
     }));
     let quantity = |name: &str, unit| Quantity::new(render(&name.into()), unit);

@@ -46,7 +46,7 @@ fn tables_and_pictures_are_written() {
         let output = warpbeam_in(folder.path(), &[&["section", "snap"], args].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     };
-    run(&["--at", "0.05", "--out", "cut.csv", "--picture", "cut.svg"]);
+    run(&["--at", "0.1", "--out", "cut.csv", "--picture", "cut.svg"]);
     run(&["--along", "21", "--out", "along.csv", "--picture", "along.png"]);
     // The back of the ring, at a negative coordinate: the hand calculation of the guide has 68.7 N mm at the support's side.
     let clip = &sections(&["clip", "--at", "-6 mm,0 mm", "--angle", "90deg"])["sections"][0];
@@ -120,6 +120,13 @@ fn sections_of_a_scene_are_printed_with_its_results() {
         let message = format!("cantilever: {place}: expected a line that crosses the body at rest");
         assert!(stderr(&refused).contains(&message), "{}", stderr(&refused));
     }
+    // A cut of its own does not depend on the sections of the scene; a picture does.
+    let outside = "section=[{at=[11.0, 0.0]}]";
+    assert!(warpbeam(&["section", "cantilever", "--at", "4", "--set", outside]).status.success());
+    let shot = warpbeam(&["shot", "cantilever", "-o", "no.png", "--set", outside]);
+    assert!(stderr(&shot).contains("section.0: expected a line that crosses the body"), "{}", stderr(&shot));
+    let angle = of("section", &["--angle", "30deg"]);
+    assert!(stderr(&angle).contains("--at"), "{}", stderr(&angle));
     let none = warpbeam(&["section", "cantilever"]);
     assert_eq!(none.status.code(), Some(2));
     assert!(stderr(&none).contains("cantilever: expected --at or --along, or a scene with a [[section]]"));

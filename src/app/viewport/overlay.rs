@@ -175,6 +175,7 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     let seen = |v: Vector2<f64>| vec2(v.x as f32, -v.y as f32);
     // A small view has room for the numbers of the sections only; the panel has their values.
     let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
+    let mut taken = Vec::new();
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let [from, to] = section.ends.map(|end| projection.point(end));
         let (middle, tangent, normal) = (from + (to - from) * 0.5, seen(section.tangent()), seen(section.normal()));
@@ -210,7 +211,15 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
             (false, 1) => continue,
             (false, _) => (i + 1).to_string(),
         };
-        boxed_text(painter, end + outward * (OUTSIDE + 4.0), anchor, &label, visuals, color, 320.0);
+        // A label moves up from one that it would cover.
+        let size = painter.layout_no_wrap(label.clone(), FontId::proportional(BODY), color).size();
+        let mut at = end + outward * (OUTSIDE + 4.0);
+        let place = |at| anchor.anchor_size(at, size).expand(4.0);
+        while taken.iter().any(|other: &Rect| other.intersects(place(at))) {
+            at.y -= size.y + 8.0;
+        }
+        taken.push(place(at));
+        boxed_text(painter, at, anchor, &label, visuals, color, 320.0);
     }
 }
 
