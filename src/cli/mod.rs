@@ -176,11 +176,11 @@ fn check_fit(
 
 /// Computes the sections that the scene lists.
 fn sections_of(source: &scene::Source, simulation: &Simulation) -> Result<Vec<Section>, CliError> {
-    let lines = simulation.scene().sections.iter().enumerate();
-    lines
-        .map(|(i, &line)| {
-            let refused = |error| CliError::Section { scene: format!("{}: section.{i}", named(source)), error };
-            simulation.section(line).map_err(refused)
+    let sections = simulation.scene_sections().into_iter().enumerate();
+    sections
+        .map(|(i, section)| {
+            let scene = || format!("{}: section.{i}", named(source));
+            section.map_err(|error| CliError::Section { scene: scene(), error })
         })
         .collect()
 }

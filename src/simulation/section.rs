@@ -43,6 +43,14 @@ impl Simulation {
         self.section_of(line, None)
     }
 
+    /// Computes the sections of the scene, with the stress recovered once for all.
+    #[cfg(feature = "cli")]
+    pub(crate) fn scene_sections(&self) -> Vec<Result<Section, SectionError>> {
+        let lines = &self.scene().sections;
+        let nodal = if lines.is_empty() { None } else { Some(self.nodal_stress()) };
+        lines.iter().map(|&line| self.section_of(line, nodal.as_ref())).collect()
+    }
+
     fn section_of(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
         let load_factor = self.equilibrium().map(Equilibrium::load_factor);
         Section::of(self.problem(), self.state(), self.kinematics(), load_factor, nodal, line)

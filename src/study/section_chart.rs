@@ -48,6 +48,12 @@ pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
     values.collect::<Vec<_>>().join(", ")
 }
 
+/// Formats the forces of a section of a state as [`text`], in the contexts of this section alone.
+#[must_use]
+pub fn text_of(section: &Section, simulation: &Simulation) -> String {
+    text(section, &contexts(std::slice::from_ref(section), simulation))
+}
+
 /// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle; `render` translates
 /// its names.
 #[must_use]

@@ -1,6 +1,7 @@
 //! Tests of motions in the window: colours, time line, speed, and self-intersecting bodies.
 
 use crate::common::{ids_of, scene};
+use crate::ui_interaction::on_body;
 use egui::accesskit::Role;
 use egui::{Key, Pos2, vec2};
 use egui_kittest::Harness;
@@ -24,16 +25,6 @@ fn harness_of(name: &str, scene: Scene) -> Harness<'static, Lab> {
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     harness_of(id, scene(id))
-}
-
-/// Returns the window position of a material point.
-fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
-    let mesh = lab.simulation().system().mesh();
-    let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
-    let u = lab.simulation().displacement();
-    let place = weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum();
-    let [x, y] = lab.camera().to_view(place);
-    lab.view_rect().center() + vec2(x as f32, y as f32)
 }
 
 fn time(harness: &Harness<'_, Lab>) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::common::lab::{pick, type_into, unfold};
 use crate::common::{scene, scene_with, solve_json};
+use crate::ui_interaction::on_body;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
@@ -856,17 +857,6 @@ fn the_fonts_have_every_letter_of_the_texts() {
 fn texts(harness: &Harness<'_, Lab>) -> Vec<String> {
     let labels = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
     labels.flat_map(|node| [node.label(), node.value()]).flatten().collect()
-}
-
-/// Returns the window position of a material point.
-fn on_body(lab: &Lab, at: Vector2<f64>) -> egui::Pos2 {
-    let simulation = lab.simulation();
-    let mesh = simulation.system().mesh();
-    let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
-    let u = simulation.displacement();
-    let place: Vector2<f64> = weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum();
-    let [x, y] = lab.camera().to_view(place);
-    lab.view_rect().center() + egui::vec2(x as f32, y as f32)
 }
 
 /// A beam at rest that is pressed and pulled settles in equilibrium with the mouse spring; after release, it

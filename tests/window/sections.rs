@@ -1,12 +1,13 @@
 //! Tests of sections in the window: the menu adds them, the panel moves them, and the plots show them.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Pos2};
+use egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 
 use crate::common::scene;
+use crate::ui_interaction::on_body;
 use warpbeam::app::Lab;
 use warpbeam::scene::Source;
 use warpbeam::simulation::{Simulation, Status};
@@ -27,19 +28,8 @@ fn harness(id: &str) -> Harness<'static, Lab> {
     harness
 }
 
-/// Returns the pixel of a material point.
-fn on_body(lab: &Lab, rest: [f64; 2]) -> Pos2 {
-    let simulation = lab.simulation();
-    let point = simulation.mesh().locate(rest.into()).unwrap();
-    let weights = simulation.mesh().weights(point).unwrap();
-    let place = |n: u32| simulation.mesh().nodes()[n as usize] + simulation.displacement()[n as usize];
-    let at: Vector2<f64> = weights.iter().map(|&(n, weight)| place(n) * weight).sum();
-    let [right, down] = lab.camera().to_view(at);
-    lab.view_rect().center() + egui::vec2(right as f32, down as f32)
-}
-
 fn choose(harness: &mut Harness<'_, Lab>, rest: [f64; 2], entry: &str) {
-    let pos = on_body(harness.state(), rest);
+    let pos = on_body(harness.state(), rest.into());
     harness.hover_at(pos);
     harness.run_steps(2);
     for pressed in [true, false] {
@@ -57,7 +47,7 @@ fn forces(lab: &Lab) -> String {
     let simulation = lab.simulation();
     assert_eq!(*simulation.status(), Status::Converged);
     let section = simulation.section(lab.scene().sections[0]).unwrap();
-    section_chart::text(&section, &section_chart::contexts(std::slice::from_ref(&section), simulation))
+    section_chart::text_of(&section, simulation)
 }
 
 /// The menu adds a section normal to the axis; the panel shows the forces that the library computes, and its fields move

@@ -51,7 +51,7 @@ fn in_window(lab: &Lab, place: Vector2<f64>) -> Pos2 {
 }
 
 /// Returns the window position of a material point.
-fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
+pub fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
     let mesh = lab.simulation().system().mesh();
     let weights = mesh.weights(mesh.locate(at).unwrap()).unwrap();
     let u = lab.simulation().displacement();

@@ -73,17 +73,14 @@ fn the_sentences_of_the_library_are_translated() {
         texts.push(both(&Setting::of(&open(id), 4)));
     }
     let names = RefCell::new(Vec::new());
-    for id in ["snap", "jump"] {
-        let path = LoadPath::of(&open(id)).unwrap();
-        let _ = path_chart::figure(&path, &open(id), &path_chart::Ordinate::Usual, &|name| {
-            names.borrow_mut().push(both(name));
-            name.to_string()
-        });
-    }
     let render = |name: &Sentence| {
         names.borrow_mut().push(both(name));
         name.to_string()
     };
+    for id in ["snap", "jump"] {
+        let path = LoadPath::of(&open(id)).unwrap();
+        let _ = path_chart::figure(&path, &open(id), &path_chart::Ordinate::Usual, &render);
+    }
     let scene = open("cantilever");
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.solve();

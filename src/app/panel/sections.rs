@@ -24,10 +24,7 @@ pub(super) fn summary(input: &Readout<'_>) -> String {
 /// Returns the forces of a section of the drawn state, or the reason why there are none.
 fn forces(input: &Readout<'_>, line: SectionLine) -> String {
     match input.shown.section_forces(line) {
-        Ok(section) => {
-            let contexts = section_chart::contexts(std::slice::from_ref(&section), input.shown);
-            section_chart::text(&section, &contexts)
-        }
+        Ok(section) => section_chart::text_of(&section, input.shown),
         Err(error) => said(&error),
     }
 }

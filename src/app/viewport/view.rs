@@ -628,8 +628,7 @@ fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
     let lines = simulation.scene().sections.iter();
     let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
     let named = sections.map(|section| {
-        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
-        let text = section_chart::text(&section, &contexts);
+        let text = section_chart::text_of(&section, simulation);
         (section, text)
     });
     named.collect()

@@ -31,7 +31,7 @@ impl Cuts {
         const ALONG: usize = 41;
         let scene = simulation.scene();
         Self {
-            own: scene.sections.iter().map(|&line| simulation.section(line)).collect(),
+            own: simulation.scene_sections(),
             along: simulation.sections(ALONG).unwrap_or_default(),
             of: (simulation.state().clone(), scene.clone()),
         }
@@ -76,7 +76,7 @@ impl SectionPlot {
         let Some(equilibrium) = simulation.equilibrium().filter(|_| simulation.status().is_success()) else {
             return false;
         };
-        if self.cuts.as_ref().is_some_and(|cuts| cuts.is_of(simulation)) {
+        if self.cuts_of(simulation).is_some() {
             return false;
         }
         if simulation.system().dofs() > Self::MAX_UNKNOWNS && !IS_PAGE {
@@ -89,6 +89,11 @@ impl SectionPlot {
         self.computing.is_some()
     }
 
+    /// Returns the sections of a state, if they have been computed.
+    fn cuts_of(&self, simulation: &Simulation) -> Option<&Cuts> {
+        self.cuts.as_ref().filter(|cuts| cuts.is_of(simulation))
+    }
+
     /// Returns `true` while sections are being computed.
     pub(crate) fn is_pending(&self) -> bool {
         self.computing.is_some()
@@ -96,7 +101,7 @@ impl SectionPlot {
 
     /// Computes the sections of an equilibrium, and waits for them.
     pub(crate) fn wait(&mut self, simulation: &Simulation) {
-        if !self.cuts.as_ref().is_some_and(|cuts| cuts.is_of(simulation)) {
+        if self.cuts_of(simulation).is_none() {
             (self.cuts, self.computing) = (Some(Cuts::of(simulation)), None);
         }
     }
@@ -104,7 +109,7 @@ impl SectionPlot {
     /// Shows the plots; a scene without a section, or whose first result is pending, gets the reason.
     pub(crate) fn show(&mut self, ui: &mut Ui, simulation: &Simulation, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
-        let cuts = self.cuts.as_ref().filter(|cuts| cuts.is_of(simulation));
+        let cuts = self.cuts_of(simulation);
         let offered = cuts.map(Cuts::offered).unwrap_or_default();
         let shown = self.shown.filter(|figure| offered.contains(figure)).or_else(|| offered.first().copied());
         let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
