@@ -21,7 +21,9 @@ struct View {
     unit: f32,
     // Field, one of the constants below.
     field: u32,
-    padding: vec2<u32>,
+    // 1 for ε = S − I with F = R S, 0 for linear theory, where T is the Cauchy stress.
+    is_corotated: u32,
+    padding: u32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -29,29 +31,45 @@ struct View {
 @group(0) @binding(1) var<uniform> colormap: array<vec4<f32>, 64>;
 
 const FIRST_COMPONENT: u32 = 0u;
-const ANGLE: u32 = 1u;
-const LARGEST_STRAIN: u32 = 2u;
-const ENERGY_DENSITY: u32 = 3u;
-const VON_MISES_BIOT: u32 = 4u;
-const VON_MISES_CAUCHY: u32 = 5u;
+const SECOND_COMPONENT: u32 = 1u;
+const TWICE_THIRD_COMPONENT: u32 = 2u;
+const LENGTH: u32 = 3u;
+const ANGLE: u32 = 4u;
+const LARGEST_STRAIN: u32 = 5u;
+const LARGER_PRINCIPAL_STRAIN: u32 = 6u;
+const SMALLER_PRINCIPAL_STRAIN: u32 = 7u;
+const ENERGY_DENSITY: u32 = 8u;
+// The fields from here on are of the Cauchy stress.
+const VON_MISES: u32 = 9u;
+const MATERIAL_STRESS_X: u32 = 10u;
+const MATERIAL_STRESS_Y: u32 = 11u;
+const MATERIAL_SHEAR_STRESS: u32 = 12u;
+const STRESS_X: u32 = 13u;
+const STRESS_Y: u32 = 14u;
+const SHEAR_STRESS: u32 = 15u;
+const LARGER_PRINCIPAL_STRESS: u32 = 16u;
+const SMALLER_PRINCIPAL_STRESS: u32 = 17u;
 
 struct Vertex {
     @location(0) position: vec2<f32>,
     // Opaque: the colour of the vertex. Transparent: the colour where the field has no value.
     @location(1) color: vec4<f32>,
-    // ε₁₁, ε₂₂, ε₁₂; or cos θ, sin θ, 0; or the value, 0, 0.
+    // ε₁₁, ε₂₂, ε₁₂; or u_x, u_y, 0; or the value, 0, 0.
     @location(2) components: vec3<f32>,
+    // cos θ, sin θ.
+    @location(3) rotation: vec2<f32>,
 }
 
 struct Fragment {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) color: vec4<f32>,
     @location(1) components: vec3<f32>,
+    @location(2) rotation: vec2<f32>,
 }
 
 @vertex
 fn vertex(v: Vertex) -> Fragment {
-    return Fragment(vec4<f32>(v.position * view.scale, 0.0, 1.0), v.color, v.components);
+    return Fragment(vec4<f32>(v.position * view.scale, 0.0, 1.0), v.color, v.components, v.rotation);
 }
 
 // Colours are in gamma space, as egui blends them; the target is not sRGB.
@@ -66,46 +84,110 @@ fn mapped_fragment(f: Fragment) -> @location(0) vec4<f32> {
         return f.color;
     }
     let e = f.components;
-    if view.field == VON_MISES_CAUCHY && !has_volume(e) {
+    if view.field >= VON_MISES && !has_volume(e) {
         return vec4<f32>(f.color.rgb, 1.0);
     }
     var position = 0.5;
     if view.range.y > 0.0 {
-        position = (field_value(e) - view.range.x) / view.range.y;
+        position = (field_value(e, f.rotation) - view.range.x) / view.range.y;
     }
     let at = clamp(position, 0.0, 1.0) * 63.0;
     let low = min(u32(at), 62u);
     return mix(colormap[low], colormap[low + 1u], at - f32(low));
 }
 
-fn field_value(e: vec3<f32>) -> f32 {
+fn field_value(e: vec3<f32>, rotation: vec2<f32>) -> f32 {
     switch view.field {
+        case SECOND_COMPONENT: {
+            return e.y;
+        }
+        case TWICE_THIRD_COMPONENT: {
+            return 2.0 * e.z;
+        }
+        case LENGTH: {
+            return length(e.xy);
+        }
         case ANGLE: {
-            return degrees(atan2(e.y, e.x));
+            return degrees(atan2(rotation.y, rotation.x));
         }
         case LARGEST_STRAIN: {
-            return abs(0.5 * (e.x + e.y)) + length(vec2<f32>(0.5 * (e.x - e.y), e.z));
+            return abs(0.5 * (e.x + e.y)) + radius(e);
+        }
+        case LARGER_PRINCIPAL_STRAIN: {
+            return 0.5 * (e.x + e.y) + radius(e);
+        }
+        case SMALLER_PRINCIPAL_STRAIN: {
+            return 0.5 * (e.x + e.y) - radius(e);
         }
         case ENERGY_DENSITY: {
             let trace = e.x + e.y;
             return view.mu * (e.x * e.x + e.y * e.y + 2.0 * e.z * e.z) + 0.5 * view.lambda * trace * trace;
         }
-        case VON_MISES_BIOT: {
-            let t = biot(e);
-            return von_mises(t, view.out_of_plane * (t.x + t.y));
+        case VON_MISES: {
+            return von_mises(cauchy(e));
         }
-        case VON_MISES_CAUCHY: {
-            // σ = T S / (det S (1 + ε₃₃)) in the rotated frame; T and S have the same principal axes.
-            let t = biot(e);
-            let s = stretch(e);
-            let area = s.x * s.y - s.z * s.z;
-            let ts = vec3<f32>(t.x * s.x + t.z * s.z, t.z * s.z + t.y * s.y, t.x * s.z + t.z * s.y);
-            return von_mises(ts / (area * thickness(e)), view.out_of_plane * (t.x + t.y) / area);
+        case MATERIAL_STRESS_X: {
+            return cauchy(e).x;
+        }
+        case MATERIAL_STRESS_Y: {
+            return cauchy(e).y;
+        }
+        case MATERIAL_SHEAR_STRESS: {
+            return cauchy(e).z;
+        }
+        case STRESS_X: {
+            return rotated(cauchy(e), rotation).x;
+        }
+        case STRESS_Y: {
+            return rotated(cauchy(e), rotation).y;
+        }
+        case SHEAR_STRESS: {
+            return rotated(cauchy(e), rotation).z;
+        }
+        case LARGER_PRINCIPAL_STRESS: {
+            let t = cauchy(e);
+            return 0.5 * (t.x + t.y) + radius(t.xyz);
+        }
+        case SMALLER_PRINCIPAL_STRESS: {
+            let t = cauchy(e);
+            return 0.5 * (t.x + t.y) - radius(t.xyz);
         }
         default: {
             return e.x;
         }
     }
+}
+
+// Half of the difference of the principal values of xx, yy, xy.
+fn radius(e: vec3<f32>) -> f32 {
+    return length(vec2<f32>(0.5 * (e.x - e.y), e.z));
+}
+
+// Cauchy stress xx, yy, xy and zz in the rotated frame: σ = T S / (det S (1 + ε₃₃)), because T and S have the same
+// principal axes; in linear theory T.
+fn cauchy(e: vec3<f32>) -> vec4<f32> {
+    let t = biot(e);
+    let zz = view.out_of_plane * (t.x + t.y);
+    if view.is_corotated == 0u {
+        return vec4<f32>(t, zz);
+    }
+    let s = stretch(e);
+    let area = s.x * s.y - s.z * s.z;
+    let ts = vec3<f32>(t.x * s.x + t.z * s.z, t.z * s.z + t.y * s.y, t.x * s.z + t.z * s.y);
+    return vec4<f32>(ts / (area * thickness(e)), zz / area);
+}
+
+// R σ Rᵀ: xx, yy, xy.
+fn rotated(t: vec4<f32>, rotation: vec2<f32>) -> vec3<f32> {
+    let r = normalize(rotation);
+    let cc = r.x * r.x;
+    let ss = r.y * r.y;
+    let cs = r.x * r.y;
+    return vec3<f32>(
+        cc * t.x + ss * t.y - 2.0 * cs * t.z,
+        ss * t.x + cc * t.y + 2.0 * cs * t.z,
+        cs * (t.x - t.y) + (cc - ss) * t.z,
+    );
 }
 
 // T = 2 μ ε + λ tr(ε) I.
@@ -124,14 +206,17 @@ fn thickness(e: vec3<f32>) -> f32 {
     return 1.0 - view.thinning * view.unit * (e.x + e.y);
 }
 
-// False where the body is crushed or inverted: it has no Cauchy stress there.
+// False where the body is crushed or inverted: it has no Cauchy stress there. Linear theory does not see this.
 fn has_volume(e: vec3<f32>) -> bool {
+    if view.is_corotated == 0u {
+        return true;
+    }
     let s = stretch(e);
     return s.x * s.y - s.z * s.z > 0.0 && thickness(e) > 0.0;
 }
 
-// Stress xx, yy, xy and zz.
-fn von_mises(t: vec3<f32>, zz: f32) -> f32 {
-    let d = vec3<f32>(t.x - t.y, t.y - zz, zz - t.x);
+// Of a stress xx, yy, xy and zz.
+fn von_mises(t: vec4<f32>) -> f32 {
+    let d = vec3<f32>(t.x - t.y, t.y - t.w, t.w - t.x);
     return sqrt(0.5 * dot(d, d) + 3.0 * t.z * t.z);
 }

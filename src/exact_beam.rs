@@ -405,15 +405,22 @@ impl ExactBeam {
         }
     }
 
-    /// Returns the outline of a beam of this height, m, around its computed axis, closed and counter-clockwise; `None`
-    /// for the bar, whose sides contract, and if the equilibrium cannot be followed.
+    /// Returns the outline of a beam of this height, m, around its computed axis, closed and counter-clockwise, at rest
+    /// and under the load, point by point; `None` for the bar, whose sides contract, and if the equilibrium cannot be
+    /// followed.
     #[must_use]
-    pub fn outline(&self, height: f64) -> Option<Vec<Vector2<f64>>> {
+    pub fn outline(&self, height: f64) -> Option<[Vec<Vector2<f64>>; 2]> {
         let Self::Cantilever(beam) = self else { return None };
         let axis = beam.axis()?;
-        let offset = |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
-        let below = axis.iter().map(|tip| offset(tip, -0.5));
-        let above = axis.iter().rev().map(|tip| offset(tip, 0.5));
-        Some(below.chain(above).chain(axis.first().map(|tip| offset(tip, -0.5))).collect())
+        let station = |i: usize| Vector2::new(beam.length * i as f64 / SEGMENTS as f64, 0.0);
+        let rest: Vec<Tip> = (0..axis.len()).map(|i| Tip { x: station(i), angle: 0.0 }).collect();
+        let around = |axis: &[Tip]| {
+            let offset =
+                |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
+            let below = axis.iter().map(|tip| offset(tip, -0.5));
+            let above = axis.iter().rev().map(|tip| offset(tip, 0.5));
+            below.chain(above).chain(axis.first().map(|tip| offset(tip, -0.5))).collect()
+        };
+        Some([around(&rest), around(&axis)])
     }
 }

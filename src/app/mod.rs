@@ -38,6 +38,7 @@ pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 #[doc(hidden)]
 pub use shell::shortcuts::every_shortcut;
+pub use view_options::Magnification;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;
 pub use window::{Display, NoDisplay, opens_in_background, run};

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::format::round_down;
+use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Field, PointValues};
 
@@ -149,6 +151,35 @@ impl Drawer {
     }
 }
 
+/// Factor of the drawn displacement of a body at its true scale.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Magnification {
+    /// 1.
+    #[default]
+    None,
+    /// The largest displacement is drawn as about a twentieth of the body's size, and never smaller than it is.
+    Automatic,
+    /// Chosen factor.
+    Factor(f64),
+}
+
+impl Magnification {
+    /// Limits of the factor.
+    pub const LIMIT: Limit = Limit { unit: "", min: 1e-3, max: 1e12 };
+
+    /// Returns the factor for a body of this size whose largest displacement is `largest`, both in m.
+    pub(crate) fn factor(self, size: f64, largest: f64) -> f64 {
+        /// Largest drawn displacement relative to the size of the body.
+        const SHARE: f64 = 0.05;
+        match self {
+            Self::None => 1.0,
+            Self::Factor(factor) => factor,
+            Self::Automatic if largest > 0.0 => round_down((SHARE * size / largest).clamp(1.0, Self::LIMIT.max)),
+            Self::Automatic => 1.0,
+        }
+    }
+}
+
 /// Display options of the body, the plots and the bars.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ViewOptions {
@@ -157,6 +188,8 @@ pub(crate) struct ViewOptions {
     pub fixed_range: Option<[f64; 2]>,
     /// `true` if the values of the elements are drawn instead of values recovered at the nodes.
     pub raw: bool,
+    /// Factor of the displacement drawn in the mode Explore.
+    pub magnification: Magnification,
     pub wireframe: bool,
     pub rest_outline: bool,
     pub ghost: bool,
@@ -188,6 +221,7 @@ impl Default for ViewOptions {
             field: Field::default(),
             fixed_range: None,
             raw: false,
+            magnification: Magnification::None,
             wireframe: true,
             rest_outline: true,
             ghost: true,

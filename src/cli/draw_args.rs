@@ -10,6 +10,7 @@ use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
 use crate::scene::limits::{DURATION, PLAYBACK_SPEED};
+use crate::simulation::Field;
 
 /// Default image file if there is no display.
 pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
@@ -36,6 +37,13 @@ pub(super) struct ShotArgs {
     /// Draw only the view, without panel and bars.
     #[arg(long)]
     pub no_panel: bool,
+    /// Colour the body with a field: von-mises, stress-x, strain-x, displacement, rotation, ..., as the window's list
+    /// of colours has them.
+    #[arg(long, value_name = "FIELD", default_value = Field::default().id(), value_parser = parse_field)]
+    pub field: Field,
+    /// Draw the body with a multiple of its displacement: a factor, or `auto` for about a twentieth of the body's size.
+    #[arg(long, value_name = "FACTOR", value_parser = parse_magnification, conflicts_with_all = ["learn", "compare"])]
+    pub magnify: Option<app::Magnification>,
     /// Add the load–deflection curve.
     #[arg(long)]
     pub curve: bool,
@@ -128,6 +136,22 @@ struct NoIntegrator;
 
 fn parse_integrator(text: &str) -> Result<IntegratorKind, NoIntegrator> {
     INTEGRATORS.iter().find(|entry| entry.id == text).map(|entry| entry.kind).ok_or(NoIntegrator)
+}
+
+/// Error for an unknown field.
+#[derive(Debug, Error)]
+#[error("expected one of {}", Field::ALL.map(Field::id).join(", "))]
+struct NoField;
+
+fn parse_field(text: &str) -> Result<Field, NoField> {
+    Field::ALL.into_iter().find(|field| field.id() == text).ok_or(NoField)
+}
+
+fn parse_magnification(text: &str) -> Result<app::Magnification, NumberError> {
+    match text {
+        "auto" => Ok(app::Magnification::Automatic),
+        _ => parse_number(text, app::Magnification::LIMIT).map(app::Magnification::Factor),
+    }
 }
 
 fn parse_seconds(text: &str) -> Result<f64, NumberError> {

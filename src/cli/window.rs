@@ -19,6 +19,8 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         output,
         size,
         no_panel,
+        field,
+        magnify,
         curve,
         sections,
         study,
@@ -36,6 +38,8 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let options = app::ShotOptions {
         size,
         panel,
+        field,
+        magnification: magnify.unwrap_or_default(),
         curve,
         sections,
         study,

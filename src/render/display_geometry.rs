@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::element::ElementType;
 use crate::mesh::{Mesh, Segment};
-use crate::render::interpolated_field::{InterpolatedField, weighted_sum};
+use crate::render::interpolated_field::{Components, InterpolatedField, weighted_sum};
 use crate::simulation::PointValues;
 
 /// Display geometry of a mesh. Points are weighted sums of nodes.
@@ -101,7 +101,7 @@ impl DisplayGeometry {
     }
 
     /// Computes the components of a field at every point; `None` where they are not finite.
-    pub(crate) fn components(&self, field: &InterpolatedField, at_points: &mut Vec<Option<[f64; 3]>>) {
+    pub(crate) fn components(&self, field: &InterpolatedField, at_points: &mut Vec<Option<Components>>) {
         at_points.clear();
         let components = field.components();
         match field.values() {

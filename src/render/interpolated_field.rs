@@ -9,15 +9,14 @@ use crate::scene::Material;
 use crate::simulation::{Field, PointValues, Simulation};
 use crate::stress::{Local, NodalStress, RecoveryScratch, visit_points};
 
+/// Values that are interpolated over an element before the value of a field is taken of them: ε₁₁, ε₂₂, ε₁₂, cos θ,
+/// sin θ; or u_x, u_y; or the value itself. The others are 0.
+pub(crate) type Components = [f64; 5];
+
 impl Field {
     /// Returns the factor from values to displayed values, and their unit: strains are displayed in percent.
     pub(crate) fn display_unit(self) -> (f64, &'static str) {
-        if self == Self::LargestStrain { (100.0, "%") } else { (1.0, self.unit()) }
-    }
-
-    /// Returns `true` if values of both signs occur.
-    pub(crate) fn has_sign(self) -> bool {
-        self == Self::RotationAngle
+        if self.unit().is_empty() { (100.0, "%") } else { (1.0, self.unit()) }
     }
 
     /// Returns the ends of the colour map for values up to a magnitude: from 0, or symmetric about 0 if values of both
@@ -27,25 +26,32 @@ impl Field {
         [if self.has_sign() { -largest } else { 0.0 }, largest]
     }
 
-    /// Returns the components that are interpolated over an element before [`Self::of_components`] takes the value of
-    /// them: ε₁₁, ε₂₂, ε₁₂, or cos θ, sin θ, 0.
-    pub(crate) fn components(self, local: &Local) -> [f64; 3] {
+    /// Returns the source of the components if `wanted` is chosen: the displacement is known at the nodes, and a field
+    /// of elements is never recovered there.
+    pub(crate) fn source(self, wanted: PointValues) -> PointValues {
         match self {
-            Self::RotationAngle => [local.rotation.c, local.rotation.s, 0.0],
-            _ => [local.strain.m11, local.strain.m22, local.strain.m12],
+            _ if self.is_of_elements() => PointValues::Raw,
+            _ if self.is_of_displacement() => PointValues::Recovered,
+            _ => wanted,
         }
     }
 
-    /// Returns the value of interpolated components; the component of a field of elements is its value. The shader
-    /// `mesh.wgsl` computes the same at every pixel.
-    pub(crate) fn of_components(self, [x, y, z]: [f64; 3], material: &Material, kinematics: Kinematics) -> Option<f64> {
-        let (strain, rotation) = match self {
-            Self::MeshError => return x.is_finite().then_some(x),
-            Self::RotationAngle => (Matrix2::zeros(), Rotation { c: x, s: y }),
-            _ => (Matrix2::new(x, z, z, y), Rotation::IDENTITY),
-        };
-        self.of(&Local { strain, rotation }, material, kinematics)
+    /// Returns the value of interpolated components. The shader `mesh.wgsl` computes the same at every pixel.
+    pub(crate) fn of_components(self, c: Components, material: &Material, kinematics: Kinematics) -> Option<f64> {
+        let [x, y, xy, cos, sin] = c;
+        if self.is_of_elements() {
+            return x.is_finite().then_some(x);
+        }
+        let length = cos.hypot(sin);
+        let rotation = if length > 0.0 { Rotation { c: cos / length, s: sin / length } } else { Rotation::IDENTITY };
+        let local = Local { strain: Matrix2::new(x, xy, xy, y), rotation };
+        self.of_vector([x, y].into()).or_else(|| self.of(&local, material, kinematics))
     }
+}
+
+/// Returns the components of strain and rotation.
+fn components_of(Local { strain, rotation }: &Local) -> Components {
+    [strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]
 }
 
 /// Field of a state. Its components are interpolated over every element, and its value at a point is computed from
@@ -56,8 +62,8 @@ pub(crate) struct InterpolatedField {
     values: PointValues,
     material: Material,
     kinematics: Kinematics,
-    /// Components, see [`Field::components`]: at the nodes if they are recovered, else at every quadrature point.
-    components: Vec<[f64; 3]>,
+    /// Components at the nodes if these are their source, else at every quadrature point.
+    components: Vec<Components>,
     nodal: NodalStress,
     scratch: RecoveryScratch,
     of_elements: Vec<Option<f64>>,
@@ -91,24 +97,27 @@ impl InterpolatedField {
     /// recovered at the nodes.
     pub(crate) fn update(&mut self, simulation: &Simulation, field: Field, values: PointValues) {
         let (problem, state, kinematics) = (simulation.problem(), simulation.state(), simulation.kinematics());
-        self.values = source(field, values);
+        self.values = field.source(values);
         (self.field, self.material, self.kinematics) = (field, *problem.material(), kinematics);
         self.components.clear();
         if field.is_of_elements() {
             simulation.field(field, &mut self.of_elements);
-            self.components.extend(self.of_elements.iter().map(|value| [value.unwrap_or(f64::NAN), 0.0, 0.0]));
+            self.components
+                .extend(self.of_elements.iter().map(|value| [value.unwrap_or(f64::NAN), 0.0, 0.0, 0.0, 0.0]));
+        } else if field.is_of_displacement() {
+            self.components.extend(state.displacement().iter().map(|u| [u.x, u.y, 0.0, 0.0, 0.0]));
         } else if values == PointValues::Recovered {
             self.nodal.update(problem, state, kinematics, &mut self.scratch);
-            self.components.extend(self.nodal.nodes().iter().map(|local| field.components(local)));
+            self.components.extend(self.nodal.nodes().iter().map(components_of));
         } else {
             let components = &mut self.components;
-            visit_points(problem, state, kinematics, &mut |_, local| components.push(field.components(&local)));
+            visit_points(problem, state, kinematics, &mut |_, local| components.push(components_of(&local)));
         }
     }
 
     /// Returns `true` if only the simulation's displacements can differ from those of this field.
     pub(crate) fn has_settings(&self, simulation: &Simulation, field: Field, values: PointValues) -> bool {
-        (self.field, self.values) == (field, source(field, values))
+        (self.field, self.values) == (field, field.source(values))
             && self.material == *simulation.problem().material()
             && self.kinematics == simulation.kinematics()
     }
@@ -135,12 +144,12 @@ impl InterpolatedField {
 
     /// Returns the components at the nodes or at every quadrature point, by [`Self::values`]; NaN where the field has
     /// no value.
-    pub(crate) fn components(&self) -> &[[f64; 3]] {
+    pub(crate) fn components(&self) -> &[Components] {
         &self.components
     }
 
     /// Returns the value of interpolated components.
-    pub(crate) fn value(&self, components: [f64; 3]) -> Option<f64> {
+    pub(crate) fn value(&self, components: Components) -> Option<f64> {
         self.field.of_components(components, &self.material, self.kinematics)
     }
 
@@ -159,20 +168,32 @@ impl InterpolatedField {
         self.value(components?)
     }
 
+    /// Returns the largest magnitude of components that are not of the rotation.
+    pub(crate) fn largest_component(&self) -> f64 {
+        self.components.iter().flat_map(|own| &own[..3]).map(|c| c.abs()).fold(0.0, f64::max)
+    }
+
     /// Returns the largest magnitude of the values at the nodes, or at the corners of every element if the components
     /// are not recovered; 0 without values. Inside an element the value is smaller, because a norm of a strain that is
-    /// interpolated between the corners is.
+    /// interpolated between the corners is. A component that is rounding error beside the others is not magnified.
     pub(crate) fn largest(&self, mesh: &Mesh) -> f64 {
+        /// Ratio of a component to the others that is rounding error.
+        const ROUNDING: f64 = 1e-9;
+        let noise = match self.field.unit() {
+            "Pa" => ROUNDING * self.material.young * self.largest_component(),
+            "" | "m" => ROUNDING * self.largest_component(),
+            _ => 0.0,
+        };
         let largest = |largest: f64, value: Option<f64>| value.map_or(largest, |value| largest.max(value.abs()));
         match self.values {
-            PointValues::Recovered => self.components.iter().map(|own| self.value(*own)).fold(0.0, largest),
+            PointValues::Recovered => self.components.iter().map(|own| self.value(*own)).fold(noise, largest),
             PointValues::Raw => {
                 let entry = mesh.entry();
                 let corners: Vec<Vec<f64>> = entry.cell.corners.iter().map(|at| (entry.point_weights)(*at)).collect();
                 let elements = self.components.chunks_exact(entry.points.len().max(1));
                 let at_corners = elements
                     .flat_map(|own| corners.iter().map(move |weights| weighted_sum(own.iter().map(Some).zip(weights))));
-                at_corners.map(|components| self.value(components?)).fold(0.0, largest)
+                at_corners.map(|components| self.value(components?)).fold(noise, largest)
             }
         }
     }
@@ -183,18 +204,13 @@ impl InterpolatedField {
     }
 }
 
-/// Returns the source of a field's components: a field of elements is never recovered at the nodes.
-fn source(field: Field, wanted: PointValues) -> PointValues {
-    if field.is_of_elements() { PointValues::Raw } else { wanted }
-}
-
 /// Returns a weighted sum of components; `None` if one is missing or the sum is not finite.
 pub(crate) fn weighted_sum<'a>(
-    mut weighted: impl Iterator<Item = (Option<&'a [f64; 3]>, &'a f64)>,
-) -> Option<[f64; 3]> {
-    let sum = weighted.try_fold([0.0; 3], |sum, (components, weight)| {
+    mut weighted: impl Iterator<Item = (Option<&'a Components>, &'a f64)>,
+) -> Option<Components> {
+    let sum = weighted.try_fold([0.0; 5], |sum: Components, (components, weight)| {
         let components = components?;
-        Some([0, 1, 2].map(|i: usize| sum[i] + weight * components[i]))
+        Some(std::array::from_fn(|i| sum[i] + weight * components[i]))
     })?;
     sum.iter().all(|c| c.is_finite()).then_some(sum)
 }

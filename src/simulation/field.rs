@@ -1,73 +1,158 @@
 //! Scalar fields for colouring a body.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use crate::assembly::{Kinematics, Problem};
+use crate::mesh::MaterialPoint;
+use crate::rotation::Rotation;
 use crate::scene::Material;
 use crate::state::State;
 use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 
-/// Quantity with a value at every quadrature point, and recovered at every node.
+/// Quantity with a value at every quadrature point, and at every node except for fields of elements.
+///
+/// Stresses are Cauchy stresses. Strains are Biot strains ε = S − I, in the axes of the material: x and y of the body at
+/// rest, which rotate with R.
 ///
 /// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Field {
-    /// Von Mises stress of the Cauchy stress, Pa.
+    /// Von Mises stress, Pa.
     #[default]
     VonMises,
-    /// Von Mises stress of the Biot stress, which the method computes, Pa.
-    BiotVonMises,
-    /// Strain energy density, J/m³.
-    EnergyDensity,
+    /// Normal stress σ_x in the axes of space, Pa.
+    StressX,
+    /// Normal stress σ_y in the axes of space, Pa.
+    StressY,
+    /// Shear stress τ_xy in the axes of space, Pa.
+    ShearStress,
+    /// Normal stress σ_x in the axes of the material, Pa.
+    MaterialStressX,
+    /// Normal stress σ_y in the axes of the material, Pa.
+    MaterialStressY,
+    /// Shear stress τ_xy in the axes of the material, Pa.
+    MaterialShearStress,
+    /// Larger principal stress in the plane, Pa.
+    LargerPrincipalStress,
+    /// Smaller principal stress in the plane, Pa.
+    SmallerPrincipalStress,
     /// Largest magnitude of a principal strain.
     LargestStrain,
+    /// Normal strain ε_x.
+    StrainX,
+    /// Normal strain ε_y.
+    StrainY,
+    /// Engineering shear strain γ_xy = 2 ε_xy.
+    ShearStrain,
+    /// Larger principal strain in the plane.
+    LargerPrincipalStrain,
+    /// Smaller principal strain in the plane.
+    SmallerPrincipalStrain,
+    /// Magnitude of the displacement, m.
+    Displacement,
+    /// Displacement u_x, m.
+    DisplacementX,
+    /// Displacement u_y, m.
+    DisplacementY,
     /// Angle of the polar rotation, degrees.
     RotationAngle,
+    /// Strain energy density, J/m³.
+    EnergyDensity,
     /// Distribution of the estimated mesh error, percent; one value per element.
     MeshError,
 }
 
 impl Field {
-    /// All fields.
-    pub const ALL: [Self; 6] = [
+    /// All fields; those of one kind follow each other.
+    pub const ALL: [Self; 21] = [
         Self::VonMises,
-        Self::BiotVonMises,
-        Self::EnergyDensity,
+        Self::StressX,
+        Self::StressY,
+        Self::ShearStress,
+        Self::MaterialStressX,
+        Self::MaterialStressY,
+        Self::MaterialShearStress,
+        Self::LargerPrincipalStress,
+        Self::SmallerPrincipalStress,
         Self::LargestStrain,
+        Self::StrainX,
+        Self::StrainY,
+        Self::ShearStrain,
+        Self::LargerPrincipalStrain,
+        Self::SmallerPrincipalStrain,
+        Self::Displacement,
+        Self::DisplacementX,
+        Self::DisplacementY,
         Self::RotationAngle,
+        Self::EnergyDensity,
         Self::MeshError,
     ];
+
+    /// Returns identifier, name and unit.
+    fn texts(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::VonMises => ("von-mises", "von Mises (Cauchy)", "Pa"),
+            Self::StressX => ("stress-x", "stress σ_x", "Pa"),
+            Self::StressY => ("stress-y", "stress σ_y", "Pa"),
+            Self::ShearStress => ("shear-stress", "shear stress τ_xy", "Pa"),
+            Self::MaterialStressX => ("material-stress-x", "stress σ_x, material axes", "Pa"),
+            Self::MaterialStressY => ("material-stress-y", "stress σ_y, material axes", "Pa"),
+            Self::MaterialShearStress => ("material-shear-stress", "shear stress τ_xy, material axes", "Pa"),
+            Self::LargerPrincipalStress => ("principal-stress-1", "principal stress σ_1", "Pa"),
+            Self::SmallerPrincipalStress => ("principal-stress-2", "principal stress σ_2", "Pa"),
+            Self::LargestStrain => ("largest-strain", "largest strain", ""),
+            Self::StrainX => ("strain-x", "strain ε_x, material axes", ""),
+            Self::StrainY => ("strain-y", "strain ε_y, material axes", ""),
+            Self::ShearStrain => ("shear-strain", "shear strain γ_xy, material axes", ""),
+            Self::LargerPrincipalStrain => ("principal-strain-1", "principal strain ε_1", ""),
+            Self::SmallerPrincipalStrain => ("principal-strain-2", "principal strain ε_2", ""),
+            Self::Displacement => ("displacement", "displacement", "m"),
+            Self::DisplacementX => ("displacement-x", "displacement u_x", "m"),
+            Self::DisplacementY => ("displacement-y", "displacement u_y", "m"),
+            Self::RotationAngle => ("rotation", "rotation angle", "°"),
+            Self::EnergyDensity => ("energy-density", "strain energy density", "J/m³"),
+            Self::MeshError => ("mesh-error", "mesh error, estimated", "%"),
+        }
+    }
+
+    /// Returns the identifier.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        self.texts().0
+    }
 
     /// Returns the name for display.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::VonMises => "von Mises (Cauchy)",
-            Self::BiotVonMises => "von Mises (Biot)",
-            Self::EnergyDensity => "strain energy density",
-            Self::LargestStrain => "largest strain",
-            Self::RotationAngle => "rotation angle",
-            Self::MeshError => "mesh error, estimated",
-        }
+        self.texts().1
     }
 
     /// Returns the unit, empty for pure numbers.
     #[must_use]
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::VonMises | Self::BiotVonMises => "Pa",
-            Self::EnergyDensity => "J/m³",
-            Self::LargestStrain => "",
-            Self::RotationAngle => "°",
-            Self::MeshError => "%",
-        }
+        self.texts().2
+    }
+
+    /// Returns `true` if values of both signs occur.
+    #[must_use]
+    pub fn has_sign(self) -> bool {
+        !matches!(
+            self,
+            Self::VonMises | Self::LargestStrain | Self::Displacement | Self::EnergyDensity | Self::MeshError
+        )
     }
 
     /// Returns `true` if the field has one value per element and none at nodes.
     #[must_use]
     pub fn is_of_elements(self) -> bool {
         self == Self::MeshError
+    }
+
+    /// Returns `true` if the field follows from the displacement at a point alone.
+    #[must_use]
+    pub fn is_of_displacement(self) -> bool {
+        matches!(self, Self::Displacement | Self::DisplacementX | Self::DisplacementY)
     }
 
     /// Computes the field at every quadrature point of a state: element by element in the mesh's order, the points of
@@ -83,11 +168,20 @@ impl Field {
             values.extend(own);
             return;
         }
+        if self.is_of_displacement() {
+            let mesh = problem.system().mesh();
+            let points = (0..mesh.element_count()).flat_map(|element| {
+                mesh.entry().points.iter().map(move |point| MaterialPoint { element, at: point.at })
+            });
+            let at = |(node, weight): &(u32, f64)| state.displacement.get(*node as usize).map(|u| u * *weight);
+            values.extend(points.map(|point| self.of_vector(mesh.weights(point)?.iter().map(at).sum::<Option<_>>()?)));
+            return;
+        }
         let material = problem.material();
         visit_points(problem, state, kinematics, &mut |_, local| values.push(self.of(&local, material, kinematics)));
     }
 
-    /// Computes the field at every node; all values are `None` for fields of elements.
+    /// Computes the field at every node; all values are `None` for fields of elements and of the displacement.
     #[doc(hidden)]
     pub fn nodal_values(self, nodal: &NodalStress, values: &mut Vec<Option<f64>>) {
         values.clear();
@@ -95,21 +189,55 @@ impl Field {
         values.extend(nodal.nodes().iter().map(|local| self.of(local, material, kinematics)));
     }
 
+    /// Returns the value for a displacement, m; `None` for other fields.
+    pub(crate) fn of_vector(self, u: Vector2<f64>) -> Option<f64> {
+        let value = match self {
+            Self::Displacement => u.x.hypot(u.y),
+            Self::DisplacementX => u.x,
+            Self::DisplacementY => u.y,
+            _ => return None,
+        };
+        value.is_finite().then_some(value)
+    }
+
+    /// Returns the value for strain and rotation at a point; `None` for fields of elements and of the displacement.
     pub(crate) fn of(self, local: &Local, material: &Material, kinematics: Kinematics) -> Option<f64> {
+        let strain = &local.strain;
+        let spatial = || Some(local.cauchy(material, kinematics)?.plane);
+        // Without rotation, σ is that of the axes of the material.
+        let own = || Some(Local { strain: *strain, rotation: Rotation::IDENTITY }.cauchy(material, kinematics)?.plane);
         let value = match self {
             Self::VonMises => local.cauchy(material, kinematics)?.von_mises(),
-            Self::BiotVonMises => local.biot(material).von_mises(),
-            Self::EnergyDensity => material.lame().energy_density(&local.strain),
-            Self::LargestStrain => largest_principal(&local.strain),
+            Self::StressX => spatial()?.m11,
+            Self::StressY => spatial()?.m22,
+            Self::ShearStress => spatial()?.m12,
+            Self::MaterialStressX => own()?.m11,
+            Self::MaterialStressY => own()?.m22,
+            Self::MaterialShearStress => own()?.m12,
+            Self::LargerPrincipalStress => principal(&own()?)[0],
+            Self::SmallerPrincipalStress => principal(&own()?)[1],
+            Self::LargestStrain => largest_principal(strain),
+            Self::StrainX => strain.m11,
+            Self::StrainY => strain.m22,
+            Self::ShearStrain => 2.0 * strain.m12,
+            Self::LargerPrincipalStrain => principal(strain)[0],
+            Self::SmallerPrincipalStrain => principal(strain)[1],
+            Self::EnergyDensity => material.lame().energy_density(strain),
             Self::RotationAngle => local.rotation.angle().to_degrees(),
-            Self::MeshError => return None,
+            Self::Displacement | Self::DisplacementX | Self::DisplacementY | Self::MeshError => return None,
         };
         value.is_finite().then_some(value)
     }
 }
 
+/// Returns both eigenvalues of a symmetric 2×2 matrix, the larger one first.
+pub(crate) fn principal(m: &Matrix2<f64>) -> [f64; 2] {
+    let (mean, radius) = (0.5 * m.trace(), (0.5 * (m.m11 - m.m22)).hypot(m.m12));
+    [mean + radius, mean - radius]
+}
+
 /// Returns the largest magnitude of an eigenvalue of a symmetric 2×2 matrix.
 pub(super) fn largest_principal(m: &Matrix2<f64>) -> f64 {
-    let mean = 0.5 * m.trace();
-    mean.abs() + (0.5 * (m.m11 - m.m22)).hypot(m.m12)
+    let [larger, smaller] = principal(m);
+    larger.abs().max(smaller.abs())
 }

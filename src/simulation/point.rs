@@ -55,13 +55,13 @@ impl PointState {
     #[must_use]
     pub fn field(&self, field: Field) -> Option<f64> {
         let kinematics = if self.is_linear { Kinematics::Linear } else { Kinematics::Corotated };
-        field.of(&self.local, &self.material, kinematics)
+        field.of_vector(self.displacement).or_else(|| field.of(&self.local, &self.material, kinematics))
     }
 }
 
 impl Field {
     /// Returns the value at a material point, interpolated from values recovered at the nodes of `mesh`; `None` if
-    /// there is no such point, or no value.
+    /// there is no such point, or no value, as for fields of elements and of the displacement.
     #[must_use]
     pub fn smooth_at(self, mesh: &Mesh, nodal: &NodalStress, point: MaterialPoint) -> Option<f64> {
         self.of(&nodal.mean(&mesh.weights(point)?), nodal.material(), nodal.kinematics())

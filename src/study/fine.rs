@@ -93,6 +93,8 @@ pub(super) struct Fine {
     pub errors: Vec<Option<f64>>,
     /// Closed outlines of the body, m, node by node.
     pub outline: Vec<Vec<Vector2<f64>>>,
+    /// The same at rest, m.
+    pub rest_outline: Vec<Vec<Vector2<f64>>>,
     /// Displacement of the first probe by linear theory on the same mesh, m.
     pub linear: Option<Vector2<f64>>,
     /// Points that are not at the places given in the scene.
@@ -195,10 +197,12 @@ pub(super) fn fine(
     let mut linear = Simulation::with_system(&scene, simulation.system().clone())?;
     linear.solve();
     let first = linear.problem().probes().first().map(|p| p.mean(linear.displacement()));
+    let [rest_outline, outline] = outlines(&simulation);
     Ok(Fine {
         probes: solutions.pop().unwrap_or_default(),
         errors,
-        outline: outline(&simulation),
+        outline,
+        rest_outline,
         linear: first,
         moved,
         is_polygon: scene.beam.is_none() && has_straight_sides(simulation.system().mesh()),
@@ -477,14 +481,14 @@ fn has_straight_sides(mesh: &Mesh) -> bool {
     })
 }
 
-/// Returns the closed outlines of a body, m, node by node.
-fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
+/// Returns the closed outlines of a body at rest and in its state, m, node by node.
+fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
     let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
     let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
     for side in mesh.outline() {
         sides.entry(side.ends()[0]).or_default().push(side);
     }
-    let mut lines = Vec::new();
+    let [mut rest, mut current] = [Vec::new(), Vec::new()];
     while let Some((&first, _)) = sides.first_key_value() {
         let (mut line, mut corner) = (Vec::new(), first);
         while let Some(own) = sides.get_mut(&corner) {
@@ -492,10 +496,11 @@ fn outline(simulation: &Simulation) -> Vec<Vec<Vector2<f64>>> {
             if own.is_empty() {
                 sides.remove(&corner);
             }
-            line.extend(side.nodes().iter().map(|&n| mesh.nodes()[n as usize] + u[n as usize]));
+            line.extend(side.nodes());
             corner = side.ends()[1];
         }
-        lines.push(line);
+        rest.push(line.iter().map(|&n| mesh.node(n)).collect());
+        current.push(line.iter().map(|&n| mesh.node(n) + u[n as usize]).collect());
     }
-    lines
+    [rest, current]
 }

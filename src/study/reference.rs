@@ -113,6 +113,8 @@ pub struct Reference {
     pub beam_off_by_percent: Option<f64>,
     /// Closed outlines of the deformed body, m; empty if no bound of the first probe's error is known.
     pub outline: Vec<Vec<Vector2<f64>>>,
+    /// The same lines at rest, point by point, m.
+    pub(crate) rest_outline: Vec<Vec<Vector2<f64>>>,
     /// Displacement of the first probe by linear theory on a fine mesh, m: its distance from the reference is the error
     /// of linear theory.
     pub linear: Option<Vector2<f64>>,
@@ -236,6 +238,7 @@ impl Reference {
             probes,
             beam_off_by_percent: None,
             outline: if is_known { fine.outline } else { Vec::new() },
+            rest_outline: if is_known { fine.rest_outline } else { Vec::new() },
             linear: fine.linear,
             moved: fine.moved,
             is_polygon: fine.is_polygon,
@@ -260,9 +263,10 @@ impl Reference {
                 let error = off + own[i].unwrap_or(off);
                 reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
                 if i == 0
-                    && let Some(line) = beam.zip(scene.beam.as_ref()).and_then(|(b, beam)| b.outline(beam.height))
+                    && let Some([rest, line]) =
+                        beam.zip(scene.beam.as_ref()).and_then(|(b, beam)| b.outline(beam.height))
                 {
-                    reference.outline = vec![line];
+                    (reference.rest_outline, reference.outline) = (vec![rest], vec![line]);
                 }
             } else if i == 0 {
                 reference.beam_off_by_percent = error_percent(tip, ends[i]);
@@ -282,10 +286,13 @@ impl Reference {
         if !at_tip || ratio > STUBBY {
             return None;
         }
+        let [rest, line] =
+            beam?.outline(rectangle.height).map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
         Some(Self {
             probes: vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()],
             beam_off_by_percent: None,
-            outline: beam?.outline(rectangle.height).map(|line| vec![line]).unwrap_or_default(),
+            outline: line,
+            rest_outline: rest,
             linear: None,
             moved: Vec::new(),
             is_polygon: false,

@@ -369,8 +369,9 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     }
 }
 
-/// Fields of a uniformly stretched and rotated body match their closed forms: the strain is S − I, and the von Mises
-/// stress follows from the Biot stress's deviator in space, including the stress across the plane in plane strain.
+/// Fields of a uniformly stretched and rotated body match their closed forms: the strain is S − I, the Cauchy stress
+/// follows from it and is rotated to the axes of space, and the von Mises stress is that of its deviator in space,
+/// including the stress across the plane in plane strain.
 fn fields_of_a_uniform_stretch(kind: ElementKind) {
     let degrees = -70.0f64;
     let turn = Rotation::from_angle(degrees.to_radians());
@@ -387,12 +388,34 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
             Plane::Strain => young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
         } * (xx + yy);
         let (sx, sy, t) = (pressure_part + 2.0 * shear * xx, pressure_part + 2.0 * shear * yy, 2.0 * shear * xy);
-        let z = if plane == Plane::Strain { poisson * (sx + sy) } else { 0.0 };
-        let mean = (sx + sy + z) / 3.0;
-        let deviator = (sx - mean).powi(2) + (sy - mean).powi(2) + (z - mean).powi(2) + 2.0 * t * t;
+        // σ = T S / J in the axes of the material, with the ratio of volumes J.
+        let stretch = Matrix2::identity() + strain;
+        let thickness = if plane == Plane::Strain { 1.0 } else { 1.0 - poisson / (1.0 - poisson) * (xx + yy) };
+        let volume = stretch.determinant() * thickness;
+        let own = Matrix2::new(sx, t, t, sy) * stretch / volume;
+        let z = if plane == Plane::Strain { poisson * (sx + sy) / volume } else { 0.0 };
+        let mean = (own.trace() + z) / 3.0;
+        let deviator =
+            (own.m11 - mean).powi(2) + (own.m22 - mean).powi(2) + (z - mean).powi(2) + 2.0 * own.m12 * own.m21;
+        let spatial = turn.matrix() * own * turn.matrix().transpose();
+        let symmetric = Matrix2::new(own.m11, own.m12, own.m12, own.m22);
+        let (stresses, strains) = (symmetric.symmetric_eigenvalues(), strain.symmetric_eigenvalues());
         let largest = strain.symmetric_eigenvalues().amax();
         for (field, expected) in [
-            (Field::BiotVonMises, (1.5 * deviator).sqrt()),
+            (Field::VonMises, (1.5 * deviator).sqrt()),
+            (Field::MaterialStressX, own.m11),
+            (Field::MaterialStressY, own.m22),
+            (Field::MaterialShearStress, own.m12),
+            (Field::StressX, spatial.m11),
+            (Field::StressY, spatial.m22),
+            (Field::ShearStress, spatial.m12),
+            (Field::LargerPrincipalStress, stresses.max()),
+            (Field::SmallerPrincipalStress, stresses.min()),
+            (Field::StrainX, xx),
+            (Field::StrainY, yy),
+            (Field::ShearStrain, 2.0 * xy),
+            (Field::LargerPrincipalStrain, strains.max()),
+            (Field::SmallerPrincipalStrain, strains.min()),
             (Field::EnergyDensity, 0.5 * (sx * xx + sy * yy) + t * xy),
             (Field::LargestStrain, largest),
             (Field::RotationAngle, degrees),
@@ -901,7 +924,24 @@ fn stress_rotates_with_the_body(kind: ElementKind) {
     let mesh = straight.system().mesh().moved(|x| turn.apply(x)).unwrap();
     let mut turned = Simulation::with_mesh(&turned_scene, mesh).unwrap();
     assert_eq!((straight.status(), turned.solve()), (&Status::Converged, &Status::Converged));
-    for field in Field::ALL {
+    // Components in the axes of space rotate with the body.
+    let spatial = [Field::StressX, Field::StressY, Field::ShearStress];
+    let [a, b] = [&straight, &turned].map(|simulation| {
+        spatial.map(|field| {
+            let mut values = Vec::new();
+            simulation.field(field, &mut values);
+            values.into_iter().flatten().collect::<Vec<f64>>()
+        })
+    });
+    let largest = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
+    let tensor = |[xx, yy, xy]: &[Vec<f64>; 3], i: usize| Matrix2::new(xx[i], xy[i], xy[i], yy[i]);
+    assert_eq!(a[0].len(), straight.system().elements().point_count());
+    for i in 0..a[0].len() {
+        let rotated = turn.matrix() * tensor(&a, i) * turn.matrix().transpose();
+        assert!((rotated - tensor(&b, i)).amax() < 1e-6 * largest, "{rotated} {}", tensor(&b, i));
+    }
+    let is_of_space = |field: &Field| spatial.contains(field) || field.is_of_displacement() && field.has_sign();
+    for field in Field::ALL.into_iter().filter(|field| !is_of_space(field)) {
         let (mut a, mut b) = (Vec::new(), Vec::new());
         straight.field(field, &mut a);
         turned.field(field, &mut b);

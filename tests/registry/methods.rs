@@ -110,7 +110,7 @@ fn extremes_stay_finite(method: MethodKind) {
                 simulation.field(field, &mut values);
                 // An element that is inverted, or compressed to nothing by its strain, has no Cauchy stress.
                 let is_whole = s.deformation.inverted_elements == 0 && s.deformation.max_strain < 1.0;
-                let all = field != Field::VonMises || is_whole;
+                let all = field.unit() != "Pa" || is_whole;
                 assert!(!all || values.iter().all(Option::is_some), "{id} {set:?} {field:?}");
                 assert!(values.iter().flatten().all(|v| v.is_finite()), "{id} {set:?} {field:?}");
             }

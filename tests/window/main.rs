@@ -18,6 +18,7 @@ mod motions;
 mod numbers;
 mod panel;
 mod pictures;
+mod points;
 mod sections;
 mod soak;
 mod ui_interaction;

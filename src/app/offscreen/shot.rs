@@ -9,24 +9,29 @@ use crate::app::language::Language;
 use crate::app::modes::compare::PaneSetting;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::shell::lab::Lab;
+use crate::app::view_options::Magnification;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
 use crate::progress::Observer;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::scene::{IntegratorKind, Scene, Source};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{Field, Simulation, Status};
 use crate::study::{Extent, Study, StudyError};
 
 /// Largest side of a shot, pixels.
 pub const MAX_SHOT_SIDE: u32 = 8192;
 
 /// Options of a shot.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ShotOptions {
     /// Size, pixels.
     pub size: [u32; 2],
     /// `true` if the panel is shown.
     pub panel: bool,
+    /// Field that colours the body.
+    pub field: Field,
+    /// Factor of the drawn displacement.
+    pub magnification: Magnification,
     /// `true` if the load curve is shown.
     pub curve: bool,
     /// `true` if the plots of the sections are shown.
@@ -54,6 +59,8 @@ impl Default for ShotOptions {
         Self {
             size: [1280, 800],
             panel: true,
+            field: Field::default(),
+            magnification: Magnification::None,
             curve: false,
             sections: false,
             study: false,
@@ -94,6 +101,8 @@ pub fn shot(
     let mut lab = Lab::new(source, scene, simulation);
     lab.set_panel(options.panel);
     lab.set_language(options.language);
+    lab.color_with(options.field);
+    lab.magnify(options.magnification);
     if options.curve {
         lab.show_curve();
     }

@@ -5,6 +5,7 @@ use egui::{ComboBox, Ui};
 use crate::app::language::{joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
+use crate::app::view_options::Magnification;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::text::with_keys;
 use crate::render::interpolated_field::InterpolatedField;
@@ -24,7 +25,12 @@ pub(super) fn options(
         ComboBox::from_id_salt("field")
             .selected_text(tr(view.field.name()))
             .show_ui(ui, |ui| {
-                for field in Field::ALL {
+                for (i, field) in Field::ALL.into_iter().enumerate() {
+                    // A line between stresses, strains, displacements and the rest.
+                    let before = i.checked_sub(1).and_then(|before| Field::ALL.get(before));
+                    if before.is_some_and(|before| before.unit() != field.unit()) {
+                        ui.separator();
+                    }
                     if ui.selectable_label(field == view.field, tr(field.name())).clicked() {
                         actions.push(Action::Color(field));
                     }
@@ -70,6 +76,7 @@ pub(super) fn options(
             }
         }
     }
+    magnification(ui, state, view);
     ui.horizontal_wrapped(|ui| {
         let tip = "Each element's own values, not smoothed at the nodes: they jump where the mesh is coarse";
         ui.checkbox(&mut view.raw, tr("Raw")).on_hover_text(tr(tip));
@@ -86,6 +93,48 @@ pub(super) fn options(
             actions.push(Action::Fit);
         }
     });
+}
+
+/// Shows the factor of the drawn displacement.
+fn magnification(ui: &mut Ui, state: &mut PanelState, view: &mut ViewOptions) {
+    let names = [
+        (Magnification::None, "True scale"),
+        (Magnification::Automatic, "Automatic"),
+        (Magnification::Factor(10.0), "Factor"),
+    ];
+    let is_same = |a: Magnification| std::mem::discriminant(&a) == std::mem::discriminant(&view.magnification);
+    let chosen = names.iter().find(|(own, _)| is_same(*own)).map_or("", |(_, name)| name);
+    let mut new = None;
+    ui.horizontal(|ui| {
+        let label = ui.label(tr("Displacement"));
+        let tip = "Draws the body with a multiple of its displacement; it cannot be grabbed then";
+        ComboBox::from_id_salt("magnification")
+            .selected_text(tr(chosen))
+            .show_ui(ui, |ui| {
+                for (own, name) in names {
+                    if ui.selectable_label(is_same(own), tr(name)).clicked() && !is_same(own) {
+                        new = Some(own);
+                    }
+                }
+            })
+            .response
+            .labelled_by(label.id)
+            .on_hover_text(tr(tip));
+    });
+    view.magnification = new.unwrap_or(view.magnification);
+    if let Magnification::Factor(factor) = view.magnification {
+        let field = NumberField {
+            label: "Magnification",
+            tooltip: "Factor of the drawn displacement",
+            limit: Magnification::LIMIT,
+            slider: 1.0..=1e4,
+            scale: SliderScale::Logarithmic(1.0),
+            whole: false,
+        };
+        if let Some(factor) = field.show(ui, &mut state.messages, factor) {
+            view.magnification = Magnification::Factor(factor);
+        }
+    }
 }
 
 /// Returns a summary of the display options.

@@ -11,13 +11,13 @@ use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
 use crate::app::modes::learn::{self};
 use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
-use crate::app::view_options::{Drawer, Mode, ViewOptions};
+use crate::app::view_options::{Drawer, Magnification, Mode, ViewOptions};
 use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, View};
 use crate::scene::{IntegratorKind, Scene, Source};
-use crate::simulation::{Simulation, SimulationError};
+use crate::simulation::{Field, Simulation, SimulationError};
 use crate::state::State;
 use crate::study::{MotionStudy, Study};
 
@@ -27,6 +27,16 @@ impl Lab {
     /// Shows or hides the panel and the bars; without them the view fills the window or image.
     pub fn set_panel(&mut self, shown: bool) {
         self.desk.view.bars = shown;
+    }
+
+    /// Colours the body with a field.
+    pub fn color_with(&mut self, field: Field) {
+        self.desk.view.color_with(field);
+    }
+
+    /// Sets the factor of the drawn displacement in the mode Explore.
+    pub fn magnify(&mut self, magnification: Magnification) {
+        self.desk.view.magnification = magnification;
     }
 
     /// Animates the growth of the load when the window opens. It delays nothing, and any input ends it.

@@ -9,6 +9,7 @@ use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput
 use crate::app::modes::explore::{load_curve, motion_plot};
 use crate::app::modes::learn::{self, Shown};
 use crate::app::panel::{self, PANEL_WIDTH};
+use crate::app::readout::Readout;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{help, shortcuts, status_bar, toolbar};
@@ -276,10 +277,16 @@ impl Lab {
 
     /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+        /// Height below which the status would cover the body, points.
+        const LOW: f32 = 560.0;
+        let has_line = self.desk.view.bars && self.lesson.is_none() && ui.available_height() < LOW;
+        if has_line {
+            self.status_line(ui, actions);
+        }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect();
-        let chosen = viewport.show_menu(&response, &content);
+        let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
         actions.extend(chosen.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
@@ -330,14 +337,15 @@ impl Lab {
             lesson.learn.paint(&painter, &view);
         }
         let (viewport, content) = self.viewport_and_content();
-        viewport.show_values(ui, &painter, &content);
+        let kept = viewport.show_values(ui, &painter, &content);
+        actions.extend(kept.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
         if self.desk.view.bars && self.intro.is_none() {
             let mut free = rect;
             if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
                 free.max.x -= PANEL_WIDTH;
             }
             if free.width() >= 160.0 && free.height() >= 90.0 {
-                self.status(ui, free, &errors, actions);
+                self.status(ui, free, &errors, has_line, actions);
                 self.show_work(ui, free, actions);
             }
         }
@@ -346,21 +354,58 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// Shows the status over the body, its explanation, and a remedy.
-    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
+    /// Shows the status in a line under a low view, with a remedy.
+    fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        const HEIGHT: f32 = 34.0;
+        let input = self.readout();
+        let palette = Palette::new(ui.visuals());
+        let (text, bad) = diagnosis::summary(&input);
+        let remedy = self.remedy(&input, &diagnosis::errors(&input));
+        let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
+        Panel::bottom("status line").exact_size(HEIGHT).resizable(false).frame(frame).show(ui, |ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                self.status_buttons(ui, &input, actions);
+                if let Some(remedy) = remedy {
+                    actions.extend(remedy_button(ui, &remedy));
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    let text = egui::RichText::new(text).color(if bad { palette.error } else { palette.text });
+                    ui.add(egui::Label::new(text).truncate());
+                });
+            });
+        });
+    }
+
+    /// Shows the buttons beside the status.
+    fn status_buttons(&self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
+        if diagnosis::is_stale(input) && ui.button(tr("Step now")).clicked() {
+            actions.push(Action::Step);
+        }
+        if ui.link(tr("explain")).clicked() {
+            actions.push(Action::Toggle(Toggle::Why));
+        }
+    }
+
+    /// Returns the remedy for an error; the other modes have remedies of their own.
+    fn remedy(&self, input: &Readout<'_>, errors: &Errors) -> Option<diagnosis::Remedy> {
+        diagnosis::remedy(input, errors).filter(|_| self.desk.view.mode == Mode::Explore)
+    }
+
+    /// Shows the explanation of the status over the body; if the status has no line of its own, also the status and a
+    /// remedy.
+    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, has_line: bool, actions: &mut Vec<Action>) {
         const WIDEST: f32 = 460.0;
         /// Width next to a small body.
         const WIDEST_NARROW: f32 = 250.0;
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < 640.0;
-        // In a low view there is room for one line only.
-        let is_low = rect.height() < 220.0;
         let (text, bad) = diagnosis::summary(&input);
         // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < 300.0;
         let shows_reasons = self.desk.view.why;
-        if is_tight && !(bad || shows_reasons || diagnosis::is_stale(&input)) {
+        let is_good = !(bad || diagnosis::is_stale(&input));
+        if !shows_reasons && (has_line || is_tight && is_good) {
             return;
         }
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
@@ -378,17 +423,14 @@ impl Lab {
                     }
                 });
             }
-            // The other modes have remedies of their own.
-            let remedy = diagnosis::remedy(&input, errors).filter(|_| self.desk.view.mode == Mode::Explore);
-            let help = |ui: &mut Ui, remedy: &diagnosis::Remedy| {
-                let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked();
-                pressed.then(|| remedy.action.clone())
-            };
-            if let Some(remedy) = remedy.as_ref().filter(|_| !is_low) {
+            if has_line {
+                return;
+            }
+            if let Some(remedy) = self.remedy(&input, errors) {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.text);
-                        actions.extend(help(ui, remedy));
+                        actions.extend(remedy_button(ui, &remedy));
                     });
                 });
             }
@@ -396,16 +438,7 @@ impl Lab {
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.colored_label(if bad { palette.error } else { palette.text }, text);
-                    if let Some(remedy) = remedy.as_ref().filter(|_| is_low) {
-                        actions.extend(help(ui, remedy));
-                    }
-                    if diagnosis::is_stale(&input) && ui.button(tr("Step now")).clicked() {
-                        actions.push(Action::Step);
-                    }
-                    let why = ui.link(tr("explain"));
-                    if why.clicked() {
-                        actions.push(Action::Toggle(Toggle::Why));
-                    }
+                    self.status_buttons(ui, &input, actions);
                 });
             });
         });
@@ -434,6 +467,12 @@ impl Lab {
             });
         });
     }
+}
+
+/// Shows the button of a remedy; returns its action if it was pressed.
+fn remedy_button(ui: &mut Ui, remedy: &diagnosis::Remedy) -> Option<Action> {
+    let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked();
+    pressed.then(|| remedy.action.clone())
 }
 
 /// Returns the state of the pointer in this frame.

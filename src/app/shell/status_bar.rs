@@ -176,16 +176,21 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Respo
     const BAR: egui::Vec2 = vec2(56.0, 6.0);
     let BarNumber { name, value, word, tip, color, ratio } = entry;
     let ratio = ratio.filter(|_| wide);
-    let (name, word) = (tr(name), word.as_ref());
+    let (name, mut word) = (tr(name), word.as_ref());
     let painter = ui.painter();
     let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
     let [title, after] = [name, word].map(small);
     let big = painter.layout_no_wrap(value.clone(), FontId::proportional(HEADLINE), color);
     let bar_width = ratio.map_or(0.0, |_| BAR.x + GAP);
-    let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
     // A minimum width keeps what follows in place when the number of digits changes.
     let number_width = big.size().x.max(if wide { 62.0 } else { 0.0 });
-    let size = vec2(title.size().x + GAP + number_width + bar_width + after_width, ui.spacing().interact_size.y);
+    let without_word = title.size().x + GAP + number_width + bar_width;
+    // Half a remark would only confuse.
+    if without_word + after.size().x + GAP > ui.available_width() {
+        word = "";
+    }
+    let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
+    let size = vec2(without_word + after_width, ui.spacing().interact_size.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let middle = rect.center().y;
     let mut x = rect.left();

@@ -13,7 +13,7 @@ use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::Frame;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::render::interpolated_field::InterpolatedField;
+use crate::render::interpolated_field::{Components, InterpolatedField};
 use crate::simulation::{Field, Simulation};
 
 /// Displayed mesh of a body in its current state.
@@ -28,8 +28,8 @@ pub(crate) struct BodyMesh {
     /// Displayed field.
     field: InterpolatedField,
     /// Components of the field at the drawn points.
-    components: Vec<Option<[f64; 3]>>,
-    /// Largest magnitude of these components.
+    components: Vec<Option<Components>>,
+    /// Largest magnitude of components that are not of the rotation.
     largest_component: f64,
     /// Largest magnitude of the field in the current state.
     largest: f64,
@@ -93,16 +93,18 @@ fn stamp() -> u64 {
 }
 
 impl BodyMesh {
-    /// Updates points and values to the state of a body. For a motion, `played` is the playing time, s, and the colour
+    /// Updates points and values to the state of a body, drawn with `magnification` times its displacement. For a motion, `played` is the playing time, s, and the colour
     /// range covers the last seconds.
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
         geometry: &DisplayGeometry,
         view: &ViewOptions,
+        magnification: f64,
         played: Option<f64>,
     ) {
-        let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+        let nodes = simulation.system().mesh().nodes();
+        let places = nodes.iter().zip(simulation.displacement()).map(|(x, u)| x + u * magnification);
         let (mesh, values) = (simulation.system().mesh(), view.point_values());
         // Computing the values of a large body is expensive, and the state has usually not changed since the last
         // frame.
@@ -117,8 +119,7 @@ impl BodyMesh {
             geometry.points(&|n| nodes[n as usize], &mut self.points);
             self.field.update(simulation, view.field, values);
             geometry.components(&self.field, &mut self.components);
-            let magnitudes = self.components.iter().flatten().flatten().map(|component| component.abs());
-            self.largest_component = magnitudes.fold(0.0, f64::max);
+            self.largest_component = self.field.largest_component();
             self.largest = self.field.largest(mesh);
             self.stamp = stamp();
         }

@@ -43,16 +43,27 @@ fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
 fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [MenuEntry; 4] {
     let mesh = system.mesh();
     let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
-    let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
-    let name = (1..).map(|n| format!("p{n}")).find(is_free).unwrap_or_default();
-    let probe = Probe { name, place: Place::At(rounded(system, at).into()) };
     [
         ("Add a force here", edited(scene, |scene| scene.loads.push(Load::force(node, [0.0, -usual])))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
-        ("Add a probe here", edited(scene, |scene| scene.probes.push(probe))),
+        ("Add a probe here", with_probe(scene, system, at)),
         ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, at))))),
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
+}
+
+/// Returns the scene with a probe at a point.
+pub(crate) fn with_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> Scene {
+    let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
+    let name = (1..).map(|n| format!("p{n}")).find(is_free).unwrap_or_default();
+    let probe = Probe { name, place: Place::At(rounded(system, at).into()) };
+    edited(scene, |scene| scene.probes.push(probe))
+}
+
+/// Returns `true` if the scene has a probe at a point.
+pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> bool {
+    let place = Place::At(rounded(system, at).into());
+    scene.probes.iter().any(|probe| probe.place == place)
 }
 
 /// Returns the section through a point that is normal to the axis of the beam, or vertical in a body without axis.
@@ -62,7 +73,7 @@ fn normal_section(system: &System, at: Vector2<f64>) -> SectionLine {
 }
 
 /// Rounds a point to a thousandth of the body's size, if the body has that point.
-fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
+pub(crate) fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
     let step = 10f64.powf((1e-3 * system.size()).log10().floor());
     // Quotients by a power of ten have short decimals.
     let rounded =

@@ -1,13 +1,16 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
+use std::sync::Arc;
+
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
-use egui::{Align2, Color32, FontId, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
-use crate::app::language::{percent, tr};
+use crate::app::language::{fill, percent, tr};
+use crate::app::session::history::MotionSample;
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, ForceArrows};
@@ -17,7 +20,7 @@ use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::assembly::{MouseSpring, System};
-use crate::format::{engineering, prefix, round_down, three_digits, ticks};
+use crate::format::{engineering, number, prefix, round_down, three_digits, ticks};
 use crate::render::Camera;
 use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
@@ -35,13 +38,15 @@ pub(crate) struct Overlay<'a> {
     pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
     pub camera: Camera,
-    /// Positions of the nodes, m.
+    /// Drawn positions of the nodes, m.
     pub positions: &'a [Vector2<f64>],
+    /// Factor of the drawn displacement.
+    pub magnification: f64,
     /// `true` if the elements are drawn apart from each other: nothing is painted at the body's own place then.
     pub apart: bool,
     /// Displacement of the linear solution, m, if its outline is drawn.
     pub ghost: Option<&'a [Vector2<f64>]>,
-    /// Outline of the reference solution, m: closed lines.
+    /// Drawn outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
     /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
@@ -125,16 +130,17 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         }
     };
     let rest = |n: u32| system.mesh().nodes()[n as usize];
+    let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.magnification;
     if overlay.options.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
     if let Some(linear) = overlay.ghost {
-        draw(&|n| rest(n) + linear[n as usize], Stroke::new(1.5, palette.method(MethodKind::Linear)));
+        draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
     for companion in overlay.playback.companions().iter().filter(|companion| !companion.is_absent) {
         let u = companion.simulation.displacement();
         let color = palette.integrator(companion.integrator);
-        draw(&|n| rest(n) + u[n as usize], Stroke::new(1.5, color));
+        draw(&|n| drawn(n, u), Stroke::new(1.5, color));
     }
     if !overlay.apart {
         draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
@@ -177,7 +183,8 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
     let mut taken = Vec::new();
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
-        let [from, to] = section.ends.map(|end| projection.point(end));
+        let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
+        let [from, to] = [0, 1].map(|i| projection.point(end(i)));
         let (middle, tangent, normal) = (from + (to - from) * 0.5, seen(section.tangent()), seen(section.normal()));
         if !(tangent.is_finite() && middle.is_finite()) {
             continue;
@@ -271,7 +278,8 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
         let end = playback.shown_time().unwrap_or(f64::INFINITY);
         let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
-        let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(|s| s.position).collect();
+        let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
+        let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(drawn).collect();
         let stride = points.len().div_ceil(MAX_PIECES).max(1);
         let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
         for (i, ends) in kept.windows(2).enumerate() {
@@ -457,8 +465,11 @@ fn moved_supports(
     }
 }
 
-/// Height that the colour bar takes at the bottom or the top of the view, points.
+/// Height that the colour bar takes at the bottom of the view, points.
 pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
+
+/// Height that line key and colour bar take at the top of a low view, points.
+pub(crate) const TOP_ROWS_HEIGHT: f32 = 64.0;
 
 /// Width that the colour bar takes on the right of the view, points.
 pub(crate) const LEGEND_WIDTH: f32 = 300.0;
@@ -477,8 +488,8 @@ pub(crate) fn has_legend_on_top(height: f32) -> bool {
     height < 400.0
 }
 
-/// Paints the colour bar with its title and ticks in a corner on the right, and returns its area. `names` is the area
-/// of the line key.
+/// Paints the colour bar with its title and ticks in the lower right corner, or, in a low view, in one row at the top,
+/// and returns its area. `names` is the area of the line key.
 fn legend(
     painter: &Painter,
     rect: Rect,
@@ -488,41 +499,79 @@ fn legend(
     visuals: &Visuals,
 ) -> Option<Rect> {
     const MAX_TICKS: u32 = 5;
+    const SIZE: Vec2 = vec2(240.0, 10.0);
     if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
         return None;
     }
-    // In a low and narrow view the body is to the left of the colour bar.
-    let is_small = has_legend_on_top(rect.height()) && rect.width() < 700.0;
-    let size = vec2(if is_small { 170.0 } else { 240.0 }, 10.0);
     let field = overlay.options.field;
     let (factor, unit) = field.display_unit();
     let [low, high] = overlay.color_range.map(|end| factor * end);
-    let font = FontId::proportional(SMALL);
     let (power, symbol) = prefix(&[low, high], unit);
-    let unit = format!(", {symbol}{unit}");
-    let raw = if overlay.options.raw && !field.is_of_elements() { tr(", raw") } else { "" };
+    let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
+    let raw = if raw { tr(", raw") } else { "" };
     let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
-    let title = painter.layout_no_wrap(format!("{}{unit}{raw}{range}", tr(field.name())), font.clone(), palette.text);
-    // To the right of the line key, or under it if there is no room.
-    let left = rect.right() - (size.x + 46.0);
-    let top = if names.right() > left { names.bottom() - rect.top() + 6.0 } else { 12.0 };
-    let corner = if has_legend_on_top(rect.height()) {
-        rect.right_top() + vec2(-(size.x + 32.0), top)
-    } else {
-        rect.right_bottom() - vec2(size.x + 32.0, LEGEND_HEIGHT - 6.0)
-    };
-    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(size.x + 34.0, 56.0));
-    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
-    painter.galley(corner, title, palette.text);
-    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), size);
-    color_bar(painter, bar, palette.map(field));
-    for value in ticks(low, high, MAX_TICKS) {
-        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
-        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
+    let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
+    let map = palette.map(field);
+    let ticks = ticks(low, high, MAX_TICKS).into_iter().map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
+        (((value - low) / (high - low)) as f32, text)
+    });
+    let font = FontId::proportional(SMALL);
+    let text = |text: String| painter.layout_no_wrap(text, font.clone(), palette.text);
+    if has_legend_on_top(rect.height()) {
+        let ends = [low, high].map(|end| text(engineering(three_digits(end / 10f64.powi(power)), "")));
+        return Some(legend_row(painter, rect, names, (text(title), ends, map), visuals));
+    }
+    let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
+    let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.galley(corner, text(title), palette.text);
+    let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), SIZE);
+    color_bar(painter, bar, map);
+    for (fraction, text) in ticks {
+        let x = bar.left() + bar.width() * fraction;
+        painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
         painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, text, font.clone(), palette.text);
     }
     Some(frame)
+}
+
+/// Paints title, lowest value, colour bar and highest value in one row: beside the line key, or under it if there is no
+/// room. Returns the area.
+fn legend_row(
+    painter: &Painter,
+    rect: Rect,
+    names: Rect,
+    (title, [low, high], map): (Arc<Galley>, [Arc<Galley>; 2], ColorMap),
+    visuals: &Visuals,
+) -> Rect {
+    const BAR: Vec2 = vec2(110.0, 10.0);
+    const GAP: f32 = 7.0;
+    const MARGIN: f32 = 14.0;
+    let text = Palette::new(visuals).text;
+    let scale = low.size().x + BAR.x + high.size().x + 2.0 * GAP;
+    let with_title = scale + title.size().x + 2.0 * GAP;
+    let has_title = with_title <= rect.width() - 2.0 * MARGIN;
+    let width = if has_title { with_title } else { scale };
+    let left = rect.right() - MARGIN - width;
+    let middle = if names.right() + MARGIN <= left { names.center().y } else { names.bottom() + MARGIN };
+    let frame = Rect::from_min_max(pos2(left, middle - 10.0), pos2(rect.right() - MARGIN, middle + 10.0)).expand(4.0);
+    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    let mut x = left;
+    let mut put = |galley: Arc<Galley>, gap: f32| {
+        let size = galley.size();
+        painter.galley(pos2(x, middle - 0.5 * size.y), galley, text);
+        x += size.x + gap;
+        x
+    };
+    if has_title {
+        put(title, 2.0 * GAP);
+    }
+    let from = put(low, GAP);
+    color_bar(painter, Rect::from_min_size(pos2(from, middle - 0.5 * BAR.y), BAR), map);
+    x += BAR.x + GAP;
+    painter.galley(pos2(x, middle - 0.5 * high.size().y), high, text);
+    frame
 }
 
 /// Paints the colours of a map from the lowest to the highest.
@@ -538,6 +587,11 @@ pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     painter.add(mesh);
 }
 
+/// Returns the label of a body that is drawn with a multiple of its displacement.
+pub(crate) fn magnified(factor: f64) -> String {
+    fill!("displacement × %{factor}", factor = number(three_digits(factor)))
+}
+
 /// Paints the line key with the error of each solution, and returns its area.
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
     const GAP: f32 = 16.0;
@@ -550,25 +604,30 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
         Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
     };
-    let mut lines = vec![(palette.solution(overlay.scene), LegendMark::Line, own)];
+    let mut lines = Vec::new();
+    if overlay.magnification != 1.0 {
+        lines.push((palette.text, None, magnified(overlay.magnification)));
+    }
+    lines.push((palette.solution(overlay.scene), Some(LegendMark::Line), own));
     for companion in overlay.playback.companions() {
         lines.push((
             palette.integrator(companion.integrator),
-            LegendMark::Line,
+            Some(LegendMark::Line),
             tr(companion.integrator.id()).to_owned(),
         ));
     }
     if overlay.ghost.is_some() {
         let text = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
-        lines.push((palette.method(MethodKind::Linear), LegendMark::Line, text));
+        lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
-        lines.push((palette.exact, LegendMark::Dashes, tr("reference").to_owned()));
+        lines.push((palette.exact, Some(LegendMark::Dashes), tr("reference").to_owned()));
     }
     if overlay.options.rest_outline {
-        lines.push((palette.rest, LegendMark::Outline, tr("rest").to_owned()));
+        lines.push((palette.rest, Some(LegendMark::Outline), tr("rest").to_owned()));
     }
     let font = FontId::proportional(BODY);
+    let indent = |mark: Option<LegendMark>| if mark.is_some() { LegendMark::WIDTH + 6.0 } else { 0.0 };
     // Wrapped into rows if the view is narrow.
     let most = (rect.width() - 32.0).max(1.0);
     let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
@@ -576,7 +635,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         .into_iter()
         .map(|(color, mark, text)| {
             let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
-            let width = LegendMark::WIDTH + 6.0 + galley.size().x;
+            let width = indent(mark) + galley.size().x;
             if at.x > 0.0 && at.x + width > most {
                 at = vec2(0.0, at.y + ROW);
             }
@@ -592,8 +651,10 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     for (color, mark, galley, place) in placed {
         let left = corner + place + vec2(0.0, 0.5 * ROW);
-        mark.paint(painter, left, color);
-        painter.galley(left + vec2(LegendMark::WIDTH + 6.0, -0.5 * galley.size().y), galley, palette.text);
+        if let Some(mark) = mark {
+            mark.paint(painter, left, color);
+        }
+        painter.galley(left + vec2(indent(mark), -0.5 * galley.size().y), galley, palette.text);
     }
     frame
 }

@@ -1,5 +1,5 @@
-//! Interaction of the pointer with the view. A press on the tip of an arrow sets its load, a drag of the body grabs it,
-//! and a drag of empty space moves the view. The wheel zooms about the pointer.
+//! Interaction of the pointer with the view. A drag of the tip of an arrow sets its load, a drag of the base of an object
+//! moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
 
 use std::ops::RangeInclusive;
 
@@ -7,6 +7,7 @@ use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
 use crate::app::session::Grab;
+use crate::app::viewport::base::{self, Base, HotBase, Object};
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
 use crate::app::viewport::probe;
 use crate::mesh::{MaterialPoint, Mesh, Segment};
@@ -32,6 +33,8 @@ enum Held {
     Nothing,
     /// The tip of an arrow.
     Tip(Grip),
+    /// The base of an object.
+    Base(PressedBase),
     /// The body, pressed at a point; grabbed once the pointer leaves it.
     Body(PressedPoint),
     /// The view, pressed at a point of a body that cannot be grabbed.
@@ -50,12 +53,26 @@ struct PressedPoint {
     grabs: bool,
 }
 
+/// Base of an object that is pressed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PressedBase {
+    base: Base,
+    /// Position of the press.
+    pressed: Pos2,
+    /// Material point under the press.
+    point: Option<MaterialPoint>,
+    /// Position of the pointer once it has left the position of the press.
+    dragged: Option<Pos2>,
+}
+
 /// State of the pointer: its hover target and the target of its press.
 #[derive(Debug, Default)]
 pub(crate) struct Pointer {
     held: Held,
     /// Load handle under a pointer that is not pressed.
     over_tip: Option<Handle>,
+    /// Base of an object under a pointer that is not pressed.
+    over_base: Option<Base>,
     /// Material point under a pointer that is not pressed.
     over_body: Option<MaterialPoint>,
     /// Position of the pointer.
@@ -73,6 +90,8 @@ pub(crate) struct Interaction {
     pub load: Option<(usize, Pull)>,
     /// Index of a load that is reset to the value in the scene's document.
     pub restore: Option<usize>,
+    /// Object whose base was dropped, and the position there.
+    pub dropped: Option<(Object, Pos2)>,
     /// Click in the view: on a point of the body, or `Some(None)` outside the body.
     pub clicked: Option<Option<MaterialPoint>>,
 }
@@ -104,6 +123,8 @@ pub(crate) struct HitTargets<'a> {
     pub outline: &'a [Segment],
     /// Handles of the load arrows.
     pub handles: &'a [Handle],
+    /// Bases of the objects that can be moved.
+    pub bases: &'a [Base],
     /// Magnifications that the wheel can reach.
     pub scales: RangeInclusive<f64>,
 }
@@ -134,15 +155,23 @@ impl Pointer {
         self.over_tip.map(|handle| HotHandle { handle, dragged: None })
     }
 
+    /// Returns the base that is under the pointer or dragged.
+    pub(crate) fn hot_base(&self) -> Option<HotBase> {
+        if let Held::Base(held) = self.held {
+            return Some(HotBase { base: held.base, dragged: held.dragged });
+        }
+        self.over_base.map(|base| HotBase { base, dragged: None })
+    }
+
     /// Returns the material point under the pointer and the pointer's position, while nothing is pressed.
     pub(crate) fn over_body(&self) -> Option<(MaterialPoint, Pos2)> {
         self.over_body.zip(self.at)
     }
 
-    /// Returns `true` if a load handle or the body is held; the view must not move then, because the held point would
+    /// Returns `true` if a load handle, a base or the body is held; the view must not move then, because the held point would
     /// move with it.
     pub(crate) fn holds(&self) -> bool {
-        matches!(self.held, Held::Tip(..) | Held::Body(_))
+        matches!(self.held, Held::Tip(..) | Held::Base(_) | Held::Body(_))
     }
 
     /// Returns `true` if the body is grabbed.
@@ -188,17 +217,21 @@ impl Pointer {
             match self.held {
                 Held::Tip(grip) => interaction.restore = Some(grip.handle.load()),
                 Held::Body(_) | Held::Point(_) | Held::Space => interaction.camera = CameraMove::Fit,
-                Held::Nothing => {}
+                Held::Base(_) | Held::Nothing => {}
             }
         } else if response.clicked() {
             match self.held {
                 Held::Body(PressedPoint { point, .. }) | Held::Point(point) => interaction.clicked = Some(Some(point)),
+                Held::Base(held) => interaction.clicked = held.point.map(Some),
                 Held::Space => interaction.clicked = Some(None),
                 Held::Tip(..) | Held::Nothing => {}
             }
         }
         if !down || fingers.is_some() {
             interaction.grab.release = self.grabs();
+            if let (Held::Base(PressedBase { base, dragged: Some(at), .. }), None) = (self.held, fingers) {
+                interaction.dropped = Some((base.object, at));
+            }
             self.held = Held::Nothing;
         }
         self.hover(ui, response, targets, body, down);
@@ -208,12 +241,15 @@ impl Pointer {
         interaction
     }
 
-    /// Returns the target of a press; load handles come before the body, which they may cover.
+    /// Returns the target of a press; load handles and bases come before the body, which they may cover.
     fn take(response: &Response, targets: &HitTargets<'_>, body: Target, at: Pos2) -> Held {
         if let Some(handle) = handle::at(targets.handles, at) {
             return Held::Tip(Grip::new(*handle, at));
         }
         let place = targets.place(response, at);
+        if let Some(base) = base::near(targets.bases, at) {
+            return Held::Base(PressedBase { base: *base, pressed: at, point: targets.point(place), dragged: None });
+        }
         let reached = targets.point(place).filter(|_| body != Target::None);
         let Some(point) = reached else { return Held::Space };
         match targets.offset(point, place) {
@@ -236,6 +272,12 @@ impl Pointer {
                 grip.drag_to(at, keys.alt || keys.ctrl);
                 interaction.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
             }
+            Held::Base(held) => {
+                let has_left = f64::from(held.pressed.distance(at)) > DRAG_DISTANCE;
+                if has_left || held.dragged.is_some() {
+                    held.dragged = Some(at);
+                }
+            }
             Held::Body(press) if body == Target::Grabbable => {
                 let place = targets.place(response, at);
                 if !press.grabs {
@@ -252,10 +294,10 @@ impl Pointer {
 
     /// Finds the target under the pointer, and sets the cursor.
     fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Target, down: bool) {
-        (self.over_tip, self.over_body) = (None, None);
+        (self.over_tip, self.over_base, self.over_body) = (None, None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
-            Held::Body(_) => Some(CursorIcon::Grabbing),
+            Held::Body(_) | Held::Base(_) => Some(CursorIcon::Grabbing),
             Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
             Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
                 self.over_tip = handle::at(targets.handles, at).copied();
@@ -263,6 +305,10 @@ impl Pointer {
                     return CursorIcon::Move;
                 }
                 self.over_body = targets.point(targets.place(response, at));
+                self.over_base = base::near(targets.bases, at).copied();
+                if self.over_base.is_some() {
+                    return CursorIcon::Move;
+                }
                 match (self.over_body, body) {
                     (Some(_), Target::Grabbable) => CursorIcon::Grab,
                     (Some(_), Target::None) => CursorIcon::Crosshair,

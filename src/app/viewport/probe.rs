@@ -1,6 +1,9 @@
 //! Values at the point under the pointer, and at a pinned point.
 
-use egui::{Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
+use egui::{
+    Align2, Area, CollapsingHeader, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui,
+    WidgetInfo, vec2,
+};
 use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
@@ -45,14 +48,119 @@ fn metres(v: Vector2<f64>) -> String {
 }
 
 /// Formats a matrix in two rows.
-fn rows(m: &Matrix2<f64>) -> String {
+fn matrix_rows(m: &Matrix2<f64>) -> String {
     // Adding 0 removes the sign of -0.
     let number = |v: f64| format!("{:>8}", format!("{:.4}", (1e4 * v).round() / 1e4 + 0.0));
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
 }
 
-/// Shows the card of a pinned point at the window position `at`, and returns `true` if the card was closed.
-pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field: Field, point: &PointState) -> bool {
+/// Axes of the stresses on a card.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Axes {
+    /// x and y of space.
+    #[default]
+    Space,
+    /// x and y of the material at rest, rotated by R.
+    Material,
+}
+
+/// Request of a card.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum CardRequest {
+    /// Closes the card.
+    Close,
+    /// Copies the values as text.
+    Copy(String),
+    /// Adds a probe to the scene at the point.
+    Keep,
+}
+
+/// Row of a card: name, value and tooltip.
+type Row = (&'static str, String, &'static str);
+
+/// Returns the values of a point, with the stresses in these axes.
+fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
+    let get = |field: Field| point.field(field).map(|v| three_digits(field.display_unit().0 * v));
+    let one = |field: Field| get(field).map(|v| engineering(v, field.display_unit().1));
+    let two = |a: Field, b: Field| Some(engineering_pair([get(a)?, get(b)?], a.display_unit().1));
+    let none = |text: Option<String>| text.unwrap_or_else(|| tr("none").to_owned());
+    let (x, y, xy) = match axes {
+        Axes::Space => (Field::StressX, Field::StressY, Field::ShearStress),
+        Axes::Material => (Field::MaterialStressX, Field::MaterialStressY, Field::MaterialShearStress),
+    };
+    let strain = if point.is_linear {
+        "Strain ε = sym F − I of linear theory"
+    } else {
+        "Strain ε = S − I, in the axes of the material"
+    };
+    let mut rows = vec![("u", metres(point.displacement), "Displacement")];
+    if !point.is_linear {
+        rows.push(("θ", none(one(Field::RotationAngle)), "Angle of the rotation R"));
+    }
+    let principal = two(Field::LargerPrincipalStress, Field::SmallerPrincipalStress);
+    let direction = principal_direction(point).filter(|_| axes == Axes::Space);
+    let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees() + 0.0));
+    rows.extend([
+        ("σ_x, σ_y", none(two(x, y)), "Cauchy stress, which follows from ε"),
+        ("τ_xy", none(one(xy)), "Cauchy stress, which follows from ε"),
+        (
+            "σ_1, σ_2",
+            none(principal) + &direction,
+            "Principal stresses in the plane, and the direction of the larger one; drawn at the point",
+        ),
+        ("von Mises", none(one(Field::VonMises)), "Von Mises stress, from the Cauchy stress, which follows from ε"),
+        ("ε_x, ε_y", none(two(Field::StrainX, Field::StrainY)), strain),
+        ("γ_xy", none(one(Field::ShearStrain)), strain),
+        (
+            "ε_1, ε_2",
+            none(two(Field::LargerPrincipalStrain, Field::SmallerPrincipalStrain)),
+            "Principal strains in the plane",
+        ),
+        ("ψ", none(one(Field::EnergyDensity)), "Strain energy density"),
+    ]);
+    rows
+}
+
+/// Returns the angle of the larger principal stress in space, from −90° to 90°, rad.
+fn principal_direction(point: &PointState) -> Option<f64> {
+    let stress = point.cauchy?.plane;
+    Some(0.5 * (2.0 * stress.m12).atan2(stress.m11 - stress.m22))
+}
+
+/// Paints the principal stresses at a point: arrows outwards for tension, inwards for compression.
+fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color32) {
+    const LONGEST: f32 = 30.0;
+    const HEAD: f32 = 5.0;
+    let stresses = [Field::LargerPrincipalStress, Field::SmallerPrincipalStress].map(|field| point.field(field));
+    let ([Some(larger), Some(smaller)], Some(angle)) = (stresses, principal_direction(point)) else { return };
+    let largest = larger.abs().max(smaller.abs());
+    let stroke = Stroke::new(1.5, color);
+    for (value, angle) in [(larger, angle), (smaller, angle + std::f64::consts::FRAC_PI_2)] {
+        let length = (value.abs() / largest) as f32 * LONGEST;
+        let axis = vec2(angle.cos() as f32, -angle.sin() as f32);
+        // Arrows that are shorter than their heads would look like points.
+        if !(axis * length).is_finite() || length < 2.0 * HEAD {
+            continue;
+        }
+        for axis in [axis, -axis] {
+            let (near, far) = (at + axis * 8.0, at + axis * (8.0 + length));
+            painter.line_segment([near, far], stroke);
+            let (tip, back) = if value > 0.0 { (far, -axis) } else { (near, axis) };
+            for side in [back.rot90(), -back.rot90()] {
+                painter.line_segment([tip, tip + (back + side * 0.6) * HEAD], stroke);
+            }
+        }
+    }
+}
+
+/// Shows the card of a pinned point at the window position `at`. `is_kept` is `true` if the scene has a probe there.
+pub(crate) fn show_card(
+    ui: &Ui,
+    painter: &Painter,
+    (view, at): (Rect, Pos2),
+    (point, is_kept): (&PointState, bool),
+    axes: &mut Axes,
+) -> Option<CardRequest> {
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
     let side = if at.x > view.center().x { -1.0 } else { 1.0 };
@@ -61,63 +169,78 @@ pub(crate) fn show_card(ui: &Ui, painter: &Painter, view: Rect, at: Pos2, field:
     painter.line_segment([at, corner], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
+    paint_principal(painter, at, point, color);
     let area =
         Area::new(egui::Id::unique("probe")).order(Order::Middle).pivot(pivot).fixed_pos(corner).constrain_to(view);
-    let card = area.show(ui.ctx(), |ui| {
-        let frame = Frame::popup(ui.style()).show(ui, |ui| {
-            ui.style_mut().interaction.selectable_labels = false;
-            ui.strong(fill!("Point %{place}", place = metres(point.rest)));
-            let (kind, tip) = match point.values {
-                PointValues::Recovered => (
-                    "recovered at the nodes",
-                    "Smoothed values: strain and rotation of the surrounding elements, fitted at the nodes",
-                ),
-                PointValues::Raw => {
-                    ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed")
-                }
-            };
-            ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
-            Grid::new("probe values").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-                let mut row = |name: &str, text: String, tip: &str| {
-                    ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
-                    ui.label(text).on_hover_text(tr(tip));
-                    ui.end_row();
-                };
-                row("u", metres(point.displacement), "Displacement");
-                let number =
-                    |field: Field| point.field(field).map_or_else(|| tr("none").to_owned(), |v| value(field, v));
-                if !point.is_linear {
-                    row("θ", number(Field::RotationAngle), "Angle of the rotation R");
-                }
-                row("σ", number(Field::VonMises), "Von Mises stress, from the Cauchy stress, which follows from ε");
-                row(
-                    "ε",
-                    number(Field::LargestStrain),
-                    if point.is_linear {
-                        "Principal strain of largest magnitude, of ε = sym F − I, the strain of linear theory"
-                    } else {
-                        "Principal strain of largest magnitude, of ε = S − I"
-                    },
-                );
-                if field == Field::EnergyDensity {
-                    row("ψ", number(field), "Strain energy density");
-                }
-                let matrices = [
-                    ("F", &point.gradient, "Deformation gradient ∂x/∂X"),
-                    ("R", &point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
-                    ("S", &point.stretch, "Stretch of the polar decomposition F = R S"),
-                ];
-                // Linear theory has neither R nor S.
-                let count = if point.is_linear { 1 } else { matrices.len() };
-                for (name, matrix, tip) in matrices.into_iter().take(count) {
-                    ui.label(RichText::new(name).weak()).on_hover_text(tr(tip));
-                    ui.label(RichText::new(rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
-                    ui.end_row();
-                }
-            });
-            ui.label(RichText::new(tr("Click or Escape closes it")).weak().size(12.0));
-        });
-        frame.response.interact(Sense::click())
+    let card =
+        area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, point, is_kept, axes)).inner);
+    card.inner
+}
+
+fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes) -> Option<CardRequest> {
+    let mut request = None;
+    ui.spacing_mut().item_spacing.y = 3.0;
+    let place = metres(point.rest);
+    ui.horizontal(|ui| {
+        ui.strong(fill!("Point %{place}", place = place.as_str()));
+        let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
+        close.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr("Close the card")));
+        if close.clicked() {
+            request = Some(CardRequest::Close);
+        }
     });
-    card.inner.on_hover_cursor(egui::CursorIcon::PointingHand).clicked()
+    let (kind, tip) = match point.values {
+        PointValues::Recovered => (
+            "recovered at the nodes",
+            "Smoothed values: strain and rotation of the surrounding elements, fitted at the nodes",
+        ),
+        PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
+    };
+    ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
+    // In linear theory the axes of the material do not rotate.
+    if !point.is_linear {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
+            for (own, name) in [(Axes::Space, "space"), (Axes::Material, "material")] {
+                ui.selectable_value(axes, own, RichText::new(tr(name)).size(12.0));
+            }
+        });
+    }
+    let rows = rows_of(point, *axes);
+    Grid::new("probe values").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+        for (name, text, tip) in &rows {
+            ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
+            ui.label(text).on_hover_text(tr(tip));
+            ui.end_row();
+        }
+    });
+    let matrices = [
+        ("F", &point.gradient, "Deformation gradient ∂x/∂X"),
+        ("R", &point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
+        ("S", &point.stretch, "Stretch of the polar decomposition F = R S"),
+    ];
+    // Linear theory has neither R nor S.
+    let matrices = &matrices[..if point.is_linear { 1 } else { 3 }];
+    let title = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+    CollapsingHeader::new(title).id_salt("probe matrices").show(ui, |ui| {
+        Grid::new("probe matrices").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+            for (name, matrix, tip) in matrices {
+                ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
+                ui.label(RichText::new(matrix_rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
+                ui.end_row();
+            }
+        });
+    });
+    ui.horizontal(|ui| {
+        if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
+            let title = fill!("Point %{place}", place = place.as_str());
+            let lines = std::iter::once(title).chain(rows.iter().map(|(name, text, _)| format!("{name}\t{text}")));
+            request = Some(CardRequest::Copy(lines.map(|line| line + "\n").collect()));
+        }
+        let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
+        if !is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
+            request = Some(CardRequest::Keep);
+        }
+    });
+    request
 }

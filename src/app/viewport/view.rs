@@ -1,36 +1,39 @@
 //! View of one body: camera, drawn mesh, pointer, and overlays.
 
+use std::borrow::Cow;
+
 use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
-use crate::app::view_options::ViewOptions;
+use crate::app::view_options::{Mode, ViewOptions};
 use crate::app::viewport::arrow::{ForceArrows, force_range};
+use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::overlay::{self, Overlay};
+use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
+use crate::app::viewport::probe::{Axes, CardRequest};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
 use crate::app::widgets::load_scale::OpeningLoads;
+use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{MethodKind, Scene};
 use crate::section::Section;
 use crate::simulation::{Field, Simulation, Status};
-use crate::study::section_chart;
+use crate::study::{Reference, section_chart};
 
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
 /// and the colour bar below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
 /// Margins above a card of Learn, which leaves less of the view.
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
-/// Margins to the left of a colour bar at the top.
-const SIDE_MARGINS: Margins = Margins { sides: 284.0, top: 40.0, bottom: 30.0 };
-/// Margins in a low view, with the status over it.
-const LOW_MARGINS: Margins = Margins { bottom: 84.0, ..CARD_MARGINS };
+/// Margins under the rows at the top of a low view.
+const LOW_MARGINS: Margins = Margins { sides: 60.0, top: TOP_ROWS_HEIGHT as f64, bottom: 30.0 };
 
 /// Content of the view.
 #[derive(Clone, Copy)]
@@ -72,14 +75,14 @@ impl<'a> Content<'a> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
-    /// Returns the outline of the reference solution, m; empty if it is not known for the displayed state or is hidden.
-    fn exact(&self) -> &'a [Vec<Vector2<f64>>] {
+    /// Returns the reference solution if it is known for the displayed state and its outline is not hidden.
+    fn exact(&self) -> Option<&'a Reference> {
         let session = self.session;
         let is_shown = self.options.exact
             && !session.is_motion()
             && !session.iterates()
             && session.simulation().mouse_spring().is_none();
-        session.reference().and_then(Result::ok).filter(|_| is_shown).map_or(&[], |reference| &reference.outline)
+        session.reference().and_then(Result::ok).filter(|_| is_shown)
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -115,9 +118,15 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
+    /// Axes of the stresses at the pinned point.
+    axes: Axes,
     /// Material point whose menu was opened.
     menu: Option<MaterialPoint>,
     body: BodyMesh,
+    /// Factor of the drawn displacement.
+    magnification: f64,
+    /// Largest displacement of a motion so far, m.
+    largest_displacement: f64,
     /// `true` while the last equilibrium is drawn in place of a state that diverges.
     shows_converged: bool,
     /// Bounding box of all states of a body in motion so far, m.
@@ -135,8 +144,11 @@ impl BodyView {
             rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
             probe: None,
+            axes: Axes::default(),
             menu: None,
             body: BodyMesh::default(),
+            magnification: 1.0,
+            largest_displacement: 0.0,
             shows_converged: false,
             swept: None,
             crossing: Crossing::default(),
@@ -205,9 +217,10 @@ impl BodyView {
         self.crossing = Crossing::default();
     }
 
-    /// Resets the bounding box of the motion.
+    /// Resets the bounding box of the motion and its largest displacement.
     pub(crate) fn clear_swept(&mut self) {
         self.swept = None;
+        self.largest_displacement = 0.0;
     }
 
     /// Returns the input of the body's render pass, as of the last [`Self::update`].
@@ -230,16 +243,20 @@ impl BodyView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let projection = self.projection();
         let handles = self.handles(content, &projection);
+        let bases = self.bases(content).map_or_else(Vec::new, |bases| bases.all());
         let targets = HitTargets {
             camera: projection.camera,
             mesh: (!content.is_apart()).then_some(content.mesh()),
             positions: &self.body.nodes,
             outline: &content.session.geometry().boundary,
             handles: &handles,
+            bases: &bases,
             scales: self.camera.scales([rect.width(), rect.height()].map(f64::from)),
         };
         self.rect = rect;
-        let body = if content.session.is_in_background() { Target::Visible } else { Target::Grabbable };
+        // A magnified body is not where the pointer would pull it.
+        let is_fixed = content.session.is_in_background() || self.magnification != 1.0;
+        let body = if is_fixed { Target::Visible } else { Target::Grabbable };
         let interaction = self.pointer.process(ui, &response, &targets, body);
         (response, interaction)
     }
@@ -250,8 +267,29 @@ impl BodyView {
         let simulation = self.drawn(content);
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
-        self.body.update(simulation, content.session.geometry(), content.options, played);
+        self.magnification = self.magnification_of(simulation, content);
+        self.body.update(simulation, content.session.geometry(), content.options, self.magnification, played);
         self.body.color(visuals, content.options.field);
+    }
+
+    /// Returns the factor of the drawn displacement: 1 outside the mode Explore, in animations and while the body is
+    /// grabbed.
+    fn magnification_of(&mut self, simulation: &Simulation, content: &Content<'_>) -> f64 {
+        let is_grabbed = content.session.simulation().mouse_spring().is_some();
+        let is_wanted = content.options.mode == Mode::Explore && content.card.is_none();
+        if !is_wanted || is_grabbed || content.animation.is_some() {
+            return 1.0;
+        }
+        // A factor that followed a motion would hide it.
+        let before = if content.session.is_motion() { self.largest_displacement } else { 0.0 };
+        self.largest_displacement = simulation.displacement().iter().map(|u| u.norm()).fold(before, f64::max);
+        content.options.magnification.factor(simulation.system().size(), self.largest_displacement)
+    }
+
+    /// Returns the drawn positions of a body's nodes, m.
+    fn drawn_positions<'b>(&self, body: &'b Simulation) -> impl Iterator<Item = Vector2<f64>> + 'b {
+        let magnification = self.magnification;
+        body.system().mesh().nodes().iter().zip(body.displacement()).map(move |(x, u)| x + u * magnification)
     }
 
     /// Moves the drawn points.
@@ -272,7 +310,7 @@ impl BodyView {
             Status::Running if !self.pointer.holds() || content.session.is_motion() => false,
             Status::Running | Status::NotConverged(_) => {
                 let projection = self.projection();
-                let mut places = content.mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+                let mut places = self.drawn_positions(simulation);
                 let leaves = |place| !self.rect.contains(projection.point(place));
                 simulation.residual() > 1.0 || self.camera.shows_whole() && places.any(leaves)
             }
@@ -280,9 +318,15 @@ impl BodyView {
         }
     }
 
-    /// Returns the outline of the reference solution, m; empty while the drawn body has another load.
-    fn exact<'a>(&self, content: &Content<'a>) -> &'a [Vec<Vector2<f64>>] {
-        if self.shows_converged { &[] } else { content.exact() }
+    /// Returns the drawn outline of the reference solution, m; empty while the drawn body has another load.
+    fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
+        let Some(reference) = content.exact().filter(|_| !self.shows_converged) else { return Cow::Borrowed(&[]) };
+        if self.magnification == 1.0 {
+            return Cow::Borrowed(&reference.outline);
+        }
+        let point = |(rest, place): (&Vector2<f64>, &Vector2<f64>)| rest + (place - rest) * self.magnification;
+        let lines = reference.rest_outline.iter().zip(&reference.outline);
+        lines.map(|(rest, line)| rest.iter().zip(line).map(point).collect()).collect()
     }
 
     /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
@@ -318,6 +362,25 @@ impl BodyView {
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
             self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
         }
+    }
+
+    /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
+    /// the background.
+    fn bases<'a>(&'a self, content: &Content<'a>) -> Option<Bases<'a>> {
+        let is_fixed = content.card.is_some() || content.animation.is_some() || content.session.is_in_background();
+        (!is_fixed).then(|| Bases {
+            scene: content.session.scene(),
+            system: content.simulation().system(),
+            positions: &self.body.nodes,
+            outline: &content.session.geometry().boundary,
+            projection: self.projection(),
+        })
+    }
+
+    /// Returns the scene after the base of an object was dropped at another place.
+    pub(crate) fn drop_base(&self, interaction: &Interaction, content: &Content<'_>) -> Option<Scene> {
+        let (object, at) = interaction.dropped?;
+        self.bases(content)?.moved(object, at).filter(|moved| moved != content.session.scene())
     }
 
     /// Shows the menu of the material point that was clicked with the secondary button; returns the scene that was
@@ -370,10 +433,10 @@ impl BodyView {
         (content.options.field, self.body.value_at(content.mesh(), point))
     }
 
-    /// Shows the values at the pointer and at the pinned point.
-    pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) {
+    /// Shows the values at the pointer and at the pinned point; returns the scene with a probe that is to be kept.
+    pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) -> Option<Scene> {
         if content.is_apart() {
-            return;
+            return None;
         }
         let shown = self.shown(content);
         if let Some((point, at)) = self.pointer.over_body()
@@ -381,12 +444,17 @@ impl BodyView {
         {
             probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
         }
-        let Some(point) = self.probe else { return };
-        let state = shown.point_state(point, content.options.point_values());
-        let (Some(state), Some(at)) = (state, self.in_view(content, point)) else { return };
-        if probe::show_card(ui, painter, self.rect, at, content.options.field, &state) {
-            self.probe = None;
+        let point = self.probe?;
+        let state = shown.point_state(point, content.options.point_values())?;
+        let at = self.in_view(content, point)?;
+        let (scene, system) = (content.session.scene(), content.simulation().system());
+        let is_kept = menu::has_probe(scene, system, state.rest);
+        match probe::show_card(ui, painter, (self.rect, at), (&state, is_kept), &mut self.axes)? {
+            CardRequest::Close => self.probe = None,
+            CardRequest::Copy(text) => ui.ctx().copy_text(text),
+            CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
         }
+        None
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
@@ -415,16 +483,16 @@ impl BodyView {
             if content.animation.is_some() {
                 // The animation ends at the session's body.
                 for body in std::iter::once(session.simulation()).chain(session.linear()) {
-                    include(&mut positions(body));
+                    include(&mut self.drawn_positions(body));
                 }
             }
             include(&mut self.exact(content).iter().flatten().copied());
             if let Some(reach) = content.reach() {
-                include(&mut positions(reach));
+                include(&mut self.drawn_positions(reach));
             }
             self.swept = Some([low, high]).filter(|_| is_motion);
             self.camera.set_whole([low, high]);
-            let least = least_margins(content, [low, high], size);
+            let least = least_margins(content, size);
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
         let [low, high] = self.camera.whole();
@@ -440,7 +508,7 @@ impl BodyView {
         let (low, high) = content.mesh().bounds();
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
-        let least = least_margins(content, [low, high], self.size());
+        let least = least_margins(content, self.size());
         let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
@@ -463,7 +531,7 @@ impl BodyView {
             // that solution is far too long.
             const LARGEST: f64 = 1.5;
             let size = (high - low).norm();
-            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u);
+            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u * self.magnification);
             let (ghost_low, ghost_high) = ghost.fold((low, high), |(low, high), p| (low.inf(&p), high.sup(&p)));
             if (ghost_high - ghost_low).norm() < LARGEST * size {
                 (low, high) = (ghost_low, ghost_high);
@@ -490,7 +558,7 @@ impl BodyView {
         let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
         let mut arrows = self.forces(content).arrows(&projection);
         if let Some(reach) = content.reach() {
-            let positions: Vec<_> = positions(reach).collect();
+            let positions: Vec<_> = self.drawn_positions(reach).collect();
             let own = self.forces(content);
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.arrows(&projection));
@@ -499,9 +567,9 @@ impl BodyView {
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
-            let bar = if tip.x > size.x - overlay::LEGEND_WIDTH { overlay::LEGEND_HEIGHT } else { 0.0 };
-            let above = if on_top && arrow.vector.y < 0.0 { bar } else { 0.0 };
-            let below = if on_top { 0.0 } else { bar };
+            let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
+            let above = if on_top && arrow.vector.y < 0.0 { overlay::TOP_ROWS_HEIGHT } else { 0.0 };
+            let below = if !on_top && is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
@@ -524,8 +592,12 @@ impl BodyView {
         let simulation = session.simulation();
         let shown = self.drawn(content);
         let moves_support = simulation.problem().supports().move_the_body();
-        let reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
+        let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
+        for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
+            reaction.middle = support.middle + (reaction.middle - support.middle) * self.magnification;
+        }
         let sections = sections(shown);
+        let exact = if is_animated { Cow::Borrowed(&[][..]) } else { self.exact(content) };
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
@@ -534,9 +606,10 @@ impl BodyView {
             options: content.options,
             camera: self.camera(),
             positions: &self.body.nodes,
+            magnification: self.magnification,
             apart: content.is_apart(),
             ghost: self.ghost(content),
-            exact: if is_animated { &[] } else { self.exact(content) },
+            exact: &exact,
             errors: if is_animated { Errors::default() } else { errors },
             time: shown.state().time(),
             direction: content.direction,
@@ -550,6 +623,9 @@ impl BodyView {
             note,
         };
         overlay::paint(painter, self.rect, &overlay, visuals);
+        if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {
+            bases.paint(painter, hot, visuals, Palette::new(visuals).load);
+        }
     }
 
     /// Returns the anchor, position and largest width of a message over the view: at the lower left, next to tips of
@@ -597,7 +673,7 @@ impl BodyView {
             _ => false,
         };
         let is_another = self.crossing.stamp != self.body.stamp();
-        if self.crossing.is_reported || !(is_due && is_sound && is_another) {
+        if self.magnification != 1.0 || self.crossing.is_reported || !(is_due && is_sound && is_another) {
             return false;
         }
         (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp());
@@ -607,22 +683,15 @@ impl BodyView {
     }
 }
 
-/// Returns the margins around a box, m, that do not depend on the loads.
-fn least_margins(content: &Content<'_>, [low, high]: [Vector2<f64>; 2], view: [f64; 2]) -> Margins {
-    let has_legend_on_top = overlay::has_legend_on_top(view[1] as f32);
-    if content.card.is_some() && has_legend_on_top {
-        // Under the colour bar or to the left of it, whichever shows the body larger.
-        let scale = |margins: &Margins| Camera::fit(low, high, view, *margins).scale;
-        return if scale(&SIDE_MARGINS) > scale(&CARD_MARGINS) { SIDE_MARGINS } else { CARD_MARGINS };
-    }
-    match (content.card.is_some(), has_legend_on_top) {
-        (true, _) => CARD_MARGINS,
-        (false, true) => LOW_MARGINS,
+/// Returns the margins around a box that do not depend on the loads.
+fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
+    match (content.card.is_some(), overlay::has_legend_on_top(view[1] as f32)) {
+        (_, true) => LOW_MARGINS,
+        (true, false) => CARD_MARGINS,
         (false, false) => FIT_MARGINS,
     }
 }
 
-/// Returns the positions of a body's nodes, m.
 /// Returns the sections of a state, each with its forces as text.
 fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
     let lines = simulation.scene().sections.iter();
@@ -632,8 +701,4 @@ fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
         (section, text)
     });
     named.collect()
-}
-
-fn positions(simulation: &Simulation) -> impl Iterator<Item = Vector2<f64>> + '_ {
-    simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u)
 }

@@ -1,12 +1,12 @@
 //! Comparison of two to four settings side by side: one load, one camera, one colour range, and the load curve under
 //! them.
 
-use egui::{Align2, Color32, Context, FontId, Panel, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Color32, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
 use web_time::{Duration, Instant};
 
 use self::grid::{Preset, grow};
-use self::panes::{PaneChange, Panes};
+use self::panes::{ComparedPane, Condition, PaneChange, Panes};
 use self::trace::Trace;
 use crate::app::action::Action;
 use crate::app::diagnosis::{error_color, error_tip};
@@ -22,10 +22,10 @@ use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::app::widgets::text::{UNKNOWN, semibold};
-use crate::format::{engineering, two_digits};
+use crate::format::{engineering, engineering_pair, three_digits, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
-use crate::scene::{ElementKind, MethodKind, Scene};
+use crate::scene::{ElementKind, MethodKind, Place, Scene};
 use crate::sentence::Sentence;
 use crate::study::{Reference, Setting};
 
@@ -367,7 +367,25 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
         grid::mesh_picker(ui, &palette, name, widths[2], &mut setting.cells, scene);
     });
     result(ui, &panes::pane_name(number), pane, input);
+    kept_probes(ui, pane);
     change
+}
+
+/// Shows the displacements of the probes at points.
+fn kept_probes(ui: &mut Ui, pane: &Pane) {
+    /// Largest number of rows, so that the bodies keep their room.
+    const MAX_ROWS: usize = 3;
+    let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
+    let is_at_point = |name: &str| {
+        simulation.scene().probes.iter().any(|probe| probe.name == name && matches!(probe.place, Place::At(_)))
+    };
+    let probes = simulation.problem().probes().iter().filter(|probe| is_at_point(&probe.name));
+    for probe in probes.take(MAX_ROWS) {
+        let u = probe.mean(simulation.displacement());
+        let u = engineering_pair([u.x, u.y].map(three_digits), "m");
+        let text = RichText::new(format!("{}: u = {u}", probe.name)).size(SMALL);
+        ui.add(egui::Label::new(text).truncate());
+    }
 }
 
 /// Shows error, time and iterations, or the reason for which there are none.

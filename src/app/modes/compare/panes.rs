@@ -71,7 +71,7 @@ impl PaneDisplay {
             (self.body_mesh, self.range) = (BodyMesh::default(), None);
             self.system = Some(system.clone());
         }
-        self.body_mesh.update(simulation, &self.geometry, view, played);
+        self.body_mesh.update(simulation, &self.geometry, view, 1.0, played);
         self.range = Some(self.body_mesh.range);
     }
 
@@ -298,6 +298,7 @@ impl<P: ComparedPane> Panes<P> {
             positions: &display.body_mesh.nodes,
             outline: &display.geometry.boundary,
             handles: &handles,
+            bases: &[],
             scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
@@ -323,6 +324,7 @@ impl<P: ComparedPane> Panes<P> {
                 options: input.view,
                 camera,
                 positions: &display.body_mesh.nodes,
+                magnification: 1.0,
                 ghost: None,
                 exact,
                 errors: Errors::default(),

@@ -1,0 +1,168 @@
+//! Bases of the objects of a scene: the points of the body at which forces, supports, probes and sections are. A drag
+//! moves them along the body.
+
+use egui::{Color32, Painter, Pos2, Stroke};
+use nalgebra::Vector2;
+
+use crate::app::language::tr;
+use crate::app::viewport::arrow::load_point;
+use crate::app::viewport::menu::rounded;
+use crate::app::viewport::probe;
+use crate::app::viewport::projection::Projection;
+use crate::app::widgets::text::boxed_text;
+use crate::assembly::System;
+use crate::format::{engineering_pair, three_digits};
+use crate::mesh::{Mesh, Segment};
+use crate::scene::{Load, Place, Scene};
+
+/// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
+/// it, points.
+const NEAR: f32 = 9.0;
+/// Distance from the body within which the pointer moves a base, points.
+const REACH: f64 = 80.0;
+
+/// Object of a scene, by its index among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Object {
+    Force(usize),
+    Support(usize),
+    Probe(usize),
+    Section(usize),
+}
+
+/// Base of an object in the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Base {
+    pub object: Object,
+    pub at: Pos2,
+}
+
+/// Base that is under the pointer, or dragged by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HotBase {
+    pub base: Base,
+    /// Position of the pointer, if it drags the base.
+    pub dragged: Option<Pos2>,
+}
+
+/// Returns the base that a press at `pointer` grabs.
+pub(crate) fn near(bases: &[Base], pointer: Pos2) -> Option<&Base> {
+    let near = bases.iter().map(|base| (base.at.distance(pointer), base)).filter(|(distance, _)| *distance <= NEAR);
+    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, base)| base)
+}
+
+/// Drawn body with the objects of its scene.
+pub(crate) struct Bases<'a> {
+    pub scene: &'a Scene,
+    pub system: &'a System,
+    /// Drawn positions of the nodes, m.
+    pub positions: &'a [Vector2<f64>],
+    pub outline: &'a [Segment],
+    pub projection: Projection,
+}
+
+impl Bases<'_> {
+    fn mesh(&self) -> &Mesh {
+        self.system.mesh()
+    }
+
+    /// Returns the bases of all objects.
+    pub(crate) fn all(&self) -> Vec<Base> {
+        let Scene { loads, supports, probes, sections, .. } = self.scene;
+        let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
+            Load::Force { place, .. } => Some((Object::Force(i), self.on_nodes(place)?)),
+            _ => None,
+        });
+        let supports = (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.on_nodes(&s.place)?)));
+        let probes = (0..).zip(probes).filter_map(|(i, probe)| match probe.place {
+            Place::At(at) => Some((Object::Probe(i), self.drawn(at.into())?)),
+            // It is at the arrow of a load, as a rule.
+            Place::Edge(_) => None,
+        });
+        let sections = (0..).zip(sections).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
+        // A probe or a section that lies on a force or a support is in front.
+        let all = probes.chain(sections).chain(forces).chain(supports);
+        all.map(|(object, at)| Base { object, at: self.projection.point(at) }).collect()
+    }
+
+    /// Returns the drawn position of a force or a support, m, which acts on nodes.
+    fn on_nodes(&self, place: &Place) -> Option<Vector2<f64>> {
+        load_point(self.mesh(), self.positions, place)
+    }
+
+    /// Returns the drawn position of a material point, m.
+    fn drawn(&self, rest: Vector2<f64>) -> Option<Vector2<f64>> {
+        probe::place(self.mesh(), self.positions, self.mesh().locate(rest)?)
+    }
+
+    /// Returns the place to which the pointer moves an object, and its drawn position, m: a named edge or a corner near
+    /// the pointer, else the point of the body there; `None` far from the body. Forces and supports act on nodes, so
+    /// that their points are nodes.
+    fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
+        let mesh = self.mesh();
+        let is_near = |at: Vector2<f64>| self.projection.point(at).distance(pointer) <= NEAR;
+        let acts_on_nodes = matches!(object, Object::Force(_) | Object::Support(_));
+        let named = |name: &String| Place::from(name.as_str());
+        let edges = mesh.edges().keys().filter(|_| acts_on_nodes).map(named);
+        let mut near = edges.filter_map(|place| Some((self.on_nodes(&place)?, place))).filter(|(at, _)| is_near(*at));
+        if let Some((at, place)) = near.next() {
+            return Some((place, at));
+        }
+        let at_node = |n: u32| Some((Place::At(mesh.node(n).into()), *self.positions.get(n as usize)?));
+        let corners = mesh.edges().values().flat_map(|edge| ends(edge));
+        if let Some(found) = corners.filter_map(at_node).find(|(_, at)| is_near(*at)) {
+            return Some(found);
+        }
+        let from_center = pointer - self.projection.rect.center();
+        let world = self.projection.camera.to_world([f64::from(from_center.x), f64::from(from_center.y)]);
+        let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
+        let rest = probe::place(mesh, mesh.nodes(), point)?;
+        if acts_on_nodes {
+            return at_node(mesh.nearest_node(rest));
+        }
+        let rest = rounded(self.system, rest);
+        Some((Place::At(rest.into()), self.drawn(rest)?))
+    }
+
+    /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.
+    pub(crate) fn moved(&self, object: Object, pointer: Pos2) -> Option<Scene> {
+        let (place, _) = self.target(object, pointer)?;
+        let mut scene = self.scene.clone();
+        match object {
+            Object::Force(i) => match scene.loads.get_mut(i)? {
+                Load::Force { place: own, .. } => *own = place,
+                _ => return None,
+            },
+            Object::Support(i) => scene.supports.get_mut(i)?.place = place,
+            Object::Probe(i) => scene.probes.get_mut(i)?.place = place,
+            Object::Section(i) => match place {
+                Place::At(at) => scene.sections.get_mut(i)?.at = at.into(),
+                Place::Edge(_) => return None,
+            },
+        }
+        Some(scene)
+    }
+
+    /// Paints a ring at the base under the pointer, and at the place to which it is dragged, with the name of that
+    /// place.
+    pub(crate) fn paint(&self, painter: &Painter, hot: HotBase, visuals: &egui::Visuals, color: Color32) {
+        painter.circle_stroke(hot.base.at, NEAR, Stroke::new(1.5, color));
+        let Some(pointer) = hot.dragged else { return };
+        let Some((place, at)) = self.target(hot.base.object, pointer) else { return };
+        let at = self.projection.point(at);
+        painter.line_segment([hot.base.at, at], Stroke::new(1.0, color));
+        painter.circle_filled(at, 4.0, color);
+        let text = match place {
+            Place::Edge(name) => tr(&name).to_owned(),
+            Place::At(at) => engineering_pair(at.map(three_digits), "m"),
+        };
+        let above = at - egui::vec2(0.0, 12.0);
+        boxed_text(painter, above, egui::Align2::CENTER_BOTTOM, &text, visuals, color, 240.0);
+    }
+}
+
+/// Returns the nodes at the ends of an edge; none if it is closed.
+fn ends(edge: &[Segment]) -> Vec<u32> {
+    let all: Vec<u32> = edge.iter().flat_map(Segment::ends).collect();
+    all.iter().copied().filter(|end| all.iter().filter(|other| *other == end).count() == 1).collect()
+}

@@ -1,0 +1,240 @@
+//! Tests of the card of a point, of probes that are kept, of the colours, and of the magnified displacement.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use nalgebra::Vector2;
+
+use crate::common::lab::pick;
+use crate::common::scene;
+use crate::ui_interaction::{click, harness, harness_of, on_body, shapes};
+use warpbeam::app::{Lab, Magnification, parse_panes};
+use warpbeam::format::{engineering, engineering_pair, three_digits};
+use warpbeam::scene::{Axis, Load, Place};
+use warpbeam::simulation::{Field, PointValues};
+
+/// Returns all texts that are painted without a widget.
+fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
+    let texts = shapes(harness).into_iter().filter_map(|shape| match shape {
+        egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
+        _ => None,
+    });
+    texts.collect()
+}
+
+fn positions(lab: &Lab) -> Vec<Vector2<f64>> {
+    lab.frame().positions.to_vec()
+}
+
+fn magnify(harness: &mut Harness<'_, Lab>, magnification: Magnification) -> Vec<Vector2<f64>> {
+    harness.state_mut().magnify(magnification);
+    harness.run();
+    positions(harness.state())
+}
+
+/// A stiff body is drawn with a multiple of its displacement, and says so. It cannot be grabbed then. The automatic factor
+/// draws the largest displacement as 2 to 5 % of the body's size.
+#[test]
+fn a_body_is_drawn_with_a_multiple_of_its_displacement() {
+    let mut stiff = scene("cantilever");
+    stiff.material.young *= 1e4;
+    let mut harness = harness_of("cantilever", stiff);
+    harness.run();
+    let true_scale = positions(harness.state());
+    assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
+    let twice = magnify(&mut harness, Magnification::Factor(2.0));
+    let largest = harness.state().simulation().displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let drawn = true_scale.iter().zip(&twice).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
+    assert!((drawn - largest).abs() < 1e-9 * largest, "{drawn} {largest}");
+    let many = magnify(&mut harness, Magnification::Factor(250.0));
+    for ((one, two), many) in true_scale.iter().zip(&twice).zip(&many) {
+        assert!((many - one - (two - one) * 249.0).norm() < 1e-9, "{one} {two} {many}");
+    }
+    assert!(painted(&harness).contains(&"displacement × 250".to_owned()), "{:?}", painted(&harness));
+    let automatic = magnify(&mut harness, Magnification::Automatic);
+    let shift = true_scale.iter().zip(&automatic).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max) + largest;
+    let size = harness.state().simulation().system().size();
+    assert!((0.02 * size..=0.05 * size).contains(&shift), "{shift} of {size}");
+    // The root is drawn where it is, whatever the factor.
+    let pos = on_body(harness.state(), Vector2::new(0.3, 0.0));
+    let pull = |harness: &mut Harness<'_, Lab>| {
+        harness.hover_at(pos);
+        harness.step();
+        harness.drag_at(pos);
+        harness.step();
+        (1..6).for_each(|i| {
+            harness.hover_at(pos + egui::vec2(0.0, 8.0 * i as f32));
+            harness.step();
+        });
+        let is_grabbed = harness.state().simulation().mouse_spring().is_some();
+        harness.drop_at(pos + egui::vec2(0.0, 40.0));
+        harness.run();
+        is_grabbed
+    };
+    assert!(!pull(&mut harness), "a magnified body is grabbed");
+    magnify(&mut harness, Magnification::None);
+    assert!(pull(&mut harness), "the body is not grabbed");
+    // Large displacements are never drawn smaller.
+    let mut article = self::harness("article");
+    article.run();
+    let before = positions(article.state());
+    assert_eq!(magnify(&mut article, Magnification::Automatic), before);
+}
+
+/// Every field has the value of the card's point under the pointer, and its own name at the colour bar.
+#[test]
+fn every_field_colours_the_body() {
+    let mut harness = harness("article");
+    harness.run();
+    let at = Vector2::new(1.1, 0.3);
+    let pos = on_body(harness.state(), at);
+    for field in Field::ALL {
+        harness.state_mut().color_with(field);
+        harness.hover_at(pos);
+        harness.run();
+        let lab = harness.state();
+        let point = lab.simulation().mesh().locate(at).unwrap();
+        let state = lab.simulation().point_state(point, PointValues::Recovered).unwrap();
+        let factor = if field.unit().is_empty() { (100.0, "%") } else { (1.0, field.unit()) };
+        let shown = painted(&harness);
+        let title = shown.iter().find(|text| text.starts_with(&format!("{}: ", field.name())));
+        let title = title.unwrap_or_else(|| panic!("{field:?}: {shown:?}"));
+        assert!(shown.iter().any(|text| text.starts_with(&format!("{}, ", field.name()))), "{field:?}: {shown:?}");
+        let Some(value) = state.field(field) else { continue };
+        // The pointer is within a pixel of the point.
+        let value = engineering(three_digits(factor.0 * value), factor.1);
+        let number = |text: &str| text.split([' ', '\n', '°']).find_map(|word| word.parse::<f64>().ok()).unwrap();
+        let (seen, wanted) = (number(&title[field.name().len() + 2..]), number(&value));
+        assert!((seen - wanted).abs() < 0.05 * wanted.abs() + 0.05, "{field:?}: {title} is not {value}");
+    }
+    let largest = harness.state().frame().range;
+    assert!(largest[0] >= 0.0, "the last field is a magnitude");
+    harness.state_mut().color_with(Field::StressX);
+    harness.run();
+    let [low, high] = harness.state().frame().range;
+    assert!(low == -high && high > 0.0, "a signed field has a symmetric range");
+}
+
+/// The values of a card are copied as text; a kept point is a probe of the scene, has a row in every pane of Compare, and
+/// undo takes it back.
+#[test]
+fn a_point_is_copied_and_kept_as_a_probe() {
+    let mut harness = harness("article");
+    harness.run();
+    let before = harness.state().scene().clone();
+    let pos: Pos2 = on_body(harness.state(), Vector2::new(2.2, 0.3));
+    click(&mut harness, pos);
+    harness.get_by_role_and_label(Role::Button, "Copy").click();
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let (copied, lab) = (copied.unwrap(), harness.state());
+    let state = lab.simulation().point_state(lab.probed().unwrap(), PointValues::Recovered).unwrap();
+    let pair = |a: Field, b: Field| {
+        let values = [a, b].map(|field| state.field(field).unwrap());
+        engineering_pair(values.map(three_digits), "Pa")
+    };
+    let line = format!("σ_x, σ_y\t{}\n", pair(Field::StressX, Field::StressY));
+    assert!(copied.contains(&line), "{copied}");
+    harness.run();
+    harness.get_by_label("material").click();
+    harness.run();
+    let own = pair(Field::MaterialStressX, Field::MaterialStressY);
+    assert!(harness.query_by_label(&own).is_some() && !copied.contains(&own), "{own}");
+    harness.get_by_role_and_label(Role::Button, "Keep as probe").click();
+    harness.run();
+    let mut kept = before.clone();
+    kept.probes.clone_from(&harness.state().scene().probes);
+    assert_eq!((*harness.state().scene() == kept, kept.probes.len()), (true, before.probes.len() + 1));
+    assert!(harness.query_by_role_and_label(Role::Button, "Keep as probe").is_none(), "it is kept already");
+    harness.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());
+    harness.run();
+    for pane in harness.state().panes() {
+        let u = pane.simulation().unwrap().probe("p1").unwrap();
+        let row = format!("p1: u = {}", engineering_pair([u.x, u.y].map(three_digits), "m"));
+        assert!(harness.query_by_label(&row).is_some(), "{row}");
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run();
+    assert_eq!(*harness.state().scene(), before, "undone");
+}
+
+/// The panel has the colours and the magnification.
+#[test]
+fn the_panel_chooses_field_and_magnification() {
+    let mut harness = harness("cantilever");
+    harness.get_by_label_contains("View: ").scroll_to_me();
+    harness.run();
+    harness.get_by_label_contains("View: ").click();
+    harness.run();
+    pick(&mut harness, "Colour", Field::ShearStress.name());
+    assert_eq!(harness.state().frame().field, Field::ShearStress);
+    pick(&mut harness, "Displacement", "Factor");
+    assert!(painted(&harness).contains(&"displacement × 10".to_owned()));
+    pick(&mut harness, "Displacement", "True scale");
+    assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
+}
+
+/// Drags from one position of the window to another.
+fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2) {
+    harness.hover_at(from);
+    harness.run();
+    harness.drag_at(from);
+    harness.step();
+    for i in 1..=4 {
+        harness.hover_at(from + (to - from) * (i as f32 / 4.0));
+        harness.step();
+    }
+    harness.drop_at(to);
+    harness.run();
+}
+
+/// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. A force goes to a
+/// node, a named edge or a corner, a probe to any point. A press without a drag opens the card of the point.
+#[test]
+fn bases_of_objects_are_dragged_along_the_body() {
+    let mut scene = scene("cantilever");
+    scene = scene.probe("p1", [4.0, 0.2]).section([6.0, 0.0], 0.0).support([2.0, -0.5], &[Axis::Y]);
+    let mut harness = harness_of("cantilever", scene);
+    harness.run();
+    let before = harness.state().scene().clone();
+    let seen = |harness: &Harness<'_, Lab>, at: [f64; 2]| on_body(harness.state(), at.into());
+    // The middle of the right edge, where the arrow begins.
+    let (foot, goal) = (seen(&harness, [9.999, 0.0]), seen(&harness, [7.0, 0.49]));
+    drag(&mut harness, foot, goal);
+    let Load::Force { place: Place::At(node), .. } = harness.state().scene().loads[0] else { panic!("at a node") };
+    let mesh = harness.state().simulation().system().mesh();
+    let [x, y] = <[f64; 2]>::from(mesh.nodes()[mesh.nearest_node(node.into()) as usize] - Vector2::from(node));
+    assert_eq!([x, y], [0.0, 0.0], "a force acts on a node");
+    assert!((Vector2::from(node) - Vector2::new(7.0, 0.5)).norm() < 0.3, "{node:?}");
+    let moved = harness.state().scene().clone();
+    let (foot, goal) = (seen(&harness, node), seen(&harness, [9.999, 0.03]));
+    drag(&mut harness, foot, goal);
+    assert_eq!(*harness.state().scene(), before, "back on the edge");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run();
+    assert_eq!(*harness.state().scene(), moved, "one step of undo");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run();
+    assert_eq!(*harness.state().scene(), before, "undone");
+    let (from, to) = (seen(&harness, [4.0, 0.2]), seen(&harness, [5.1, -0.1]));
+    drag(&mut harness, from, to);
+    let Place::At(at) = harness.state().scene().probes.iter().find(|probe| probe.name == "p1").unwrap().place else {
+        panic!("at a point")
+    };
+    assert!((Vector2::from(at) - Vector2::new(5.1, -0.1)).norm() < 0.05, "{at:?}");
+    let (from, to) = (seen(&harness, [6.0, 0.0]), seen(&harness, [3.0, 0.1]));
+    drag(&mut harness, from, to);
+    let line = harness.state().scene().sections[0];
+    assert!((line.at - Vector2::new(3.0, 0.1)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
+    // The corner at the lower right.
+    let (from, to) = (seen(&harness, [2.0, -0.499]), seen(&harness, [9.99, -0.49]));
+    drag(&mut harness, from, to);
+    assert_eq!(harness.state().scene().supports.last().unwrap().place, Place::At([10.0, -0.5]));
+    let probe = seen(&harness, at);
+    click(&mut harness, probe);
+    assert!(harness.state().probed().is_some(), "a press without a drag inspects");
+}
