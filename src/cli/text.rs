@@ -374,7 +374,8 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     let digits = digits.unwrap_or(1);
     for state in shown {
         let _ = write!(text, "{:5.digits$} %  ", 100.0 * state.factor);
-        if let Some(columns) = driven_text(scene, path, state) {
+        if let Some(pair) = path.driven_pair(scene, state) {
+            let columns = driven_texts(pair, path.rotates(scene));
             let _ = write!(text, "{:<width$}  {:<15}  ", columns[0], columns[1]);
         }
         if let Some(u) = state.probes.first() {
@@ -387,13 +388,6 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         let _ = writeln!(text, "{claim}");
     }
     text
-}
-
-/// Formats the motion of the moving support, and its reaction along it.
-fn driven_text(scene: &Scene, path: &LoadPath, state: &PathState) -> Option<[String; 2]> {
-    let [displacement, force] = path.driven_pair(scene, state)?;
-    let rotates = scene.supports.get(path.driven?)?.displacement == [0.0; 2];
-    Some(driven_texts([displacement, force], rotates))
 }
 
 /// Formats a load path as CSV.

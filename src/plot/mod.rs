@@ -12,6 +12,6 @@ pub use atlas::{atlas, motion_atlas};
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;
-pub use trade::{LARGEST_ERROR, SMALLEST_ERROR, drawn_error, motion_study, scaling, study};
+pub use trade::{LARGEST_ERROR, SMALLEST_ERROR, motion_study, scaling, study};
 #[cfg(feature = "app")]
 pub(crate) use {axes::Decades, limits::rating_color};

@@ -7,7 +7,7 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::color;
 use crate::study::motion::{MotionStudy, REAL_TIME};
-use crate::study::{Measurement, Scaling, ScalingPoint, Study};
+use crate::study::{Measurement, Ranked, Ranking, Scaling, ScalingPoint, Study};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
 pub const SMALLEST_ERROR: f64 = 1e-3;
@@ -17,9 +17,8 @@ pub const LARGEST_ERROR: f64 = 1e3;
 const WIDTH: f64 = 1.5;
 
 /// The error at which a measurement is drawn, percent.
-#[must_use]
-pub fn drawn_error(study: &Study, m: &Measurement) -> f64 {
-    study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR)
+fn drawn_error<M: Ranked>(ranking: Ranking<'_, M>, m: &M) -> f64 {
+    ranking.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR)
 }
 
 /// Draws the study.
@@ -27,7 +26,7 @@ pub fn drawn_error(study: &Study, m: &Measurement) -> f64 {
 pub fn study(study: &Study) -> Drawing {
     let point = |m: &Measurement| Point {
         time: m.milliseconds(),
-        error: drawn_error(study, m),
+        error: drawn_error(study.ranking(), m),
         element: m.setting.element,
         color: color(m.setting.method.id(), false),
         faint: !m.converged,
@@ -49,16 +48,14 @@ pub fn study(study: &Study) -> Drawing {
 /// Draws the study of a motion.
 #[must_use]
 pub fn motion_study(study: &MotionStudy) -> Drawing {
-    let points = study.measurements.iter().filter_map(|m| {
-        Some(Point {
-            time: m.milliseconds,
-            error: study.error_bound(m)?.clamp(SMALLEST_ERROR, LARGEST_ERROR),
-            element: m.setting.element,
-            color: color(m.setting.integrator.id(), false),
-            faint: m.setting.method == MethodKind::Linear,
-            front: m.pareto,
-            title: m.setting.to_string(),
-        })
+    let points = study.measurements.iter().filter(|m| m.error.is_some()).map(|m| Point {
+        time: m.milliseconds,
+        error: drawn_error(study.ranking(), m),
+        element: m.setting.element,
+        color: color(m.setting.integrator.id(), false),
+        faint: m.setting.method == MethodKind::Linear,
+        front: m.pareto,
+        title: m.setting.to_string(),
     });
     let chart = Chart {
         title: format!("{}: error of its path against time", study.scene),

@@ -2,10 +2,10 @@
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
 use super::load_path::{Elsewhere, LoadPath, PathEnd, PathSummary};
-use super::motion::MotionStudy;
+use super::ranking::{Demand, Ranked, Ranking};
 use super::reference::{ProbeReference, Reference};
-use super::trade::{Measurement, Study};
-use super::tune::{Demand, Tuning};
+use super::trade::Measurement;
+use super::tune::Tuning;
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
 use crate::method::{Bifurcation, Drive, Jump, floor_text, rho_text};
@@ -342,7 +342,7 @@ impl Claim {
     /// Returns the claims of a load path: extreme forces of its moving support, bifurcations, the jump, and its end.
     #[must_use]
     pub fn of_path(scene: &Scene, path: &LoadPath) -> Vec<Self> {
-        let rotates = path.driven.and_then(|i| scene.supports.get(i)).is_some_and(|s| s.displacement == [0.0; 2]);
+        let rotates = path.rotates(scene);
         let limits = path.states.windows(2).filter_map(|pair| {
             let held = pair.iter().all(|state| state.unstable_modes == 0);
             let (at, is_regained) = match [pair[0].stable, pair[1].stable] {
@@ -368,29 +368,15 @@ impl Claim {
 
     /// Returns the claim about the fastest setting of a study with an error of at most a limit, percent.
     #[must_use]
-    pub fn of_study(study: &Study, percent: f64) -> Self {
-        let own_percent = study.against.own_error_percent;
+    pub fn of_ranking<M: Ranked>(ranking: Ranking<'_, M>, percent: f64) -> Self {
+        let own_percent = ranking.own_error_percent;
         if own_percent >= percent {
             return Self::NotKnown { percent, own_percent };
         }
-        study.cheapest_within(percent).map_or(Self::NotReached(percent), |m| Self::Best {
+        ranking.within(percent).first().map_or(Self::NotReached(percent), |m| Self::Best {
             percent,
-            time: format!("{:.4} ms", m.milliseconds()),
-            setting: (&m.setting).into(),
-        })
-    }
-
-    /// Returns the claim about the fastest setting of a study of motions with an error of at most a limit, percent.
-    #[must_use]
-    pub fn of_motions(study: &MotionStudy, percent: f64) -> Self {
-        let own_percent = study.reference.error_percent;
-        if percent < own_percent {
-            return Self::NotKnown { percent, own_percent };
-        }
-        study.fastest_within(percent).map_or(Self::NotReached(percent), |m| Self::Best {
-            percent,
-            time: format!("{:.3} ms per simulated second", m.milliseconds),
-            setting: (&m.setting).into(),
+            time: m.time_text(),
+            setting: m.setting_text(),
         })
     }
 
@@ -406,7 +392,7 @@ impl Claim {
         };
         let own = study.against.own_error_percent;
         let is_as_accurate = |m: &&Measurement| {
-            m.converged && demand.time_is_met(m) && (m.error.bound() - chosen.error.bound()).abs() < own
+            m.converged && demand.time_is_met(*m) && (m.error.bound() - chosen.error.bound()).abs() < own
         };
         // The setting itself is one of them. The fastest is chosen by its time, which is decided.
         let as_accurate = match reason.starts_with("the most accurate") {

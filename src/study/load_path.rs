@@ -225,6 +225,12 @@ impl LoadPath {
         self.bifurcations.is_empty() && self.jump.is_none() && self.end.is_none()
     }
 
+    /// Returns `true` if the moving support only rotates.
+    #[must_use]
+    pub fn rotates(&self, scene: &Scene) -> bool {
+        self.driven.and_then(|i| scene.supports.get(i)).is_some_and(|support| support.displacement == [0.0; 2])
+    }
+
     /// Returns the motion of the moving support at a state: its displacement, m, or its rotation, rad, if it only
     /// rotates; and the reaction along it, N or N m. `None` if no support moves.
     #[must_use]

@@ -1,6 +1,5 @@
 //! Measurements over many solves.
 
-mod bound;
 mod claim;
 mod colors;
 mod convergence;
@@ -12,9 +11,9 @@ mod load_curve;
 mod load_path;
 pub mod motion;
 pub(crate) mod parallel;
-mod pareto;
 pub mod path_chart;
 mod progress;
+mod ranking;
 mod reference;
 mod report;
 mod scaling;
@@ -33,6 +32,7 @@ pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::MotionStudy;
 pub use progress::{Extent, StudyError};
+pub use ranking::{Demand, Ranked, Ranking};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
@@ -41,4 +41,4 @@ pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::{time_from_rest, times_from_rest};
 pub use trade::{ErrorSplit, Measurement, Setting, Study};
-pub use tune::{Demand, Tuning};
+pub use tune::Tuning;

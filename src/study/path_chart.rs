@@ -109,7 +109,7 @@ struct Abscissa {
 
 impl Abscissa {
     fn of(path: &LoadPath, scene: &Scene) -> Self {
-        let turns = path.driven.and_then(|i| scene.supports.get(i)).is_some_and(|s| s.displacement == [0.0; 2]);
+        let turns = path.rotates(scene);
         let place = path.driven.and_then(|i| scene.supports.get(i)).map(|support| &support.place);
         let (name, unit) = match place {
             Some(place) if turns => (sentence!("rotation of support %{place}", place = place.to_string()), "°"),

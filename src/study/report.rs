@@ -4,13 +4,40 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use super::claim::Claim;
+use super::ranking::{Ranked, Ranking};
 use super::trade::Study;
 use super::tune::Tuning;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
-/// Mark of a setting whose rank is undecided.
-pub(super) const UNDECIDED: &str = " (rank undecided)";
+impl<M: Ranked> Ranking<'_, M> {
+    /// Adds a row for each setting of the Pareto front, fastest first, and a note if the rank of one is undecided. `row`
+    /// formats time and errors of a setting.
+    pub(super) fn add_front(self, text: &mut String, row: impl Fn(&M) -> String) {
+        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.is_pareto());
+        let mut front: Vec<_> = ranked.collect();
+        front.sort_by(|(a, _), (b, _)| a.time_ms().total_cmp(&b.time_ms()));
+        for (m, undecided) in &front {
+            let mark = if *undecided { " (rank undecided)" } else { "" };
+            let _ = writeln!(text, "{}   {}{mark}", row(m), m.setting_text());
+        }
+        if front.iter().any(|(_, undecided)| *undecided) {
+            let _ = writeln!(text, "{}", Claim::Undecided(self.own_error_percent));
+        }
+        text.push('\n');
+    }
+
+    /// Adds the fastest setting with an error of at most 10, 1 and 0.1 %, and the `details` of each.
+    pub(super) fn add_costs(self, text: &mut String, details: impl Fn(&mut String, f64)) {
+        for percent in [10.0, 1.0, 0.1] {
+            let claim = Claim::of_ranking(self, percent);
+            let _ = writeln!(text, "{claim}");
+            if !matches!(claim, Claim::NotKnown { .. }) {
+                details(text, percent);
+            }
+        }
+    }
+}
 
 impl Study {
     /// Formats the study as CSV, with times in microseconds. `error_bound_percent` is the sum of the error's parts;
@@ -20,7 +47,8 @@ impl Study {
         let mut text = String::from(
             "element,cells_along,cells_across,dofs,method,iterations,converged,time_us,rotate_us,assemble_us,factorize_us,solve_us,error_percent,discretization_percent,iteration_percent,model_percent,error_bound_percent,pareto,at_most_percent,undecided\n",
         );
-        for (m, undecided) in self.measurements.iter().zip(self.undecided()) {
+        let ranking = self.ranking();
+        for (m, undecided) in self.measurements.iter().zip(ranking.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let us = |d: Duration| d.as_secs_f64() * 1e6;
             let (t, e) = (&m.time, &m.error);
@@ -43,7 +71,7 @@ impl Study {
                 e.model,
                 e.bound(),
                 m.pareto,
-                self.error_bound(m)
+                ranking.error_bound(m)
             );
         }
         text
@@ -58,51 +86,34 @@ impl Study {
              of the reference's own error):\n",
         );
         text.push_str("    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting\n");
-        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
-        let mut front: Vec<_> = ranked.collect();
-        front.sort_by_key(|(m, _)| m.time.total());
-        for (m, undecided) in &front {
-            let e = &m.error;
-            let _ = writeln!(
-                text,
-                "{:12.4} {:12.4} {:12.4} {:12.4} {:14.4} {:14.4}   {}{}",
+        let ranking = self.ranking();
+        ranking.add_front(&mut text, |m| {
+            let (e, bound) = (&m.error, ranking.error_bound(m));
+            format!(
+                "{:12.4} {bound:12.4} {:12.4} {:12.4} {:14.4} {:14.4}",
                 m.milliseconds(),
-                self.error_bound(m),
                 e.total,
                 e.discretization,
                 e.iteration,
-                e.model,
-                m.setting,
-                if *undecided { UNDECIDED } else { "" }
-            );
-        }
-        let own = self.against.own_error_percent;
-        if front.iter().any(|(_, undecided)| *undecided) {
-            let _ = writeln!(text, "{}", Claim::Undecided(own));
-        }
-        text.push('\n');
-        for percent in [10.0, 1.0, 0.1] {
-            let claim = Claim::of_study(self, percent);
-            let _ = writeln!(text, "{claim}");
-            if matches!(claim, Claim::NotKnown { .. }) {
-                continue;
+                e.model
+            )
+        });
+        ranking.add_costs(&mut text, |text, percent| {
+            let within = ranking.within(percent);
+            for (element, method) in
+                ElementKind::all().flat_map(|element| METHODS.iter().map(move |m| (element, m.kind)))
+            {
+                let own = within.iter().find(|m| (m.setting.element, m.setting.method) == (element, method));
+                let cost = match own {
+                    Some(m) => m.time_text(),
+                    None if method == MethodKind::Auto && percent < self.asked_percent => {
+                        format!("solver.max_error_percent is {}", self.asked_percent)
+                    }
+                    None => "not reached".to_owned(),
+                };
+                let _ = writeln!(text, "    {} {:<7} {cost}", element.id(), method.id());
             }
-            for element in ElementKind::all() {
-                for method in METHODS.iter().map(|m| m.kind) {
-                    let own = self.measurements.iter().filter(|m| {
-                        (m.setting.element, m.setting.method) == (element, method) && self.error_bound(m) <= percent
-                    });
-                    let cost = match own.min_by_key(|m| m.time.total()) {
-                        Some(m) => format!("{:.4} ms", m.milliseconds()),
-                        None if method == MethodKind::Auto && percent < self.asked_percent => {
-                            format!("solver.max_error_percent is {}", self.asked_percent)
-                        }
-                        None => "not reached".to_owned(),
-                    };
-                    let _ = writeln!(text, "    {} {:<7} {cost}", element.id(), method.id());
-                }
-            }
-        }
+        });
         text
     }
 }
@@ -118,7 +129,7 @@ impl std::fmt::Display for Tuning {
             "  {}: {:.4} ms, error at most {:.4} %",
             chosen.setting,
             chosen.milliseconds(),
-            study.error_bound(chosen)
+            study.ranking().error_bound(chosen)
         )?;
         write!(
             f,

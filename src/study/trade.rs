@@ -8,11 +8,10 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 use web_time::{Duration, Instant};
 
-use super::bound::{at_most, undecided};
 use super::fine::{Effort, finest_element};
 use super::parallel;
-use super::pareto;
 use super::progress::{Extent, StudyError, all_done, check};
+use super::ranking::{Ranked, Ranking};
 use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
 use super::timing::{expected_time, times_from_rest};
 use crate::assembly::System;
@@ -153,6 +152,28 @@ impl Measurement {
     }
 }
 
+impl Ranked for Measurement {
+    fn setting_text(&self) -> Sentence {
+        (&self.setting).into()
+    }
+
+    fn time_ms(&self) -> f64 {
+        self.milliseconds()
+    }
+
+    fn time_text(&self) -> String {
+        format!("{:.4} ms", self.milliseconds())
+    }
+
+    fn error_percent(&self) -> f64 {
+        self.error.bound()
+    }
+
+    fn is_pareto(&self) -> bool {
+        self.pareto
+    }
+}
+
 /// Speed–accuracy study of a scene.
 ///
 /// See [`Study::new`](crate::Study::new) for an example.
@@ -183,7 +204,7 @@ impl Study {
     /// ```
     /// use std::ops::ControlFlow;
     /// use warpbeam::{
-    ///     Demand, ErrorSplit, Extent, Measurement, Observer, Progress, Scene, Sentence, Setting, Study, StudyError,
+    ///     Demand, ErrorSplit, Extent, Measurement, Observer, Progress, Ranking, Scene, Sentence, Setting, Study, StudyError,
     /// };
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
@@ -193,7 +214,8 @@ impl Study {
     /// };
     /// let study = Study::new(&scene, Extent::Quick, observe)?;
     /// let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(100.0) };
-    /// for Measurement { setting, error, .. } in study.meeting(demand) {
+    /// let ranking: Ranking<'_, Measurement> = study.ranking();
+    /// for Measurement { setting, error, .. } in ranking.meeting(demand) {
     ///     let (Setting { iterations, .. }, ErrorSplit { discretization, iteration, model, .. }) = (setting, error);
     ///     println!("{setting}: mesh {discretization} %, stopped after {iterations}: {iteration} %, theory {model} %");
     ///     assert!(discretization + iteration + model <= 5.0);
@@ -328,42 +350,14 @@ impl Study {
     }
 
     fn mark_pareto(&mut self) {
-        let pairs = self.times_and_errors();
-        for (m, front) in self.measurements.iter_mut().zip(pareto::front(&pairs)) {
-            m.pareto = front;
-        }
+        let front = self.ranking().pareto(0.0);
+        self.measurements.iter_mut().zip(front).for_each(|(m, front)| m.pareto = front);
     }
 
-    /// Returns the Pareto-optimal measurements, cheapest first.
+    /// Returns the measurements, ranked by time and error.
     #[must_use]
-    pub fn front(&self) -> Vec<&Measurement> {
-        let mut front: Vec<&Measurement> = self.measurements.iter().filter(|m| m.pareto).collect();
-        front.sort_by_key(|m| m.time.total());
-        front
-    }
-
-    /// Returns the bound of the error of a measurement, percent of the displacement: its parts, and the error of the
-    /// reference.
-    #[must_use]
-    pub fn error_bound(&self, measurement: &Measurement) -> f64 {
-        at_most(measurement.error.bound(), self.against.own_error_percent)
-    }
-
-    /// Returns for every measurement `true` if its rank is undecided: its error and the smallest one of faster settings
-    /// differ by less than the reference's own error.
-    #[must_use]
-    pub fn undecided(&self) -> Vec<bool> {
-        undecided(&self.times_and_errors(), self.against.own_error_percent)
-    }
-
-    fn times_and_errors(&self) -> Vec<(f64, f64)> {
-        self.measurements.iter().map(|m| (m.milliseconds(), m.error.bound())).collect()
-    }
-
-    /// Returns the cheapest measurement whose error is at most `percent`.
-    #[must_use]
-    pub fn cheapest_within(&self, percent: f64) -> Option<&Measurement> {
-        self.front().into_iter().find(|m| self.error_bound(m) <= percent)
+    pub fn ranking(&self) -> Ranking<'_, Measurement> {
+        Ranking { measurements: &self.measurements, own_error_percent: self.against.own_error_percent }
     }
 }
 

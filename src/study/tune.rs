@@ -1,62 +1,11 @@
 //! Tuning: choice of the cheapest element, mesh and method for a required accuracy and time.
 
 use super::progress::{Extent, StudyError};
+use super::ranking::Demand;
 use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
 use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::sentence::sentence;
-
-/// Requirements for a solve; `None` for no requirement.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Demand {
-    /// Largest error, percent of the exact displacement.
-    pub max_error_percent: Option<f64>,
-    /// Largest computing time, ms.
-    pub max_time_ms: Option<f64>,
-}
-
-impl Demand {
-    pub(super) fn time_is_met(self, measurement: &Measurement) -> bool {
-        self.max_time_ms.is_none_or(|most| measurement.milliseconds() <= most)
-    }
-}
-
-impl std::fmt::Display for Demand {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match (self.max_error_percent, self.max_time_ms) {
-            (Some(error), Some(time)) => write!(f, "at most {error} % error and {time} ms"),
-            (Some(error), None) => write!(f, "at most {error} % error"),
-            (None, Some(time)) => write!(f, "at most {time} ms"),
-            (None, None) => write!(f, "no requirement"),
-        }
-    }
-}
-
-impl Study {
-    /// Returns `true` if a measurement meets a demand; the reference's own error is added to that of the measurement.
-    #[must_use]
-    pub fn meets(&self, measurement: &Measurement, demand: Demand) -> bool {
-        let error = self.error_bound(measurement);
-        demand.max_error_percent.is_none_or(|most| error <= most) && demand.time_is_met(measurement)
-    }
-
-    /// Returns `false` if the reference's own error is at least the demanded one, so that it cannot be decided which
-    /// settings meet the demand.
-    #[must_use]
-    pub fn can_judge(&self, demand: Demand) -> bool {
-        demand.max_error_percent.is_none_or(|most| self.against.own_error_percent < most)
-    }
-
-    /// Returns the measurements that meet a demand, cheapest first.
-    #[must_use]
-    pub fn meeting(&self, demand: Demand) -> Vec<&Measurement> {
-        let mut meeting: Vec<&Measurement> = self.measurements.iter().filter(|m| self.meets(m, demand)).collect();
-        meeting.sort_by_key(|m| m.time.total());
-        meeting
-    }
-}
 
 /// Setting chosen for a demand, with the measurements behind the choice.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +45,7 @@ impl Tuning {
         meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));
         let all: f64 = meshes.iter().map(|m| m.weight).sum();
         let mut study = Study::begin(scene, observe)?;
-        if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_judge(demand)) {
+        if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.ranking().can_decide(demand)) {
             return Err(StudyError::NotKnown { own_percent: study.against.own_error_percent, asked_percent });
         }
         let (mut enough, mut done, mut is_partial) = (f64::INFINITY, 0.0, false);
@@ -121,7 +70,8 @@ impl Tuning {
             measured?;
             done += weight;
             let added = &study.measurements[before..];
-            let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
+            let met = demand.max_error_percent.is_some()
+                && added.iter().any(|m| m.converged && study.ranking().meets(m, demand));
             let fastest = added.iter().map(Measurement::milliseconds).fold(f64::INFINITY, f64::min);
             let slow = demand.max_time_ms.is_some_and(|most| fastest > TOO_SLOW * most);
             if met || slow {
@@ -129,12 +79,12 @@ impl Tuning {
             }
         }
         let ended: Vec<&Measurement> = study.measurements.iter().filter(|m| m.converged).collect();
-        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.meets(m, demand)).collect();
+        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.ranking().meets(m, demand)).collect();
         let fastest = |of: &[&Measurement]| of.iter().copied().min_by_key(|m| m.time.total()).copied();
         let closest = |of: &[&Measurement]| {
             of.iter().copied().min_by(|a, b| a.error.bound().total_cmp(&b.error.bound())).copied()
         };
-        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
+        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(*m)).collect();
         let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
         let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match is_partial {
             true => StudyError::Cancelled,

@@ -133,19 +133,19 @@ fn a_swing_is_studied() {
         assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
     }
     // No setting is better than the front, every other setting is worse, and the front is sorted by time and by error.
-    let pair = |m: &MotionMeasurement| (m.milliseconds, study.resolved(m.error.unwrap().bound()));
+    let pair = |m: &MotionMeasurement| (m.milliseconds, m.error.unwrap().bound().max(own));
     for m in &study.measurements {
         let (time, error) = pair(m);
         let beaten =
             study.measurements.iter().map(pair).any(|(t, e)| t <= time && e <= error && (t, e) != (time, error));
         assert_eq!(m.pareto, !beaten, "{}", m.setting);
     }
-    let front: Vec<_> = study.front().into_iter().map(pair).collect();
+    let front: Vec<_> = study.ranking().front().into_iter().map(pair).collect();
     assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
     // The error of the chosen setting and the reference's own error are together within the requested error.
-    let chosen = study.fastest_within(10.0).unwrap();
+    let chosen = study.ranking().within(10.0)[0];
     assert!(chosen.error.unwrap().bound() + own <= 10.0);
-    assert!(study.fastest_within(0.5 * own).is_none());
+    assert!(study.ranking().within(0.5 * own).is_empty());
 }
 
 /// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
@@ -170,7 +170,7 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
             if is_enough(meshes.len(), *timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let study = MotionStudy::new(&scene, Extent::Quick, &observe).unwrap();
-        assert!(!study.front().is_empty() && !study.summary().contains("NaN"));
+        assert!(!study.ranking().front().is_empty() && !study.summary().contains("NaN"));
         let mut meshes: Vec<_> = study.measurements.iter().map(|m| (m.setting.element, m.setting.cells)).collect();
         meshes.dedup();
         (study.is_partial, meshes.len(), study.measurements.len())
@@ -407,11 +407,11 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = rows.next().unwrap();
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
-    let undecided = study.undecided();
+    let undecided = study.ranking().undecided();
     for ((row, m), undecided) in rows.zip(&study.measurements).zip(&undecided) {
         let at_most: f64 = row[column("at_most_percent")].parse().unwrap();
         assert!((at_most - m.error.bound() - own).abs() < 1e-9 * at_most, "{row:?}");
-        assert!((study.error_bound(m) - at_most).abs() < 1e-9 * at_most);
+        assert!((study.ranking().error_bound(m) - at_most).abs() < 1e-9 * at_most);
         assert_eq!(row[column("undecided")], undecided.to_string());
         let faster = study.measurements.iter().filter(|o| *o != m && o.milliseconds() <= m.milliseconds());
         let best = faster.map(|o| o.error.bound()).fold(f64::INFINITY, f64::min);
@@ -420,9 +420,9 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     assert!(undecided.contains(&true) && undecided.contains(&false));
     let front = summary.lines().skip_while(|line| !line.contains("at most, %")).skip(1);
     let mut marked = false;
-    for (line, m) in front.zip(study.front()) {
+    for (line, m) in front.zip(study.ranking().front()) {
         let stated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
-        assert!(stated >= own && (stated - study.error_bound(m)).abs() < 1e-4, "{line}");
+        assert!(stated >= own && (stated - study.ranking().error_bound(m)).abs() < 1e-4, "{line}");
         let index = study.measurements.iter().position(|o| o == m).unwrap();
         assert_eq!(line.ends_with("(rank undecided)"), undecided[index], "{line}");
         marked |= undecided[index];
@@ -434,13 +434,16 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     // `tune` states the same bound.
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
     let tuning = Tuning::of(&scene("shear"), demand, &go_on).unwrap();
-    let bound = format!("error at most {:.4} %", tuning.study.error_bound(&tuning.chosen));
+    let bound = format!("error at most {:.4} %", tuning.study.ranking().error_bound(&tuning.chosen));
     assert!(tuning.to_string().contains(&bound), "{tuning}");
     let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &go_on).unwrap();
     let own = moving.reference.error_percent;
-    for m in moving.front() {
-        let bound = moving.error_bound(m).unwrap();
-        assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12 && moving.is_within(m, bound));
+    for m in moving.ranking().front() {
+        let bound = moving.ranking().error_bound(m);
+        assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12);
+        assert!(
+            moving.ranking().within(bound).contains(&m) && !moving.ranking().within(bound.next_down()).contains(&m)
+        );
         assert!(moving.summary().contains(&format!(" {bound:.4} ")), "{}", moving.summary());
     }
 }

@@ -7,7 +7,7 @@ use crate::files::rust_files;
 
 const LIST: &str = "tests/data/public_api.txt";
 /// Largest number of public types.
-const MAX_TYPES: usize = 87;
+const MAX_TYPES: usize = 88;
 
 /// Folders of `src` whose types are not in the face.
 pub const OUTSIDE: [&str; 6] = ["src/app", "src/cli", "src/plot", "src/render", "src/bin", "src/study/extremes"];

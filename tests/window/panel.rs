@@ -790,7 +790,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
 
     type_into(&mut harness, "Time ≤", "1e5");
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) };
-    let meeting = study.meeting(demand);
+    let meeting = study.ranking().meeting(demand);
     assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());
     let words = format!("{} of {} settings meet both", meeting.len(), study.measurements.len());
     assert!(harness.query_by_label(&words).is_some(), "{words}");
@@ -994,7 +994,7 @@ fn a_motions_settings_are_measured_and_applied() {
     type_into(&mut harness, "Error ≤", "20");
     type_into(&mut harness, "Time ≤", "100");
     harness.run_steps(4);
-    let is_met = |m: &&MotionMeasurement| study.is_within(m, 20.0) && m.milliseconds / 60.0 <= 100.0;
+    let is_met = |m: &&MotionMeasurement| study.ranking().error_bound(m) <= 20.0 && m.milliseconds / 60.0 <= 100.0;
     let meeting: Vec<_> = study.measurements.iter().filter(is_met).collect();
     let all = study.measurements.iter().filter(|m| m.error.is_some()).count();
     harness.get_by_label(&format!("{} of {all} settings meet both", meeting.len()));

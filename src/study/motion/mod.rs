@@ -9,11 +9,10 @@ use nalgebra::Vector2;
 use self::plan::{Job, MeshPlan, Plan, Samples, cells};
 pub use self::reference::MotionReference;
 use self::reference::fine_path;
-use super::bound::{at_most, undecided};
 use super::fine::finest_element;
 use super::parallel;
-use super::pareto;
 use super::progress::{Extent, StudyError, all_done, check};
+use super::ranking::{Ranked, Ranking};
 use super::reference::{first_probe, system_of};
 use super::timing::{Runs, median_time};
 use super::trade::{Setting, mesh_text};
@@ -233,6 +232,28 @@ impl MotionMeasurement {
     }
 }
 
+impl Ranked for MotionMeasurement {
+    fn setting_text(&self) -> Sentence {
+        (&self.setting).into()
+    }
+
+    fn time_ms(&self) -> f64 {
+        self.milliseconds
+    }
+
+    fn time_text(&self) -> String {
+        format!("{:.3} ms per simulated second", self.milliseconds)
+    }
+
+    fn error_percent(&self) -> f64 {
+        self.error.map_or(f64::INFINITY, |error| error.bound())
+    }
+
+    fn is_pareto(&self) -> bool {
+        self.pareto
+    }
+}
+
 /// Speed–accuracy study of a motion.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
@@ -372,14 +393,14 @@ impl MotionStudy {
     }
 
     fn mark_pareto(&mut self) {
-        let pairs = self.measurements.iter().map(|m| {
-            let error = m.error.map_or(f64::INFINITY, |e| self.resolved(e.bound()));
-            (m.milliseconds, error)
-        });
-        let front = pareto::front(&pairs.collect::<Vec<_>>());
-        for (m, front) in self.measurements.iter_mut().zip(front) {
-            m.pareto = front;
-        }
+        let front = self.ranking().pareto(self.reference.error_percent);
+        self.measurements.iter_mut().zip(front).for_each(|(m, front)| m.pareto = front);
+    }
+
+    /// Returns the measurements, ranked by time and error.
+    #[must_use]
+    pub fn ranking(&self) -> Ranking<'_, MotionMeasurement> {
+        Ranking { measurements: &self.measurements, own_error_percent: self.reference.error_percent }
     }
 
     fn error(&self, run: &FirstRun, mesh: &Meshed) -> PathError {
@@ -393,53 +414,6 @@ impl MotionStudy {
             integration: reference.distance(path, own)[0],
             model: reference.distance(own, &mesh.exact)[0],
         }
-    }
-
-    /// Returns an error limited from below by the reference's own error, percent.
-    #[must_use]
-    pub fn resolved(&self, percent: f64) -> f64 {
-        percent.max(self.reference.error_percent)
-    }
-
-    /// Returns `true` if the error of a measurement plus the reference's own error is at most `percent`.
-    #[must_use]
-    pub fn is_within(&self, measurement: &MotionMeasurement, percent: f64) -> bool {
-        self.error_bound(measurement).is_some_and(|bound| bound <= percent)
-    }
-
-    /// Returns the bound of the error of a measurement, percent of the size of the path: its parts, and the error of
-    /// the reference; `None` for a motion that did not finish.
-    #[must_use]
-    pub fn error_bound(&self, measurement: &MotionMeasurement) -> Option<f64> {
-        measurement.error.map(|e| at_most(e.bound(), self.reference.error_percent))
-    }
-
-    /// Returns for every measurement `true` if its rank is undecided: its error and the smallest one of faster settings
-    /// differ by less than the reference's own error.
-    #[must_use]
-    pub fn undecided(&self) -> Vec<bool> {
-        let error = |m: &MotionMeasurement| m.error.map_or(f64::INFINITY, |e| e.bound());
-        let pairs: Vec<_> = self.measurements.iter().map(|m| (m.milliseconds, error(m))).collect();
-        undecided(&pairs, self.reference.error_percent)
-    }
-
-    /// Returns the Pareto-optimal measurements, fastest first.
-    #[must_use]
-    pub fn front(&self) -> Vec<&MotionMeasurement> {
-        let mut front: Vec<_> = self.measurements.iter().filter(|m| m.pareto).collect();
-        front.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
-        front
-    }
-
-    /// Returns the fastest measurement whose error plus the reference's own error is at most `percent`.
-    #[must_use]
-    pub fn fastest_within(&self, percent: f64) -> Option<&MotionMeasurement> {
-        self.fastest_of(percent, |_| true)
-    }
-
-    fn fastest_of(&self, percent: f64, which: impl Fn(&MotionMeasurement) -> bool) -> Option<&MotionMeasurement> {
-        let surely = |m: &&MotionMeasurement| self.is_within(m, percent) && which(m);
-        self.measurements.iter().filter(surely).min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds))
     }
 }
 

@@ -2,12 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, REAL_TIME, step_text};
+use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, PathError, REAL_TIME, step_text};
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
-use crate::study::claim::Claim;
-use crate::study::report::UNDECIDED;
+use crate::study::ranking::Ranked;
 use crate::study::trade::mesh_text;
 
 impl MotionStudy {
@@ -19,7 +18,8 @@ impl MotionStudy {
         let mut text = String::from(
             "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided\n",
         );
-        for (m, undecided) in self.measurements.iter().zip(self.undecided()) {
+        let ranking = self.ranking();
+        for (m, undecided) in self.measurements.iter().zip(ranking.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let error = m.error.map_or_else(
                 || ",,,,,,".to_owned(),
@@ -46,7 +46,7 @@ impl MotionStudy {
                 m.counts.solves,
                 m.counts.factorizations,
                 m.pareto,
-                self.error_bound(m).map_or_else(String::new, |bound| format!("{bound:e}"))
+                m.error.map_or_else(String::new, |_| format!("{:e}", ranking.error_bound(m)))
             );
         }
         text
@@ -73,29 +73,15 @@ impl MotionStudy {
         text.push_str(
             "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
         );
-        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
-        let mut front: Vec<_> = ranked.collect();
-        front.sort_by(|(a, _), (b, _)| a.milliseconds.total_cmp(&b.milliseconds));
-        for (m, undecided) in &front {
-            let (Some(e), Some(bound)) = (m.error, self.error_bound(m)) else { continue };
-            let _ = writeln!(
-                text,
-                "{:12.3} {bound:12.4} {:11.4} {:11.4} {:12.4} {:11.4} {:14.4} {:11.4}   {}{}",
-                m.milliseconds,
-                e.total,
-                e.rms,
-                e.discretization,
-                e.integration,
-                e.model,
-                m.drift_percent,
-                m.setting,
-                if *undecided { UNDECIDED } else { "" }
-            );
-        }
-        if front.iter().any(|(_, undecided)| *undecided) {
-            let _ = writeln!(text, "{}", Claim::Undecided(self.reference.error_percent));
-        }
-        text.push('\n');
+        let ranking = self.ranking();
+        ranking.add_front(&mut text, |m| {
+            let bound = ranking.error_bound(m);
+            let parts = m.error.map_or_else(String::new, |e| {
+                let PathError { total, rms, discretization, integration, model } = e;
+                format!("{total:11.4} {rms:11.4} {discretization:12.4} {integration:11.4} {model:14.4}")
+            });
+            format!("{:12.3} {bound:12.4} {parts} {:11.4}", m.milliseconds, m.drift_percent)
+        });
         self.costs(&mut text);
         self.steps(&mut text);
         self.auto(&mut text);
@@ -105,24 +91,22 @@ impl MotionStudy {
 
     /// Adds the cost of given errors with every integrator.
     fn costs(&self, text: &mut String) {
-        for percent in [10.0, 1.0, 0.1] {
-            let claim = Claim::of_motions(self, percent);
-            let _ = writeln!(text, "{claim}");
-            if matches!(claim, Claim::NotKnown { .. }) {
-                continue;
-            }
+        let ranking = self.ranking();
+        ranking.add_costs(text, |text, percent| {
+            let within = ranking.within(percent);
             for integrator in INTEGRATORS {
-                let own = self.fastest_of(percent, |m| m.setting.integrator == integrator.kind);
-                let cost = own.map_or_else(|| "not reached".to_owned(), time_text);
+                let own = within.iter().find(|m| m.setting.integrator == integrator.kind);
+                let cost = own.map_or_else(|| "not reached".to_owned(), |m| cost_text(m));
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
-        }
-        let real = self.fastest_of(1.0, |m| m.milliseconds <= REAL_TIME);
+        });
+        let close = ranking.within(1.0);
+        let real = close.first().filter(|m| m.milliseconds <= REAL_TIME);
         let cost = real.map_or_else(
-            || match self.fastest_within(1.0) {
+            || match close.first() {
                 None => "no measured setting is within 1 %".to_owned(),
                 Some(fastest) => {
-                    format!("within 1 %, no measured setting runs in real time; the fastest: {}", time_text(fastest))
+                    format!("within 1 %, no measured setting runs in real time; the fastest: {}", cost_text(fastest))
                 }
             },
             |m| {
@@ -212,8 +196,8 @@ impl MotionStudy {
     }
 }
 
-fn time_text(m: &MotionMeasurement) -> String {
-    format!("{:.3} ms per simulated second, {}", m.milliseconds, m.setting)
+fn cost_text(m: &MotionMeasurement) -> String {
+    format!("{}, {}", m.time_text(), m.setting)
 }
 
 /// Rounds to six decimal places, for sums of steps.

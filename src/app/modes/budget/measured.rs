@@ -6,7 +6,7 @@ use egui::Color32;
 use crate::app::language::{count, fill, percent, said, tr};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
-use crate::plot::{LARGEST_ERROR, drawn_error};
+use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
 use crate::study::{Demand, Measurement, MotionStudy, Study};
@@ -47,22 +47,18 @@ impl Measured {
     /// Returns the Pareto-optimal settings, fastest first.
     pub(crate) fn front(&self) -> Vec<Choice> {
         match self {
-            Self::Rest(study) => study.front().into_iter().copied().map(Choice::Rest).collect(),
-            Self::Motion(study) => study.front().into_iter().copied().map(Choice::Motion).collect(),
+            Self::Rest(study) => study.ranking().front().into_iter().copied().map(Choice::Rest).collect(),
+            Self::Motion(study) => study.ranking().front().into_iter().copied().map(Choice::Motion).collect(),
         }
     }
 
     /// Returns the settings that meet a demand, fastest first. For a motion, the time is that of a frame.
     pub(crate) fn meeting(&self, demand: Demand) -> Vec<Choice> {
         match self {
-            Self::Rest(study) => study.meeting(demand).into_iter().copied().map(Choice::Rest).collect(),
+            Self::Rest(study) => study.ranking().meeting(demand).into_iter().copied().map(Choice::Rest).collect(),
             Self::Motion(study) => {
-                let is_close = |m: &&MotionMeasurement| demand.max_error_percent.is_none_or(|p| study.is_within(m, p));
-                let all = study.measurements.iter().filter(is_close).copied().map(Choice::Motion);
-                let is_fast = |choice: &Choice| demand.max_time_ms.is_none_or(|most| choice.milliseconds() <= most);
-                let mut meeting: Vec<_> = all.filter(is_fast).collect();
-                meeting.sort_by(|a, b| a.milliseconds().total_cmp(&b.milliseconds()));
-                meeting
+                let demand = Demand { max_time_ms: demand.max_time_ms.map(|frame| frame * FRAMES), ..demand };
+                study.ranking().meeting(demand).into_iter().copied().map(Choice::Motion).collect()
             }
         }
     }
@@ -96,21 +92,17 @@ impl Measured {
 
     /// Returns the error of a setting in the plot, percent.
     pub(crate) fn drawn_error(&self, choice: &Choice) -> f64 {
-        match (self, choice) {
-            (Self::Rest(study), Choice::Rest(m)) => drawn_error(study, m),
-            _ => self.error_percent(choice).min(LARGEST_ERROR),
-        }
+        self.error_percent(choice).clamp(SMALLEST_ERROR, LARGEST_ERROR)
     }
 
     /// Returns the error bound of a setting, percent, including the error of the reference solution; infinite for a
     /// motion that did not finish.
     pub(crate) fn error_percent(&self, choice: &Choice) -> f64 {
-        let bound = match (self, choice) {
-            (Self::Rest(study), Choice::Rest(m)) => Some(study.error_bound(m)),
-            (Self::Motion(study), Choice::Motion(m)) => study.error_bound(m),
-            _ => None,
-        };
-        bound.unwrap_or(f64::INFINITY)
+        match (self, choice) {
+            (Self::Rest(study), Choice::Rest(m)) => study.ranking().error_bound(m),
+            (Self::Motion(study), Choice::Motion(m)) => study.ranking().error_bound(m),
+            _ => f64::INFINITY,
+        }
     }
 }
 

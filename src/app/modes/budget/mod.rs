@@ -114,7 +114,7 @@ impl Budget {
 
     /// Returns the fastest measured setting of a body at rest that meets the limits.
     pub(crate) fn chosen(&self) -> Option<Setting> {
-        self.study()?.meeting(self.limits.into()).first().map(|m| m.setting)
+        self.study()?.ranking().meeting(self.limits.into()).first().map(|m| m.setting)
     }
 
     /// Sets a study made elsewhere.

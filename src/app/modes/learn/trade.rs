@@ -23,9 +23,10 @@ pub(super) fn best(
     method: MethodKind,
     percent: f64,
 ) -> Option<(Measurement, bool)> {
-    let own = study.measurements.iter().filter(|m| (m.setting.element, m.setting.method) == (element, method));
-    let good = own.clone().filter(|m| study.error_bound(m) <= percent).min_by_key(|m| m.time.total());
-    let closest = || own.min_by(|a, b| study.error_bound(a).total_cmp(&study.error_bound(b)));
+    let is_own = |m: &&Measurement| (m.setting.element, m.setting.method) == (element, method);
+    let good = study.ranking().within(percent).into_iter().find(is_own);
+    let closest =
+        || study.measurements.iter().filter(is_own).min_by(|a, b| a.error.bound().total_cmp(&b.error.bound()));
     good.map(|m| (*m, true)).or_else(|| Some((*closest()?, false)))
 }
 
@@ -64,7 +65,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             for method in METHODS {
                 let best = shown.study.and_then(|study| {
                     let (m, good) = best(study, element, method.kind, learn.asked)?;
-                    Some((m, study.error_bound(&m), good))
+                    Some((m, study.ranking().error_bound(&m), good))
                 });
                 cell(ui, &palette, best.as_ref());
             }
