@@ -1,23 +1,27 @@
-//! JSON output of commands, as documented.
+//! JSON output of commands, as documented. A number that is not finite serializes to `null`.
 
 use std::time::Duration;
 
-use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::solved::SolvedScene;
 use crate::scene::{Analysis, Place, Scene, Support};
-use crate::section::{Section, SectionForces, SectionPoint};
+use crate::section::{Section, SectionPoint};
 use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
+
+/// Formats an object for standard output.
+pub(super) fn text(object: &Value) -> String {
+    format!("{object:#}\n")
+}
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
-    let known = |value: f64| if diverged { Value::Null } else { number(value) };
+    let known = |value: f64| (!diverged).then_some(value);
     let stress = if diverged { &StressResult::default() } else { stress };
     let references = reference.map_or(&[][..], Reference::probes);
     let probes = solution.probes.iter().enumerate();
@@ -39,25 +43,25 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "reason": solution.status.failure(),
         "stable": certificate.stable,
         "jumped": path.map(|path| path.jump.is_some()),
-        "jumped_at": path.and_then(|path| path.jump).map(|jump| number(jump.factor)),
-        "buckles_at": path.and_then(|path| path.buckling).map(|buckling| number(buckling.factor)),
+        "jumped_at": path.and_then(|path| path.jump).map(|jump| jump.factor),
+        "buckles_at": path.and_then(|path| path.buckling).map(|buckling| buckling.factor),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
-        "load_fraction": (scene.analysis == Analysis::Static).then(|| number(solution.load_factor)),
+        "load_fraction": (scene.analysis == Analysis::Static).then_some(solution.load_factor),
         "on_path_from_rest": path.map(|path| path.elsewhere.is_none()),
-        "residual": number(solution.residual),
-        "residual_floor": solution.residual_floor.map(number),
-        "fixed_point_rho": certificate.fixed_point_rho.map(number),
+        "residual": solution.residual,
+        "residual_floor": solution.residual_floor,
+        "fixed_point_rho": certificate.fixed_point_rho,
         "max_rotation_deg": known(deformation.max_rotation_deg),
         "max_strain": known(deformation.max_strain),
         "inverted_elements": deformation.inverted_elements,
         "max_von_mises": stress.largest.map(|largest| json!({
-            "value": number(largest.von_mises),
+            "value": largest.von_mises,
             "stress": "cauchy",
             "node": mesh.node_name(largest.node),
-            "at": pair(largest.at),
+            "at": largest.at,
         })),
-        "mesh_error_percent": stress.mesh_error_percent.map(number),
+        "mesh_error_percent": stress.mesh_error_percent,
         "mesh_error_of": "estimate: energy norm",
         "claims": claims.iter().map(|claim| json!({ "claim": claim.id(), "text": claim.to_string() })).collect::<Value>(),
         "warnings": warnings,
@@ -66,12 +70,12 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "energy": {
             "elastic": known(solution.energy.elastic),
             "external": known(solution.energy.external),
-            "supports": solution.energy.supports.map(number),
+            "supports": solution.energy.supports,
             // Null at rest.
-            "kinetic": solution.motion.map(|m| number(m.ledger.kinetic)),
-            "dissipated": solution.motion.map(|m| number(m.ledger.dissipated)),
+            "kinetic": solution.motion.map(|m| m.ledger.kinetic),
+            "dissipated": solution.motion.map(|m| m.ledger.dissipated),
         },
-        "reaction": { "force": pair(solution.reaction.force), "moment": number(solution.reaction.moment) },
+        "reaction": solution.reaction,
         "supports": supports,
         "time_us": time_us,
     });
@@ -79,7 +83,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     if let Some(auto) = &solution.auto {
         object["auto"] = json!({
             "decision": auto.decision.id(),
-            "estimated_error_percent": number(100.0 * auto.estimated_error),
+            "estimated_error_percent": 100.0 * auto.estimated_error,
             "solves": auto.solves,
             "factorizations": auto.factorizations,
         });
@@ -87,56 +91,49 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     if let Some(motion) = &solution.motion {
         add_motion(&mut object, scene, motion);
     }
-    format!("{object:#}\n")
+    text(&object)
 }
 
 /// Adds the values of a motion to the object.
 fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     let MotionResult { time, counts, ledger, momentum, critical_step, auto, .. } = motion;
     object["integrator"] = json!(scene.dynamics.integrator.id());
-    object["time"] = number(*time);
+    object["time"] = json!(time);
     object["steps"] = json!(counts.steps);
     object["halvings"] = json!(counts.halvings);
-    object["critical_step"] = critical_step.map_or(Value::Null, number);
-    object["energy_drift"] = number(ledger.drift());
-    object["energy_drift_of_input"] = number(ledger.drift_of_input());
+    object["critical_step"] = json!(critical_step);
+    object["energy_drift"] = json!(ledger.drift());
+    object["energy_drift_of_input"] = json!(ledger.drift_of_input());
     if let Some(auto) = auto {
-        object["auto"] = json!({
-            "decision": auto.decision.id(),
-            "solves": auto.solves,
-            "factorizations": auto.factorizations,
-            "linear_steps": auto.linear_steps,
-            "old_factor_steps": auto.old_factor_steps,
-            "new_factor_steps": auto.new_factor_steps,
-        });
+        object["auto"] = json!(auto);
     }
-    object["momentum"] = json!({ "linear": pair(momentum.linear), "angular": number(momentum.angular) });
+    object["momentum"] = json!(momentum);
     let energy = &mut object["energy"];
-    energy["integrator"] = number(ledger.integrator);
-    energy["pulses"] = number(ledger.pulses);
-    energy["hands"] = number(ledger.mouse_spring);
+    energy["integrator"] = json!(ledger.integrator);
+    energy["pulses"] = json!(ledger.pulses);
+    energy["hands"] = json!(ledger.mouse_spring);
 }
 
 fn tensor(tensor: &PlaneTensor) -> Value {
-    let [xx, yy, zz, xy] = tensor.components().map(number);
+    let [xx, yy, zz, xy] = tensor.components();
     json!({ "xx": xx, "yy": yy, "zz": zz, "xy": xy })
 }
 
 fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&ProbeReference>) -> Value {
-    let (u, source) = (reference.map(|r| pair(r.displacement)), reference.map(|r| r.source));
+    let (u, source) = (reference.map(|r| r.displacement), reference.map(|r| r.source));
     let cauchy = stress.and_then(|s| s.cauchy);
     json!({
         "name": result.name,
-        "x": pair(result.x),
-        "u": pair(result.u),
-        "rotation_deg": stress.map(|s| number(s.rotation_deg)),
+        "x": result.x,
+        "u": result.u,
+        "rotation_deg": stress.map(|s| s.rotation_deg),
         "strain": stress.map(|s| tensor(&s.strain)),
         "stress": cauchy.map(|s| tensor(&s)),
-        "von_mises": cauchy.map(|s| number(s.von_mises())),
+        "von_mises": cauchy.map(|s| s.von_mises()),
         "reference_u": u,
         "reference_source": source.map(|source| source.to_string()),
-        "reference_error_percent": reference.map(|r| number(r.own_error_percent)),
-        "error_percent": reference.and_then(|r| r.error_percent(result)).map(number),
+        "reference_error_percent": reference.map(|r| r.own_error_percent),
+        "error_percent": reference.and_then(|r| r.error_percent(result)),
         // Deprecated names of version 0.1, kept for one more version.
         "truth_u": u,
         "truth_source": source.map(|source| source.to_string()),
@@ -145,59 +142,43 @@ fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&
 
 /// Formats a support and its reaction; the moment is about the middle of its edge.
 fn support(support: &Support, reaction: &SupportReaction) -> Value {
-    let mut object = Map::new();
-    match &support.place {
-        Place::Edge(edge) => object.insert("edge".to_owned(), json!(edge)),
-        Place::At(at) => object.insert("at".to_owned(), json!(at)),
+    let (key, place) = match &support.place {
+        Place::Edge(edge) => ("edge", json!(edge)),
+        Place::At(at) => ("at", json!(at)),
     };
-    object.insert("displacement".to_owned(), pair(support.displacement.into()));
-    object.insert("turn".to_owned(), number(support.turn));
-    object.insert("force".to_owned(), pair(reaction.force));
-    object.insert("moment".to_owned(), number(reaction.moment));
-    Value::Object(object)
+    json!({
+        key: place,
+        "displacement": support.displacement,
+        "turn": support.turn,
+        "force": reaction.force,
+        "moment": reaction.moment,
+    })
 }
 
 /// Returns a section as JSON.
 pub(super) fn section(section: &Section) -> Value {
-    let ends = |ends: [Vector2<f64>; 2]| json!(ends.map(pair));
-    let forces = |forces: &SectionForces| {
-        json!({
-            "normal_force": number(forces.normal),
-            "shear_force": number(forces.shear),
-            "moment": number(forces.moment),
-        })
-    };
     let point = |point: &SectionPoint| {
         json!({
-            "rest": pair(point.rest),
-            "along": number(point.along),
-            "normal_stress": point.stress.map(|stress| number(stress[0])),
-            "shear_stress": point.stress.map(|stress| number(stress[1])),
-            "beam_normal_stress": point.beam.map(|beam| number(beam[0])),
-            "beam_shear_stress": point.beam.map(|beam| number(beam[1])),
+            "rest": point.rest,
+            "along": point.along,
+            "normal_stress": point.stress.map(|stress| stress[0]),
+            "shear_stress": point.stress.map(|stress| stress[1]),
+            "beam_normal_stress": point.beam.map(|beam| beam[0]),
+            "beam_shear_stress": point.beam.map(|beam| beam[1]),
         })
     };
-    let mut object = forces(&section.forces);
-    object["at"] = pair(section.line.at);
-    object["angle"] = number(section.line.angle);
-    object["rest"] = ends(section.rest);
-    object["ends"] = ends(section.ends);
-    object["normal"] = pair(section.normal());
-    object["force"] = pair(section.force);
-    object["of_stress"] = forces(&section.stress_forces);
+    let mut object = json!(section.forces);
+    object["at"] = json!(section.line.at);
+    object["angle"] = json!(section.line.angle);
+    object["rest"] = json!(section.rest);
+    object["ends"] = json!(section.ends);
+    object["normal"] = json!(section.normal());
+    object["force"] = json!(section.force);
+    object["of_stress"] = json!(section.stress_forces);
     object["points"] = section.points.iter().map(point).collect::<Value>();
     object
 }
 
-pub(super) fn pair(v: Vector2<f64>) -> Value {
-    json!([number(v.x), number(v.y)])
-}
-
 fn microseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6
-}
-
-/// Returns a number, or `null` if it is not finite.
-pub(super) fn number(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
 }

@@ -75,25 +75,22 @@ fn table(limits: &MethodLimits) -> String {
 fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
     let axis = LoadAxis::of(scene);
     let strip = |strip: &Strip| {
-        let within = |percent: f64| strip.within(percent).map(json::number);
         json!({
             "element": strip.element.id(),
             "method": strip.method.id(),
-            "within_1_percent": within(GOOD),
-            "within_5_percent": within(USABLE),
-            "error_known_to": strip.last_known().map(|(factor, _)| json::number(factor)),
-            "converges_to": strip.ends_at.map(json::number),
-            "law_ends_at": strip.law_ends_at().map(json::number),
+            "within_1_percent": strip.within(GOOD),
+            "within_5_percent": strip.within(USABLE),
+            "error_known_to": strip.last_known().map(|(factor, _)| factor),
+            "converges_to": strip.ends_at,
+            "law_ends_at": strip.law_ends_at(),
         })
     };
-    let reference = |(factor, u): &(f64, Option<nalgebra::Vector2<f64>>)| json!({ "load_factor": json::number(*factor), "displacement": u.map(json::pair) });
-    let object = json!({
+    json::text(&json!({
         "scene": scene.name,
         "load": axis.name.to_string(),
         "unit": axis.unit,
-        "full_load": json::number(axis.full),
-        "reference": limits.reference.iter().map(reference).collect::<Value>(),
+        "full_load": axis.full,
+        "reference": limits.reference.iter().map(|(factor, u)| json!({ "load_factor": factor, "displacement": u })).collect::<Value>(),
         "strips": limits.strips.iter().map(strip).collect::<Value>(),
-    });
-    format!("{object:#}\n")
+    }))
 }

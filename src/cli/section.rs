@@ -176,13 +176,12 @@ fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
 }
 
 fn as_json(scene: &Scene, simulation: &Simulation, sections: &[Section]) -> String {
-    let object = json!({
+    json::text(&json!({
         "scene": scene.name,
         "status": simulation.status().id(),
-        "load_fraction": simulation.equilibrium().map(|equilibrium| json::number(equilibrium.load_factor())),
+        "load_fraction": simulation.equilibrium().map(|equilibrium| equilibrium.load_factor()),
         "sections": sections.iter().map(json::section).collect::<Value>(),
-    });
-    format!("{object:#}\n")
+    }))
 }
 
 /// Formats the stress along a cut as CSV.

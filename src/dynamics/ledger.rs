@@ -191,7 +191,7 @@ fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
 /// Momentum and angular momentum of a body.
 ///
 /// See [`Motion`](crate::Motion) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Momentum {
     /// Σ M v, kg m/s.
     pub linear: Vector2<f64>,

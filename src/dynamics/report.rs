@@ -5,7 +5,7 @@ use crate::sentence::{Sentence, displayed, sentence};
 /// Decisions of `auto` since the start of a motion.
 ///
 /// See [`MotionResult`](crate::MotionResult) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
 pub struct MotionReport {
     /// Kind of the last step.
@@ -25,7 +25,8 @@ pub struct MotionReport {
 /// Kind of a time step.
 ///
 /// See [`MotionResult`](crate::MotionResult) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum MotionDecision {
     /// No step yet.

@@ -63,11 +63,13 @@ impl From<&SectionError> for Sentence {
 /// Normal force, shear force and bending moment.
 ///
 /// See [`Simulation::section`](crate::Simulation::section) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct SectionForces {
     /// Normal force N along the normal, N; positive in tension.
+    #[serde(rename = "normal_force")]
     pub normal: f64,
     /// Shear force V along the tangent, N.
+    #[serde(rename = "shear_force")]
     pub shear: f64,
     /// Bending moment M about the middle of the cut, N m, counter-clockwise.
     pub moment: f64,

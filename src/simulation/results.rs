@@ -42,7 +42,7 @@ pub struct Energy {
 /// Total reaction of the supports on the body.
 ///
 /// See [`Simulation::solution`](crate::Simulation::solution) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Reaction {
     /// Total force, N.
     pub force: Vector2<f64>,
