@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "app")]
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
+use super::outputs::OutputArgs;
 use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number};
 use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
 use crate::study::Effort;
@@ -68,11 +69,12 @@ pub(super) enum Command {
     Solve(SolveArgs),
     /// Print the load path of a scene: its equilibria as loads and prescribed displacements grow, where they lose their
     /// stability under force control, and where the body jumps. For a cantilever also: linear theory, the exact beam,
-    /// every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent.
+    /// every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent. The picture
+    /// shows the load path, over the displacement of the moving support or over the load; unstable states are dashed.
     Curve(CurveArgs),
     /// Compute the forces in a cut through the body: normal force N, shear force V and bending moment M, which the part
     /// in front of the cut exerts on the part behind, and the stress along the cut beside that of beam theory. With
-    /// --along, N, V and M along a beam.
+    /// --along, N, V and M along a beam. The picture shows the stress along the cut, or N, V and M along the beam.
     #[command(after_help = EXIT_CODES)]
     Section(SectionArgs),
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
@@ -90,7 +92,9 @@ pub(super) enum Command {
         scaling: bool,
     },
     /// Find the loads up to which each method and element holds on the cells of a static scene, from a hundredth to ten
-    /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %.
+    /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %. The table has
+    /// a row for each load, method and element; the picture shows the load curve, and below it a strip for each method
+    /// and element.
     Limits(LimitsArgs),
     /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
     /// on this machine until both are met, and print the choice and the reason.
@@ -184,13 +188,8 @@ impl SolveArgs {
 pub(super) struct CurveArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
-    /// Also write the curve as a table.
-    #[arg(long, value_name = "FILE.csv")]
-    pub out: Option<PathBuf>,
-    /// Also draw the load path, over the displacement of the moving support or over the load; unstable states are
-    /// dashed.
-    #[arg(long, value_name = "FILE.svg|.png")]
-    pub picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub outputs: OutputArgs,
     /// Quantity in the figure: `PROBE.x` or `PROBE.y` for a component of a probe's displacement, `PROBE.path` for one
     /// over the other, `PROBE` for its length, or `support.N` for the reaction of a support. Default: the reaction of
     /// the moving support, or the larger component of the first probe.
@@ -216,12 +215,8 @@ pub(super) struct SectionArgs {
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
-    /// Also write a table.
-    #[arg(long, value_name = "FILE.csv")]
-    pub out: Option<PathBuf>,
-    /// Also draw the stress along the cut, or N, V and M along the beam.
-    #[arg(long, value_name = "FILE.svg|.png")]
-    pub picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub outputs: OutputArgs,
 }
 
 fn parse_place(text: &str) -> Result<(f64, Option<f64>), NumberError> {
@@ -243,12 +238,8 @@ pub(super) struct LimitsArgs {
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
-    /// Also write a table with a row for each load, method and element.
-    #[arg(long, value_name = "FILE.csv")]
-    pub out: Option<PathBuf>,
-    /// Also draw the load curve, and below it a strip for each method and element.
-    #[arg(long, value_name = "FILE.svg|.png")]
-    pub picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub outputs: OutputArgs,
 }
 
 #[derive(Debug, Args)]

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::memory::PeakMemory;
-use super::outputs::Outputs;
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text};
@@ -191,12 +190,12 @@ fn limits_of_auto(scene: &Scene, solution: &Solution, reference: Option<&Referen
 }
 
 pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
-    let CurveArgs { scene, out, picture, of } = args;
+    let CurveArgs { scene, outputs, of } = args;
     let source = scene::Source::from(scene);
     let (scene, _) = simulate(&source)?;
     // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
-    let outputs = Outputs::new(out, picture)?;
+    outputs.check()?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
     let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };

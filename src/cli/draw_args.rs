@@ -25,6 +25,18 @@ pub(super) struct AdapterArgs {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct LookArgs {
+    /// Colour theme.
+    #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
+    pub theme: app::ThemeChoice,
+    /// Language.
+    #[arg(long, value_enum, default_value_t = app::Language::English)]
+    pub language: app::Language,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct ShotArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
@@ -68,14 +80,8 @@ pub(super) struct ShotArgs {
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
     #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
     pub compare: Option<PaneSettings>,
-    /// Colour theme.
-    #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
-    pub theme: app::ThemeChoice,
-    /// Language.
-    #[arg(long, value_enum, default_value_t = app::Language::English)]
-    pub language: app::Language,
     #[command(flatten)]
-    pub adapter: AdapterArgs,
+    pub look: LookArgs,
 }
 
 /// Panes of a comparison, as the option --compare lists them.
@@ -119,14 +125,8 @@ pub(super) struct RecordArgs {
     /// Replace existing numbered images in the folder.
     #[arg(long)]
     pub overwrite: bool,
-    /// Colour theme.
-    #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
-    pub theme: app::ThemeChoice,
-    /// Language.
-    #[arg(long, value_enum, default_value_t = app::Language::English)]
-    pub language: app::Language,
     #[command(flatten)]
-    pub adapter: AdapterArgs,
+    pub look: LookArgs,
 }
 
 /// Error for an unknown integrator name.

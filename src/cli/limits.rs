@@ -6,7 +6,6 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
-use super::outputs::Outputs;
 use super::progress::Watch;
 use super::{CliError, json, named, simulate, text};
 use crate::plot;
@@ -16,9 +15,9 @@ use crate::study::limits::{GOOD, LimitPoint, MethodLimits, RANGE, Strip, USABLE,
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
-    let LimitsArgs { scene, json, out, picture } = args;
+    let LimitsArgs { scene, json, outputs } = args;
     let source = scene::Source::from(scene);
-    let outputs = Outputs::new(out, picture)?;
+    outputs.check()?;
     let (scene, _) = simulate(&source)?;
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));

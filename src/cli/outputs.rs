@@ -2,25 +2,30 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
+
 use super::{CliError, check_suffix};
 use crate::export;
 use crate::plot::Drawing;
 
-/// Names of the files, whose endings are valid.
-pub(super) struct Outputs {
+#[derive(Debug, Args)]
+pub(super) struct OutputArgs {
+    /// Also write a table.
+    #[arg(long = "out", value_name = "FILE.csv")]
     table: Option<PathBuf>,
+    /// Also draw a picture.
+    #[arg(long, value_name = "FILE.svg|.png")]
     picture: Option<PathBuf>,
 }
 
-impl Outputs {
+impl OutputArgs {
     /// Refuses names with another ending, so that nothing is computed in vain.
     ///
     /// # Errors
     /// [`CliError::Suffix`].
-    pub fn new(table: Option<PathBuf>, picture: Option<PathBuf>) -> Result<Self, CliError> {
-        picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg", ".png"], ".svg or .png"))?;
-        table.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))?;
-        Ok(Self { table, picture })
+    pub fn check(&self) -> Result<(), CliError> {
+        self.picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg", ".png"], ".svg or .png"))?;
+        self.table.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))
     }
 
     /// Writes the table, if one is wanted.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::draw_args::RecordArgs;
+use super::draw_args::{LookArgs, RecordArgs};
 use super::progress::Watch;
 use super::{CliError, NOT_CONVERGED, exit_code, text};
 use crate::app::{self, RecordOptions, Recorded};
@@ -11,7 +11,8 @@ use crate::format::{count, number};
 use crate::scene;
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
-    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, theme, language, adapter } = args;
+    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, look } = args;
+    let LookArgs { theme, language, adapter } = look;
     let source = scene::Source::from(scene);
     let scene = scene::open(&source)?;
     let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language, adapter: adapter.adapter };

@@ -7,7 +7,6 @@ use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use super::args::SectionArgs;
-use super::outputs::Outputs;
 use super::progress::Watch;
 use super::{CliError, commands, exit_code, json, named, sections_of, simulate, text};
 use crate::format::{Context, engineering, engineering_pair, in_power, number, prefix, three_digits};
@@ -19,9 +18,9 @@ use crate::study::section_chart::{self, COMPONENTS, SectionComponent};
 
 /// Runs the command.
 pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
-    let SectionArgs { scene, at, angle, along, json, out, picture } = args;
+    let SectionArgs { scene, at, angle, along, json, outputs } = args;
     let source = scene::Source::from(scene);
-    let outputs = Outputs::new(out, picture)?;
+    outputs.check()?;
     let (scene, mut simulation) = simulate(&source)?;
     let refused = |error: SectionError| CliError::Section { scene: named(&source), error };
     let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });

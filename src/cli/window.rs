@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::args::{ReferenceEffort, SolveArgs};
-use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
+use super::draw_args::{DEFAULT_PICTURE, LookArgs, ShotArgs};
 use super::progress::Watch;
 use super::scene_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
@@ -28,9 +28,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         learn,
         motion,
         compare,
-        theme,
-        language,
-        adapter,
+        look: LookArgs { theme, language, adapter },
     } = args;
     let compare = compare.map(|panes| panes.0).unwrap_or_default();
     let learn = learn.map(usize::from);
