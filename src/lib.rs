@@ -186,9 +186,9 @@ pub use rotation::Rotation;
 pub use scene::{LoadId, SupportId};
 pub use state::{State, StateError};
 // Read results.
-pub use section::{Section, SectionError, SectionForces, SectionPoint};
+pub use section::{Section, SectionError, SectionForces, SectionPoint, Wrench};
 pub use sentence::Sentence;
-pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, Reaction, SupportReaction};
+pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, SupportReaction};
 pub use stress::{NodalStress, PlaneTensor};
 // Move in time.
 pub use dynamics::{Counts, Ledger, Momentum, MotionDecision, MotionReport, StepError, StopReason};

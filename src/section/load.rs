@@ -21,15 +21,19 @@ pub(super) struct PlacedMesh<'a> {
 }
 
 /// Force and moment about a point.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wrench {
+///
+/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Wrench {
+    /// Force, N.
     pub force: Vector2<f64>,
+    /// Moment about the point, N m, counter-clockwise.
     pub moment: f64,
 }
 
 impl Wrench {
-    /// Adds a force at the end of an arm.
-    pub fn add(&mut self, arm: Vector2<f64>, force: Vector2<f64>) {
+    /// Adds a force at the end of an arm from the point.
+    pub(crate) fn add(&mut self, arm: Vector2<f64>, force: Vector2<f64>) {
         self.force += force;
         self.moment += arm.perp(&force);
     }

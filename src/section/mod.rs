@@ -27,7 +27,8 @@ use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 use crate::stress::NodalStress;
 use cut::{Cut, CutPoint};
-use load::{PlacedMesh, Wrench, beyond_nodes};
+pub use load::Wrench;
+use load::{PlacedMesh, beyond_nodes};
 
 /// Reason why a line has no section.
 ///

@@ -17,6 +17,7 @@ use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, SupportId};
+use crate::section::Wrench;
 use crate::sentence::Sentence;
 use crate::solver::{Factor, SolverError};
 use crate::state::{State, StateError, is_finite};
@@ -38,8 +39,8 @@ pub use self::view::{Equilibrium, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
 pub use results::{
-    Deformation, Energy, LargestStress, ProbeResult, ProbeStress, Reaction, StressResult, SupportReaction, energy,
-    probe_results, reaction, support_reactions, supports_power,
+    Deformation, Energy, LargestStress, ProbeResult, ProbeStress, StressResult, SupportReaction, energy, probe_results,
+    reaction, support_reactions, supports_power,
 };
 pub use status::Status;
 
@@ -112,8 +113,8 @@ pub struct Solution {
     pub probes: Vec<ProbeResult>,
     /// Energies.
     pub energy: Energy,
-    /// Total reaction of all supports.
-    pub reaction: Reaction,
+    /// Total reaction of all supports, with the moment about the origin.
+    pub reaction: Wrench,
     /// Reaction of each support.
     pub supports: Vec<SupportReaction>,
     /// Computing time since the last edit, by stage.
@@ -621,14 +622,14 @@ impl Simulation {
     /// Returns the results of the current state.
     ///
     /// ```
-    /// use warpbeam::{Deformation, Energy, ProbeResult, Reaction, Scene, Simulation, Solution, SupportReaction};
+    /// use warpbeam::{Deformation, Energy, ProbeResult, Scene, Simulation, Solution, SupportReaction, Wrench};
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
     /// let mut beam = Simulation::new(&scene)?;
     /// beam.solve();
     /// let Solution { reaction, supports, energy, probes, deformation, .. } = beam.solution();
     /// // The only support balances 1 N at a distance of 10 m.
-    /// let Reaction { force, moment } = reaction;
+    /// let Wrench { force, moment } = reaction;
     /// assert!((force.y - 1.0).abs() < 1e-6 && (moment - 10.0).abs() < 1e-3);
     /// let SupportReaction { force, .. } = supports[0];
     /// assert!((force.y - 1.0).abs() < 1e-6);

@@ -6,6 +6,7 @@ use super::field::largest_principal;
 use crate::assembly::{Forces, Kinematics, Problem};
 use crate::rotation::polar;
 use crate::scene::Place;
+use crate::section::Wrench;
 use crate::state::State;
 use crate::stress::{ErrorEstimate, NodalStress, PlaneTensor, Singularity};
 
@@ -37,17 +38,6 @@ pub struct Energy {
     /// if there are none. In linear theory it is half of the final reactions times the displacements; else it is
     /// `None`, because it depends on the path, which the command `warpbeam solve` computes.
     pub supports: Option<f64>,
-}
-
-/// Total reaction of the supports on the body.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Reaction {
-    /// Total force, N.
-    pub force: Vector2<f64>,
-    /// Total moment about the origin, with current lever arms, N m, counter-clockwise.
-    pub moment: f64,
 }
 
 /// Reaction of one support on the body.
@@ -122,16 +112,14 @@ pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
     Energy { elastic: problem.elastic_energy(state), external, supports: None }
 }
 
-/// Returns the total reaction, f_int − f_ext on the fixed unknowns.
+/// Returns the total reaction, f_int − f_ext on the fixed unknowns, with current lever arms about the origin.
 #[must_use]
-pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Reaction {
-    let mut total = Reaction::default();
+pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Wrench {
+    let mut total = Wrench::default();
     let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
     let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(forces.residual()));
     for ((x, u), (mask, residual)) in nodes {
-        let force = -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f });
-        total.force += force;
-        total.moment += (x + u).perp(&force);
+        total.add(x + u, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
     }
     total
 }
@@ -152,13 +140,12 @@ pub fn support_reactions(
     };
     let react = problem.supports().all().iter().map(|support| {
         let middle: Vector2<f64> = support.weights.iter().map(|&(node, weight)| place(node) * weight).sum();
-        let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+        let mut total = Wrench::default();
         for &(node, own) in &support.nodes {
             let own = Vector2::from(own.map(|own| if own { 1.0 } else { 0.0 }));
-            let nodal = -forces.residual()[node as usize].component_mul(&own);
-            force += nodal;
-            moment += (place(node) - middle).perp(&nodal);
+            total.add(place(node) - middle, -forces.residual()[node as usize].component_mul(&own));
         }
+        let Wrench { force, moment } = total;
         let moved: Vector2<f64> =
             support.weights.iter().map(|&(n, weight)| state.displacement[n as usize] * weight).sum();
         SupportReaction { place: support.place.clone(), middle: support.middle + moved, force, moment }
