@@ -15,24 +15,24 @@
 /// Equations r(x, λ) = 0 of a path.
 pub(crate) trait PathEquations {
     /// State x.
-    type State: Clone;
+    type Configuration: Clone;
 
     /// Returns the number of unknowns.
     fn unknowns(&self) -> usize;
 
     /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components to load factor λ.
-    fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, factor: f64);
+    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, factor: f64);
 
     /// Sets the parts of a state that follow from its unknowns, such as the rotations of elements; a state of unknowns
     /// alone has none.
-    fn complete(&self, _state: &mut Self::State) {}
+    fn complete(&self, _state: &mut Self::Configuration) {}
 
     /// Linearizes the equations at a state and load factor: writes Newton's correction at fixed λ into `correction` and
     /// dx/dλ at fixed residual into `rate`. Returns the number of negative eigenvalues of the tangent matrix, or `None`
     /// if the results are not finite.
     fn linearize(
         &mut self,
-        state: &mut Self::State,
+        state: &mut Self::Configuration,
         factor: f64,
         correction: &mut [f64],
         rate: &mut [f64],
@@ -218,7 +218,7 @@ impl<S: Clone> Continuation<S> {
     /// Starts at a solution at λ = `factor`, toward growing λ. A unit of the norm is `unit` for the root mean square of
     /// the unknowns, and 1 for λ.
     pub fn start(
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
         mut state: S,
         factor: f64,
         unit: f64,
@@ -281,7 +281,7 @@ impl<S: Clone> Continuation<S> {
     /// Takes one step; returns the critical point that it has passed, with its place, if any.
     pub fn step(
         &mut self,
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
     ) -> Result<Option<(Critical, ContinuationPoint<S>)>, PathFailure> {
         let longest = MAX_STEP.max(MAX_RELATIVE_STEP * self.length);
         let mut step = self.step.min(longest).min(self.max_by_factor / self.point.slope.abs());
@@ -358,7 +358,7 @@ impl<S: Clone> Continuation<S> {
     /// at its end.
     fn crossing(
         &mut self,
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
         step: f64,
         beyond: Option<CriticalMode>,
     ) -> ContinuationPoint<S> {
@@ -416,7 +416,7 @@ impl<S: Clone> Continuation<S> {
     }
 
     /// Returns the limit point within the last step, of this length.
-    fn limit(&mut self, equations: &mut impl PathEquations<State = S>, step: f64) -> ContinuationPoint<S> {
+    fn limit(&mut self, equations: &mut impl PathEquations<Configuration = S>, step: f64) -> ContinuationPoint<S> {
         /// Largest number of trial steps.
         const MAX_TRIALS: u32 = 12;
         let from = self.before.clone();
@@ -447,7 +447,7 @@ impl<S: Clone> Continuation<S> {
     /// `None` if they do not enclose it, or no point is found.
     pub fn between(
         &mut self,
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
         from: &ContinuationPoint<S>,
         to: &ContinuationPoint<S>,
         goal: f64,
@@ -505,7 +505,7 @@ impl<S: Clone> Continuation<S> {
     /// Corrects at fixed λ from a nearby point of the path.
     fn correct_at(
         &mut self,
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
         near: &ContinuationPoint<S>,
         goal: f64,
         [fewest, most]: [usize; 2],
@@ -540,7 +540,7 @@ impl<S: Clone> Continuation<S> {
     /// contraction, and the cosine of the angle between the tangents.
     fn correct(
         &mut self,
-        equations: &mut impl PathEquations<State = S>,
+        equations: &mut impl PathEquations<Configuration = S>,
         from: &ContinuationPoint<S>,
         step: f64,
     ) -> Option<(ContinuationPoint<S>, f64, f64)> {

@@ -286,20 +286,20 @@ struct Shooting<'a> {
 }
 
 impl PathEquations for Shooting<'_> {
-    type State = DVector<f64>;
+    type Configuration = DVector<f64>;
 
     fn unknowns(&self) -> usize {
         2 * SEGMENTS
     }
 
-    fn advance(&self, state: &mut Self::State, direction: &[f64], length: f64, _: f64) {
+    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, _: f64) {
         state.iter_mut().zip(direction).for_each(|(x, d)| *x += length * d);
     }
 
     /// The number of unstable modes is known modulo 2 only, from the sign of the determinant.
     fn linearize(
         &mut self,
-        state: &mut Self::State,
+        state: &mut Self::Configuration,
         factor: f64,
         correction: &mut [f64],
         rate: &mut [f64],

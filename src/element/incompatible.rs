@@ -354,7 +354,7 @@ impl Elements for IncompatibleQuads {
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]) {
         let mut rotations = Rotations::Follow(r);
         for ((numbers, nodes), quad) in self.nodes.batches().zip(&self.quads) {
-            rotations.see(numbers.all(), &quad.centre.displacement_gradient(&u.relative_side_by_side(nodes)));
+            rotations.evaluate(numbers.all(), &quad.centre.displacement_gradient(&u.relative_side_by_side(nodes)));
         }
     }
 
@@ -373,7 +373,7 @@ impl Elements for IncompatibleQuads {
         for ((numbers, nodes), (quad, k)) in batches {
             let u = u.relative_side_by_side(nodes);
             let h = quad.centre.displacement_gradient(&u);
-            let r = rotations.see(numbers.all(), &h);
+            let r = rotations.evaluate(numbers.all(), &h);
             let (strain, inverse_trace) = (warped_strain(r, &h), inverse_trace(r, &h));
             let k = symmetric(*k) * mu;
             let twisted = Twisted::new(&k, r.apply_inverse(quad.twist(&u)));

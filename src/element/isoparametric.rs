@@ -144,7 +144,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
             let u = u.relative_side_by_side(nodes);
             for (q, point) in points.iter().enumerate() {
-                rotations.see(numbers.points(Q, q), &point.displacement_gradient(&u));
+                rotations.evaluate(numbers.points(Q, q), &point.displacement_gradient(&u));
             }
         }
     }
@@ -161,7 +161,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         let gather = |nodes: &[[u32; LANES]; N]| u.relative_side_by_side(nodes);
         let look = |u: &[Vector2<Lanes>; N], numbers, point: &QuadraturePoint<N, Lanes>| {
             let h = point.displacement_gradient(u);
-            let rotation = rotations.see(numbers, &h);
+            let rotation = rotations.evaluate(numbers, &h);
             let strain = warped_strain(rotation, &h);
             let stress = product(&rotation.matrix(), &moduli.stress(&strain));
             Seen { rotation, trace: strain.m11 + strain.m22, stress }

@@ -237,7 +237,7 @@ pub enum Rotations<'a> {
 impl Rotations<'_> {
     /// Returns the rotations with these indices, for displacement gradients H; updates them if they follow.
     #[inline(always)]
-    fn see(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
+    fn evaluate(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
         match self {
             Self::Given(r) => rotations_at(r, numbers),
             Self::Follow(r) => {

@@ -56,10 +56,10 @@ impl Method for Linear {
         it.step().map(|step| self.stall.steps.stepped(step))
     }
 
-    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
         if !it.supports_are_at(1.0, Kinematics::Linear) {
             return Verdict::Continue;
         }
-        self.stall.judge(it)
+        self.stall.check_convergence(it)
     }
 }

@@ -205,7 +205,7 @@ pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError>;
 
     /// Decides whether the state has converged.
-    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict;
+    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict;
 
     /// Leaves the best available state; called when the iteration limit is reached.
     fn stop(&mut self, _: &mut State) {}

@@ -406,7 +406,7 @@ impl Method for Newton {
         self.step(it)
     }
 
-    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let (residual, is_partial) = (it.residual, self.load_factor < 1.0);
         let tolerance = it.tolerances.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
         if let NewtonPhase::Path(_) = self.phase {

@@ -75,7 +75,7 @@ impl StaticEquations<'_> {
 }
 
 impl PathEquations for StaticEquations<'_> {
-    type State = State;
+    type Configuration = State;
 
     fn unknowns(&self) -> usize {
         self.problem.system().dofs()

@@ -121,7 +121,7 @@ impl StepLengths {
 
 impl StallDetector {
     /// Decides whether the iteration has converged, stalled or diverged.
-    pub(super) fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    pub(super) fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
         let residual = it.residual;
         if residual <= it.tolerances.residual {
             return Verdict::Converged;

@@ -75,10 +75,10 @@ impl Method for Warped {
         it.step().map(|step| self.stall.steps.stepped(step))
     }
 
-    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
         if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
             return Verdict::Continue;
         }
-        self.stall.judge(it)
+        self.stall.check_convergence(it)
     }
 }

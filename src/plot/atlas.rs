@@ -1,6 +1,6 @@
 //! The stability atlas as a drawing.
 
-use super::drawing::{Anchor, Color, Drawing, Item, Text};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, Text};
 use crate::element::ELEMENTS;
 use crate::format::number;
 use crate::method::METHODS;
@@ -156,7 +156,7 @@ impl Panel {
 }
 
 fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, content: &str) {
-    drawing.items.push(Item::Text(Text { size, ..Text::new(at, anchor, content) }));
+    drawing.items.push(DrawingItem::Text(Text { size, ..Text::new(at, anchor, content) }));
 }
 
 /// Colours that differ in brightness (Okabe and Ito 2008).

@@ -1,6 +1,6 @@
 //! Axes of drawings: margins, decades, grids and the marks of elements.
 
-use super::drawing::{Anchor, Color, Drawing, GRID, Item, Outline, Shape, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, Outline, Shape, Text, solid};
 use crate::format::number;
 use crate::scene::ElementKind;
 
@@ -88,7 +88,9 @@ impl PlotMargins {
     /// Starts a drawing with its title.
     pub fn start(&self, title: impl Into<String>) -> Drawing {
         let mut drawing = Drawing::new([self.width, SIZE[1]]);
-        drawing.items.push(Item::Text(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) }));
+        drawing
+            .items
+            .push(DrawingItem::Text(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) }));
         drawing
     }
 
@@ -105,7 +107,7 @@ impl PlotMargins {
         }
         drawing.text([0.5 * (left + right), SIZE[1] - 14.0], Anchor::Middle, x_label);
         let label = Text::new([22.0, 0.5 * (top + bottom)], Anchor::Middle, y_label);
-        drawing.items.push(Item::Text(Text { is_upright: true, ..label }));
+        drawing.items.push(DrawingItem::Text(Text { is_upright: true, ..label }));
     }
 }
 

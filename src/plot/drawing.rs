@@ -19,14 +19,14 @@ const TEXT: f64 = 13.0;
 #[derive(Clone, Debug)]
 pub struct Drawing {
     pub(super) size: [f64; 2],
-    pub(super) items: Vec<Item>,
+    pub(super) items: Vec<DrawingItem>,
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Item {
+pub(super) enum DrawingItem {
     Shape(Shape),
     Text(Text),
-    /// The shapes up to [`Item::EndClip`] are seen in this rectangle only: its corner and its size.
+    /// The shapes up to [`DrawingItem::EndClip`] are seen in this rectangle only: its corner and its size.
     Clip([[f64; 2]; 2]),
     EndClip,
 }
@@ -100,7 +100,7 @@ impl Shape {
     }
 }
 
-impl Item {
+impl DrawingItem {
     /// Moves the item down.
     fn lower(&mut self, by: f64) {
         match self {
@@ -137,7 +137,7 @@ impl Drawing {
     }
 
     pub(super) fn add(&mut self, shape: Shape) {
-        self.items.push(Item::Shape(shape));
+        self.items.push(DrawingItem::Shape(shape));
     }
 
     pub(super) fn line(&mut self, points: Vec<[f64; 2]>, color: Color, stroke: Stroke) {
@@ -149,14 +149,14 @@ impl Drawing {
     }
 
     pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: impl Into<String>) {
-        self.items.push(Item::Text(Text::new(at, anchor, text)));
+        self.items.push(DrawingItem::Text(Text::new(at, anchor, text)));
     }
 
     /// Draws what `draw` adds in a rectangle only.
     pub(super) fn clipped(&mut self, corner_and_size: [[f64; 2]; 2], draw: impl FnOnce(&mut Self)) {
-        self.items.push(Item::Clip(corner_and_size));
+        self.items.push(DrawingItem::Clip(corner_and_size));
         draw(self);
-        self.items.push(Item::EndClip);
+        self.items.push(DrawingItem::EndClip);
     }
 
     /// Returns the drawing as an SVG document.
@@ -169,13 +169,13 @@ impl Drawing {
         );
         for (number, item) in self.items.iter().enumerate() {
             let line = match item {
-                Item::Shape(shape) => shape.svg(),
-                Item::Text(text) => text.svg(),
-                Item::Clip(rect) => format!(
+                DrawingItem::Shape(shape) => shape.svg(),
+                DrawingItem::Text(text) => text.svg(),
+                DrawingItem::Clip(rect) => format!(
                     "<clipPath id=\"clip{number}\"><rect{}/></clipPath>\n<g clip-path=\"url(#clip{number})\">",
                     rect_attributes(*rect)
                 ),
-                Item::EndClip => "</g>".to_owned(),
+                DrawingItem::EndClip => "</g>".to_owned(),
             };
             svg.push_str(&line);
             svg.push('\n');

@@ -1,7 +1,7 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::Decades;
-use super::drawing::{Anchor, Color, Drawing, GRID, INK, Item, Outline, Shape, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
 use crate::study::figure::LoadAxis;
@@ -35,7 +35,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     let bottom = top + ROW * limits.strips.len() as f64;
     let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
     let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
-    drawing.items.push(Item::Text(Text { size: 16.0, ..title }));
+    drawing.items.push(DrawingItem::Text(Text { size: 16.0, ..title }));
     for (x, factor) in axis.values() {
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
         drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));

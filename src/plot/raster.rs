@@ -7,7 +7,7 @@ use vello_cpu::color::{AlphaColor, Srgb};
 use vello_cpu::kurbo::{self, Affine, BezPath, Cap, Join, Point, Shape as _};
 use vello_cpu::{Pixmap, RenderContext, Resources};
 
-use super::drawing::{Anchor, Color, Drawing, Item, Outline, Shape, Stroke, Text};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, Outline, Shape, Stroke, Text};
 use crate::image::{CHINESE_FONT, Picture, PictureError};
 
 /// Fonts in the order in which a letter is looked for.
@@ -27,13 +27,13 @@ impl Drawing {
         let mut context = RenderContext::new(width, height);
         for item in &self.items {
             match item {
-                Item::Shape(shape) => shape.paint(&mut context),
-                Item::Text(text) => text.paint(&mut context, &fonts),
-                Item::Clip([[x, y], [width, height]]) => {
+                DrawingItem::Shape(shape) => shape.paint(&mut context),
+                DrawingItem::Text(text) => text.paint(&mut context, &fonts),
+                DrawingItem::Clip([[x, y], [width, height]]) => {
                     let rect = kurbo::Rect::from_origin_size((*x, *y), (*width, *height));
                     context.push_clip_layer(&rect.to_path(ACCURACY));
                 }
-                Item::EndClip => context.pop_layer(),
+                DrawingItem::EndClip => context.pop_layer(),
             }
         }
         context.flush();
@@ -207,7 +207,7 @@ mod tests {
             {
                 for is_upright in [false, true] {
                     let mut drawing = Drawing::new([100.0, 100.0]);
-                    drawing.items.push(Item::Text(Text { is_upright, ..Text::new([50.0, 50.0], anchor, text) }));
+                    drawing.items.push(DrawingItem::Text(Text { is_upright, ..Text::new([50.0, 50.0], anchor, text) }));
                     let [low, high] = inked(&drawing.picture().unwrap(), usize::from(is_upright));
                     let [low, high] = if is_upright { [100 - high, 100 - low] } else { [low, high] };
                     assert!(from <= low && high <= to && high - low > 20, "{text} {anchor:?}: {low} to {high}");

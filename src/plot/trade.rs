@@ -1,7 +1,7 @@
 //! Studies as drawings: error over time with the Pareto front, and time over unknowns; both axes are logarithmic.
 
 use super::axes::{Decades, MARGINS, ROW, mark};
-use super::drawing::{Anchor, Color, Drawing, INK, Item, Outline, Shape, Stroke, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, INK, Outline, Shape, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
@@ -137,7 +137,7 @@ impl Chart<'_> {
             let ([bottom, top], at) = (MARGINS.up(), x.place(mark.time));
             drawing.line(vec![[at, top], [at, bottom]], [0x55; 3], DASHED);
             let label = Text::new([at, top - 6.0], Anchor::Middle, mark.label);
-            drawing.items.push(Item::Text(Text { color: INK, ..label }));
+            drawing.items.push(DrawingItem::Text(Text { color: INK, ..label }));
         }
         let place = |point: &Point| [x.place(point.time), y.place(point.error)];
         let mut front: Vec<&Point> = self.points.iter().filter(|p| p.front).collect();

@@ -290,7 +290,7 @@ impl TimeStepping {
         if decides && body.problem.mouse_spring().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
             let was_in_use = self.linear.is_in_use();
             if !was_in_use {
-                self.see(body, Kinematics::Linear);
+                self.change_kinematics(body, Kinematics::Linear);
             }
             if let Ok(energies) = self.try_step(body, Kinematics::Linear, h)
                 && self.linear.accepts(&body.problem, &self.mass, [&self.start, &body.state], h, asked)?
@@ -302,13 +302,13 @@ impl TimeStepping {
             }
             body.state.copy_from(&self.start);
             self.linear.leave();
-            self.see(body, Kinematics::Corotated);
+            self.change_kinematics(body, Kinematics::Corotated);
             if was_in_use && self.records_energy() {
                 self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
             }
         } else if self.linear.is_in_use() {
             self.linear.leave();
-            self.see(body, Kinematics::Corotated);
+            self.change_kinematics(body, Kinematics::Corotated);
             if self.records_energy() {
                 self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
             }
@@ -317,7 +317,7 @@ impl TimeStepping {
     }
 
     /// Recomputes the start of a step with another strain measure.
-    fn see(&mut self, body: &mut Body, kinematics: Kinematics) {
+    fn change_kinematics(&mut self, body: &mut Body, kinematics: Kinematics) {
         body.problem.system().update_rotations(&mut body.state, kinematics);
         body.state.knows_net_force = false;
         self.start.copy_from(&body.state);

@@ -238,7 +238,8 @@ impl Search {
             let wanted = (self.method.tangent(), self.method.load_factor());
             self.measure_forces(body, &mut workspace, why == Restart::AtRest, wanted, &mut unmeasured);
         }
-        let verdict = self.with_method(body, &mut workspace, &mut unmeasured, |method, it| method.judge(it));
+        let verdict =
+            self.with_method(body, &mut workspace, &mut unmeasured, |method, it| method.check_convergence(it));
         self.apply_verdict(body, &mut workspace, verdict, &mut unmeasured);
         self.workspace = Some(workspace);
     }
@@ -275,7 +276,7 @@ impl Search {
             self.measure(body, &mut workspace, &mut timings);
         }
         let verdict = self.with_method(body, &mut workspace, &mut timings, |method, it| match measured {
-            Ok(()) => method.judge(it),
+            Ok(()) => method.check_convergence(it),
             Err(error) => method.recover(it, error),
         });
         self.apply_verdict(body, &mut workspace, verdict, &mut timings);

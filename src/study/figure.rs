@@ -8,14 +8,14 @@ use crate::sentence::{Sentence, sentence};
 
 /// A quantity that every point of a figure has.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct FigureQuantity {
     /// Name.
     pub name: String,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
 }
 
-impl Quantity {
+impl FigureQuantity {
     /// Returns a quantity with its unit.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
@@ -129,7 +129,7 @@ pub struct Figure {
     /// The scene's title.
     pub title: String,
     /// Quantities that each point has.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<FigureQuantity>,
     /// Indices of the quantities along the horizontal and the vertical axis.
     pub axes: [usize; 2],
     /// Lower left and upper right corner of the picture; `None` shows all points.
@@ -147,7 +147,7 @@ pub struct Figure {
 impl Figure {
     /// Returns the quantity along an axis: 0 is horizontal, 1 vertical.
     #[must_use]
-    pub fn quantity(&self, axis: usize) -> Option<&Quantity> {
+    pub fn quantity(&self, axis: usize) -> Option<&FigureQuantity> {
         self.quantities.get(*self.axes.get(axis)?)
     }
 
@@ -214,7 +214,7 @@ impl Figure {
         let (has_errors, has_states) =
             (points().any(|p| p.error_percent.is_some()), points().any(|p| !p.state.is_empty()));
         let mut head = vec!["series".to_owned()];
-        head.extend(self.quantities.iter().map(Quantity::heading));
+        head.extend(self.quantities.iter().map(FigureQuantity::heading));
         head.extend(has_errors.then(|| format!("{} (%)", self.error_name)));
         head.extend(has_states.then(|| "state".to_owned()));
         let mut text = csv_row(&head);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis};
+use super::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
 use super::{LoadPath, PathState, support_text};
 use crate::format::number;
 use crate::scene::{MethodKind, Place, Scene};
@@ -38,9 +38,9 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
     let displacement = |s: &PathState| s.probes.get(probe).copied().unwrap_or_else(Vector2::zeros);
     let along = Abscissa::of(path, scene);
     let mut quantities = vec![
-        Quantity::new(render(&along.name), along.unit),
-        Quantity::new(render(&sentence!("u_x of %{probe}", probe = name)), "m"),
-        Quantity::new(render(&sentence!("u_y of %{probe}", probe = name)), "m"),
+        FigureQuantity::new(render(&along.name), along.unit),
+        FigureQuantity::new(render(&sentence!("u_x of %{probe}", probe = name)), "m"),
+        FigureQuantity::new(render(&sentence!("u_y of %{probe}", probe = name)), "m"),
     ];
     let axes = match (ordinate, path.driven) {
         (Ordinate::Path(_), _) => [1, 2],
@@ -49,12 +49,14 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
         (Ordinate::Usual | Ordinate::Reaction(_) | Ordinate::Probe(_), _) => [0, 3],
     };
     quantities.extend(match (ordinate, path.driven) {
-        (Ordinate::Reaction(i), _) => Some(Quantity::new(format!("reaction of {}", support_text(scene, *i)), "N")),
-        (Ordinate::Probe(_), _) => Some(Quantity::new(format!("displacement of {name}"), "m")),
+        (Ordinate::Reaction(i), _) => {
+            Some(FigureQuantity::new(format!("reaction of {}", support_text(scene, *i)), "N"))
+        }
+        (Ordinate::Probe(_), _) => Some(FigureQuantity::new(format!("displacement of {name}"), "m")),
         // The other axis names the support.
         (_, Some(_)) => {
             let name = render(&sentence!("reaction in this direction"));
-            Some(Quantity::new(name, if along.turns { "N m" } else { "N" }))
+            Some(FigureQuantity::new(name, if along.turns { "N m" } else { "N" }))
         }
         _ => None,
     });

@@ -1,6 +1,6 @@
 //! Section forces as figures: the stress along a cut, and N, V and M along a beam.
 
-use super::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
+use super::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, Mark};
 use super::path_chart::Render;
 use crate::format::{Context, engineering, three_digits};
 use crate::scene::Scene;
@@ -86,7 +86,7 @@ pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
         let name = sentence!("%{symbol}; stress: %{value}", symbol, value = of_stress);
         row(render(&name), Ink::Scene, Mark::Disc, value)
     }));
-    let quantity = |name: &str, unit| Quantity::new(render(&name.into()), unit);
+    let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
     Figure {
         title: format!("{}: {}", render(&scene.name.as_str().into()), render(&"stress in a cut".into())),
         quantities: vec![quantity("stress", "Pa"), quantity("distance from the middle", "m")],
@@ -110,7 +110,10 @@ pub fn forces(sections: &[Section], scene: &Scene, render: Render<'_>) -> [Figur
         });
         Figure {
             title: format!("{}: {name}", render(&scene.name.as_str().into())),
-            quantities: vec![Quantity::new(render(&"x at rest".into()), "m"), Quantity::new(name.clone(), unit)],
+            quantities: vec![
+                FigureQuantity::new(render(&"x at rest".into()), "m"),
+                FigureQuantity::new(name.clone(), unit),
+            ],
             axes: [0, 1],
             series: vec![FigureSeries { name, ink, mark: Mark::Line, may_leave: false, points: points.collect() }],
             rows: largest.into_iter().collect(),

@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     }
 }
 
-fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
+fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     let simulation = input.simulation;
     row(
         "Iterations",
@@ -105,13 +105,13 @@ fn search_rows(row: &mut Row<'_>, input: &Readout<'_>, errors: &Errors) {
 }
 
 /// Function that shows a row of the result: name, value, and tooltip.
-type Row<'a> = dyn FnMut(&str, String, &str) + 'a;
+type ResultRow<'a> = dyn FnMut(&str, String, &str) + 'a;
 
 fn time(duration: std::time::Duration) -> String {
     engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
-fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
+fn probe_row(row: &mut ResultRow<'_>, simulation: &Simulation) {
     /// Largest number of probes that are shown.
     const MAX_PROBES: usize = 8;
     for probe in simulation.problem().probes().iter().take(MAX_PROBES) {
@@ -121,7 +121,7 @@ fn probe_row(row: &mut Row<'_>, simulation: &Simulation) {
 }
 
 /// Shows the estimated mesh error and the largest strain.
-fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
+fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
@@ -141,13 +141,13 @@ fn quality_rows(row: &mut Row<'_>, input: &Readout<'_>) {
     row("Strain", text, &tip);
 }
 
-fn frame_row(row: &mut Row<'_>, input: &Readout<'_>, what: &str) {
+fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, what: &str) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
     row("Frame", joined([time(input.timings.total()), unknowns]), what);
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.
-fn motion_rows(row: &mut Row<'_>, input: &Readout<'_>, motion: Motion<'_>) {
+fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let clock = &input.playback.clock;
     let factor = match clock.factor() {

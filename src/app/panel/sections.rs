@@ -57,8 +57,8 @@ pub(super) fn show(
     ));
     let (low, high) = input.simulation.mesh().bounds();
     let angle = Limit { unit: "°", min: limits::ROTATION.min.to_degrees(), max: limits::ROTATION.max.to_degrees() };
-    type Row = (&'static str, &'static str, Limit, RangeInclusive<f64>, f64, fn(&mut SectionLine, f64));
-    let rows: [Row; 3] = [
+    type LineField = (&'static str, &'static str, Limit, RangeInclusive<f64>, f64, fn(&mut SectionLine, f64));
+    let rows: [LineField; 3] = [
         ("Cut x", "Point of the section at rest", limits::COORDINATE, low.x..=high.x, line.at.x, |line, x| {
             line.at.x = x
         }),

@@ -104,7 +104,7 @@ const DRAG_DISTANCE: f64 = 4.0;
 
 /// Interaction that the body allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
+pub(crate) enum Interactivity {
     /// No interaction.
     None,
     /// The values of a point can be shown; the body cannot be grabbed.
@@ -185,7 +185,7 @@ impl Pointer {
         ui: &Ui,
         response: &Response,
         targets: &HitTargets<'_>,
-        body: Target,
+        body: Interactivity,
     ) -> Interaction {
         let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
             let pointer = &i.pointer;
@@ -242,7 +242,7 @@ impl Pointer {
     }
 
     /// Returns the target of a press; load handles and bases come before the body, which they may cover.
-    fn take(response: &Response, targets: &HitTargets<'_>, body: Target, at: Pos2) -> Held {
+    fn take(response: &Response, targets: &HitTargets<'_>, body: Interactivity, at: Pos2) -> Held {
         if let Some(handle) = handle::at(targets.handles, at) {
             return Held::Tip(Grip::new(*handle, at));
         }
@@ -250,10 +250,12 @@ impl Pointer {
         if let Some(base) = base::near(targets.bases, at) {
             return Held::Base(PressedBase { base: *base, pressed: at, point: targets.point(place), dragged: None });
         }
-        let reached = targets.point(place).filter(|_| body != Target::None);
+        let reached = targets.point(place).filter(|_| body != Interactivity::None);
         let Some(point) = reached else { return Held::Space };
         match targets.offset(point, place) {
-            Some(offset) if body == Target::Grabbable => Held::Body(PressedPoint { point, offset, grabs: false }),
+            Some(offset) if body == Interactivity::Grabbable => {
+                Held::Body(PressedPoint { point, offset, grabs: false })
+            }
             _ => Held::Point(point),
         }
     }
@@ -263,7 +265,7 @@ impl Pointer {
         &mut self,
         response: &Response,
         targets: &HitTargets<'_>,
-        body: Target,
+        body: Interactivity,
         (at, keys): (Pos2, Modifiers),
         interaction: &mut Interaction,
     ) {
@@ -278,7 +280,7 @@ impl Pointer {
                     held.dragged = Some(at);
                 }
             }
-            Held::Body(press) if body == Target::Grabbable => {
+            Held::Body(press) if body == Interactivity::Grabbable => {
                 let place = targets.place(response, at);
                 if !press.grabs {
                     // In a motion, the body can also move away from a pointer that stands still.
@@ -293,7 +295,7 @@ impl Pointer {
     }
 
     /// Finds the target under the pointer, and sets the cursor.
-    fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Target, down: bool) {
+    fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Interactivity, down: bool) {
         (self.over_tip, self.over_base, self.over_body) = (None, None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
@@ -310,8 +312,8 @@ impl Pointer {
                     return CursorIcon::Move;
                 }
                 match (self.over_body, body) {
-                    (Some(_), Target::Grabbable) => CursorIcon::Grab,
-                    (Some(_), Target::None) => CursorIcon::Crosshair,
+                    (Some(_), Interactivity::Grabbable) => CursorIcon::Grab,
+                    (Some(_), Interactivity::None) => CursorIcon::Crosshair,
                     _ => CursorIcon::Default,
                 }
             }),

@@ -14,7 +14,7 @@ use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
-use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
+use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{Axes, CardRequest};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
@@ -256,7 +256,7 @@ impl BodyView {
         self.rect = rect;
         // A magnified body is not where the pointer would pull it.
         let is_fixed = content.session.is_in_background() || self.magnification != 1.0;
-        let body = if is_fixed { Target::Visible } else { Target::Grabbable };
+        let body = if is_fixed { Interactivity::Visible } else { Interactivity::Grabbable };
         let interaction = self.pointer.process(ui, &response, &targets, body);
         (response, interaction)
     }

@@ -26,7 +26,7 @@ impl Drop for Ended {
 
 /// Step of the test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
+enum LossStep {
     /// A screenshot is awaited, by this number of files.
     Screenshot(usize),
     /// A new device is awaited, after this number of losses.
@@ -36,24 +36,24 @@ enum Step {
 /// Window that loses its graphics device three times, with a screenshot before each loss.
 struct Losing {
     app: App,
-    step: Step,
+    step: LossStep,
     since: Instant,
     /// Camera at the first loss.
     camera: Option<Camera>,
 }
 
 impl Losing {
-    fn go_to(&mut self, step: Step) {
+    fn go_to(&mut self, step: LossStep) {
         (self.step, self.since) = (step, Instant::now());
         match step {
-            Step::Screenshot(_) => self.app.later.push(egui::Event::Key {
+            LossStep::Screenshot(_) => self.app.later.push(egui::Event::Key {
                 key: egui::Key::S,
                 physical_key: None,
                 pressed: true,
                 repeat: false,
                 modifiers: egui::Modifiers::NONE,
             }),
-            Step::Loss(_) => {
+            LossStep::Loss(_) => {
                 self.camera.get_or_insert(self.app.lab.camera());
                 let gpu = &self.app.open.as_ref().unwrap().graphics.gpu;
                 gpu.device.destroy();
@@ -89,9 +89,9 @@ impl ApplicationHandler for Losing {
         self.app.window_event(event_loop, id, event);
         let is_open = self.app.open.is_some() && self.app.device_failure().is_none();
         match self.step {
-            Step::Screenshot(files) if is_open && Self::screenshots() == files => self.go_to(Step::Loss(files)),
-            Step::Loss(losses) if is_open && self.app.losses.len() == losses => {
-                self.go_to(Step::Screenshot(losses + 1));
+            LossStep::Screenshot(files) if is_open && Self::screenshots() == files => self.go_to(LossStep::Loss(files)),
+            LossStep::Loss(losses) if is_open && self.app.losses.len() == losses => {
+                self.go_to(LossStep::Screenshot(losses + 1));
             }
             step => assert!(self.since.elapsed() < PATIENCE, "{step:?}"),
         }
@@ -115,12 +115,12 @@ fn lose() {
     force[1] *= 0.5;
     app.lab.set_scene(edited.clone()).unwrap();
     let event_loop = EventLoop::builder().with_any_thread(true).build().unwrap();
-    let mut losing = Losing { app, step: Step::Screenshot(1), since: Instant::now(), camera: None };
-    losing.go_to(Step::Screenshot(1));
+    let mut losing = Losing { app, step: LossStep::Screenshot(1), since: Instant::now(), camera: None };
+    losing.go_to(LossStep::Screenshot(1));
     event_loop.run_app(&mut losing).unwrap();
 
     let Losing { app, step, camera, .. } = losing;
-    assert_eq!(step, Step::Loss(3));
+    assert_eq!(step, LossStep::Loss(3));
     let text = app.error.unwrap().to_string();
     assert!(text.contains("failed 3 times within a minute: the device was lost"), "{text}");
     assert!(text.contains("--adapter"), "{text}");

@@ -45,7 +45,7 @@ struct Args {
 
 /// Reason why nothing was measured.
 #[derive(Debug, thiserror::Error)]
-enum Error {
+enum RivalsError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     #[error(transparent)]
@@ -75,17 +75,17 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(args: Args) -> Result<String, Error> {
+fn run(args: Args) -> Result<String, RivalsError> {
     let scene = open(&Source { name: args.scene, assignments: args.assignments })?;
     let rivals = rivals(&scene, args.quick)?;
-    std::fs::create_dir_all(&args.out).map_err(|error| Error::Folder(args.out.display().to_string(), error))?;
+    std::fs::create_dir_all(&args.out).map_err(|error| RivalsError::Folder(args.out.display().to_string(), error))?;
     write_text(&args.out.join("rivals.csv"), &table(&rivals))?;
     Ok(summary(&rivals))
 }
 
 /// Point in time of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Moment {
+struct RivalTime {
     /// Number of steps so far.
     steps: u32,
     /// Computing time so far.
@@ -104,9 +104,9 @@ struct Rival {
     /// Median computing time of a step.
     step: Duration,
     /// Start of the time in which it stays within 1 % of the equilibrium on this mesh.
-    own: Option<Moment>,
+    own: Option<RivalTime>,
     /// Start of the time in which it stays within 1 % of the reference.
-    reference: Option<Moment>,
+    reference: Option<RivalTime>,
     /// Distance from the reference at the end of the run, percent of the reference displacement.
     error_percent: f64,
     /// Error of the mesh: distance of its exact equilibrium from the reference, percent.
@@ -145,7 +145,7 @@ fn meshes(scene: &Scene, quick: bool) -> Vec<Scene> {
 }
 
 /// Measures both solvers on the scene's three-node meshes.
-fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
+fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, RivalsError> {
     let reference = Reference::of(scene)?;
     let reference = reference.first().ok_or(StudyError::NoBound)?;
     let exact = reference.displacement;
@@ -155,7 +155,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
         let problem = Problem::new(&scene, system.clone()).map_err(SimulationError::from)?;
         let mut newton = Simulation::with_system(&scene, system.clone())?;
         if *newton.solve() != Status::Converged {
-            return Err(Error::NotConverged);
+            return Err(RivalsError::NotConverged);
         }
         let own = problem.probes().first().ok_or(StudyError::NoProbe)?.mean(newton.displacement());
         let ours = times_from_rest(&mut newton, u32::MAX, &|_| ControlFlow::Continue(()))
@@ -168,7 +168,7 @@ fn rivals(scene: &Scene, quick: bool) -> Result<Vec<Rival>, Error> {
             for swing in swings(solver) {
                 // A combination slower than the best one is not needed.
                 let limit = best.as_ref().and_then(|b| b.own).map_or(MAX_TIME, |own| own.time);
-                let body = Rapier::new(&problem, own, swing).ok_or(Error::NotItsScene)?;
+                let body = Rapier::new(&problem, own, swing).ok_or(RivalsError::NotItsScene)?;
                 let run = swing_in(body, [own, exact], limit);
                 let rival = Rival {
                     swing,
@@ -216,19 +216,19 @@ fn swings(solver: RapierSolver) -> Vec<Swing> {
 /// Result of a run.
 struct Run {
     step: Duration,
-    own: Option<Moment>,
-    reference: Option<Moment>,
+    own: Option<RivalTime>,
+    reference: Option<RivalTime>,
     end: Vector2<f64>,
 }
 
 /// Detector of a lasting arrival at a target.
 #[derive(Default)]
 struct Arrival {
-    since: Option<Moment>,
+    since: Option<RivalTime>,
 }
 
 impl Arrival {
-    fn see(&mut self, now: Moment, distance: f64) {
+    fn record(&mut self, now: RivalTime, distance: f64) {
         if distance <= WITHIN {
             self.since.get_or_insert(now);
         } else {
@@ -237,7 +237,7 @@ impl Arrival {
     }
 
     /// Returns the time of arrival, if the target was kept long enough.
-    fn rests(&self, steps: u32) -> Option<Moment> {
+    fn rests(&self, steps: u32) -> Option<RivalTime> {
         self.since.filter(|since| steps - since.steps >= RESTS)
     }
 }
@@ -248,16 +248,16 @@ fn swing_in(mut body: Rapier<'_>, [own, reference]: [Vector2<f64>; 2], limit: Du
     let (mut to_own, mut to_reference) = (Arrival::default(), Arrival::default());
     let reachable = (own - reference).norm() <= WITHIN * reference.norm();
     let mut times = Vec::new();
-    let mut now = Moment::default();
+    let mut now = RivalTime::default();
     while now.steps < MAX_STEPS {
         let begun = Instant::now();
         body.step();
         let time = begun.elapsed();
         times.push(time);
-        now = Moment { steps: now.steps + 1, time: now.time + time };
+        now = RivalTime { steps: now.steps + 1, time: now.time + time };
         let u = body.displacement();
-        to_own.see(now, (u - own).norm() / own.norm());
-        to_reference.see(now, (u - reference).norm() / reference.norm());
+        to_own.record(now, (u - own).norm() / own.norm());
+        to_reference.record(now, (u - reference).norm() / reference.norm());
         let done = to_own.rests(now.steps).is_some() && (!reachable || to_reference.rests(now.steps).is_some());
         let late = now.time > limit && to_own.since.is_none_or(|since| since.time > limit);
         if done || late || now.time > MAX_TIME {
@@ -284,7 +284,7 @@ fn table(rivals: &[Rival]) -> String {
     );
     for r in rivals {
         let [along, across] = r.cells.unwrap_or([0, 0]);
-        let until = |at: Option<Moment>| {
+        let until = |at: Option<RivalTime>| {
             at.map_or_else(|| ",".to_owned(), |at| format!("{},{:.4}", at.steps, milliseconds(at.time)))
         };
         let _ = writeln!(
@@ -314,8 +314,8 @@ fn summary(rivals: &[Rival]) -> String {
     );
     for r in rivals {
         let mesh = r.cells.map_or_else(|| "as meshed".to_owned(), |[along, across]| format!("{along}×{across}"));
-        let until = |at: Option<Moment>| {
-            let text = |at: Moment| format!("{:.1} ({} steps)", milliseconds(at.time), at.steps);
+        let until = |at: Option<RivalTime>| {
+            let text = |at: RivalTime| format!("{:.1} ({} steps)", milliseconds(at.time), at.steps);
             at.map_or_else(|| "never".to_owned(), text)
         };
         let _ = writeln!(

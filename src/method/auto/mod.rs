@@ -354,9 +354,9 @@ impl Method for Auto {
         self.step(it)
     }
 
-    fn judge(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
         if let Some(newton) = &mut self.newton {
-            let verdict = newton.judge(it);
+            let verdict = newton.check_convergence(it);
             if matches!(verdict, Verdict::Converged | Verdict::AtRounding(_)) {
                 self.report.estimated_error = it.residual;
                 self.accept(it);

@@ -16,7 +16,7 @@ use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay::{self, Overlay};
-use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Pointer, Target};
+use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette};
@@ -302,7 +302,7 @@ impl<P: ComparedPane> Panes<P> {
             scales: controller.scales([place.width(), place.height()].map(f64::from)),
         };
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-        let interaction = display.pointer.process(ui, &response, &targets, Target::None);
+        let interaction = display.pointer.process(ui, &response, &targets, Interactivity::None);
         match interaction.camera {
             CameraMove::None => {}
             CameraMove::To(camera) => {

@@ -20,7 +20,7 @@ use crate::format::{engineering, three_digits};
 use crate::progress::Observer;
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
-use crate::study::figure::{Figure, FigurePoint, FigureRow, FigureSeries, Ink, Mark, Quantity};
+use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, Mark};
 use crate::study::{LoadCurve, Reference};
 
 /// Largest number of dots per setting.
@@ -351,7 +351,7 @@ impl Trace {
         }
         let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
         let bounds = self.bounds(&all, reach, axes(shown));
-        let quantity = Quantity::new(tr(axis.name), axis.limit.unit);
+        let quantity = FigureQuantity::new(tr(axis.name), axis.limit.unit);
         Figure {
             title: format!("{}: {}", tr(&scene.name), tr("Load curve")),
             quantities: quantities(quantity, scene),

@@ -15,7 +15,7 @@ use crate::scene::{MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::Status;
 use crate::study::figure::{
-    Figure, FigurePoint, FigureRow, FigureSeries, Ink, LoadAxis, Mark, Quantity, dominant_axis, leaves_the_axes,
+    Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, LoadAxis, Mark, dominant_axis, leaves_the_axes,
 };
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
@@ -100,11 +100,11 @@ pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -
 }
 
 /// Returns the load and both components of the displacement of the first probe.
-pub(crate) fn quantities(load: Quantity, scene: &Scene) -> Vec<Quantity> {
+pub(crate) fn quantities(load: FigureQuantity, scene: &Scene) -> Vec<FigureQuantity> {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     let x = said(&sentence!("u_x of %{probe}", probe));
     let y = said(&sentence!("u_y of %{probe}", probe));
-    vec![load, Quantity::new(x, "m"), Quantity::new(y, "m")]
+    vec![load, FigureQuantity::new(x, "m"), FigureQuantity::new(y, "m")]
 }
 
 /// Returns the heading of a column of displacements.
@@ -190,7 +190,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         series: all,
         head: [fill!("at %{load}", load = load), displacement_text(scene), String::new()],
         error_name: String::new(),
-        quantities: quantities(Quantity::new(said(&name), unit), scene),
+        quantities: quantities(FigureQuantity::new(said(&name), unit), scene),
     }
 }
 

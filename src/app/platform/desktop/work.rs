@@ -1,5 +1,7 @@
 //! Background work in threads.
 
+/// Worker of a web page: on a desktop there is none.
+pub(crate) use std::convert::Infallible as Worker;
 use std::io;
 use std::thread;
 
@@ -11,13 +13,7 @@ pub(crate) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Res
     thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
 }
 
-/// Worker of a web page: on a desktop there is none.
-#[derive(Debug)]
-pub(crate) enum Worker {}
-
-impl Worker {
-    /// Ends the work.
-    pub(crate) fn end(&self) {
-        match *self {}
-    }
+/// Ends the work of a worker of a web page.
+pub(crate) fn end(worker: &Worker) {
+    match *worker {}
 }

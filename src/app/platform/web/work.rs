@@ -67,18 +67,16 @@ pub(crate) struct Worker {
     _error: Closure<dyn FnMut(JsValue)>,
 }
 
-impl Worker {
-    /// Ends the work: the worker ends at once, without a result.
-    pub(crate) fn end(&self) {
-        self.worker.take().iter().for_each(web_sys::Worker::terminate);
-        // Without a receiver the task is known to have ended.
-        self.receive.take();
-    }
+/// Ends the work of a worker: it ends at once, without a result.
+pub(crate) fn end(worker: &Worker) {
+    worker.worker.take().iter().for_each(web_sys::Worker::terminate);
+    // Without a receiver the task is known to have ended.
+    worker.receive.take();
 }
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.end();
+        end(self);
     }
 }
 
