@@ -14,14 +14,13 @@ use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymmetricOrdering, factor
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 use nalgebra::{Matrix2, Vector2};
-use warpbeam::MethodKind;
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Pattern, Problem, System};
 use warpbeam::element::{ELEMENTS, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::scene::{LoadId, Scene, Source, open, registry};
-use warpbeam::simulation::Simulation;
 use warpbeam::solver::Factor;
+use warpbeam::{MethodKind, Simulation};
 
 fn scene(id: &str, set: &[String]) -> Scene {
     open(&Source { name: id.into(), assignments: set.to_vec() }).unwrap()

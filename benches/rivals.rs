@@ -8,7 +8,7 @@ mod rapier;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rapier::{Rapier, RapierSolver, Swing};
 use warpbeam::scene::{Source, open};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::{Simulation, Status};
 
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");

@@ -114,8 +114,7 @@ pub mod assembly;
 #[doc(hidden)]
 pub mod cli;
 mod continuation;
-#[doc(hidden)]
-pub mod displacement;
+mod displacement;
 #[doc(hidden)]
 pub mod dynamics;
 #[doc(hidden)]
@@ -130,8 +129,7 @@ pub mod format;
 pub mod image;
 #[doc(hidden)]
 pub mod material;
-#[doc(hidden)]
-pub mod mesh;
+mod mesh;
 #[doc(hidden)]
 pub mod method;
 mod model;
@@ -146,24 +144,17 @@ pub mod render;
 pub mod rotation;
 #[doc(hidden)]
 pub mod scene;
-#[doc(hidden)]
-pub mod section;
-#[doc(hidden)]
-pub mod sentence;
-#[doc(hidden)]
-pub mod simd;
-#[doc(hidden)]
-pub mod simulation;
+mod section;
+mod sentence;
+mod simd;
+mod simulation;
 #[doc(hidden)]
 pub mod solver;
-#[doc(hidden)]
-pub mod state;
-#[doc(hidden)]
-pub mod stress;
+mod state;
+mod stress;
 #[doc(hidden)]
 pub mod study;
-#[doc(hidden)]
-pub mod timings;
+mod timings;
 
 pub use nalgebra;
 

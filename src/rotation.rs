@@ -141,3 +141,6 @@ fn one_by_one<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
     }
     result
 }
+
+#[cfg(test)]
+mod tests;

@@ -38,9 +38,11 @@ pub use self::search::Found;
 pub use self::view::{Equilibrium, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
+pub(crate) use results::ProbeStress;
 pub use results::{
-    Deformation, Energy, LargestStress, ProbeResult, ProbeStress, StressResult, SupportReaction, energy, probe_results,
-    reaction, support_reactions, supports_power,
+    Deformation, Energy, ProbeResult, StressResult, SupportReaction, energy, probe_results, reaction,
+    support_reactions, supports_power,
 };
 pub use status::Status;
 

@@ -13,19 +13,21 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::assembly::{Kinematics, Problem};
-use crate::format::{number, three_digits};
 use crate::rotation::{Rotation, polar_or};
 use crate::scene::{Material, Plane};
-use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 
 mod estimate;
 mod recovery;
 mod singularity;
+#[cfg(feature = "cli")]
+mod warning;
 
 pub use estimate::ErrorEstimate;
 pub use recovery::Recovery;
 pub use singularity::Singularity;
+#[cfg(feature = "cli")]
+pub(crate) use warning::{inversion_warning, strain_warning};
 
 /// Symmetric second-order tensor without shear out of the plane: stress (Pa) or strain.
 ///
@@ -140,33 +142,6 @@ impl Local {
 
 /// Largest strain for which the linear law between T and ε is realistic.
 pub const LAW_HOLDS: f64 = 0.1;
-
-/// Returns a warning for strains beyond [`LAW_HOLDS`].
-#[must_use]
-pub fn strain_warning(max_strain: f64) -> Option<Sentence> {
-    /// Relative excess that is rounding error.
-    const ROUNDING: f64 = 1e-9;
-    let percent = 100.0 * max_strain;
-    (percent.is_finite() && max_strain > LAW_HOLDS * (1.0 + ROUNDING)).then(|| {
-        sentence!(
-            "strains reach %{n} %: beyond %{most} % the linear law between stress and strain is not realistic",
-            n = number(three_digits(percent)),
-            most = (100.0 * LAW_HOLDS).to_string()
-        )
-    })
-}
-
-/// Returns a warning for a state in which some elements, out of `all`, are inverted.
-#[must_use]
-pub fn inversion_warning(inverted: usize, all: usize) -> Option<Sentence> {
-    (inverted > 0).then(|| {
-        sentence!(
-            "inverted elements: %{n} of %{all}, with a negative area, which no real body can have",
-            n = inverted.to_string(),
-            all = all.to_string()
-        )
-    })
-}
 
 /// Calls `visit` with the index of every quadrature point and its strain and rotation.
 pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, visit: &mut dyn FnMut(usize, Local)) {

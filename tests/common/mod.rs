@@ -18,7 +18,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use warpbeam::scene::{Analysis, Scene, Source, open, registry};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::{Simulation, Status};
 
 /// Returns `true` where sweeps run in full: by `scripts/test --all`.
 pub fn sweeps_run_in_full() -> bool {

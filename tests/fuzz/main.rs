@@ -7,10 +7,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use peak_alloc::PeakAlloc;
 use warpbeam::element::ELEMENTS;
-use warpbeam::mesh::Mesh;
 use warpbeam::scene::units::parse;
 use warpbeam::scene::{ElementKind, Scene, registry};
-use warpbeam::simulation::{Field, Simulation, Status};
+use warpbeam::{Field, Mesh, Simulation, Status};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

@@ -7,14 +7,14 @@ use warpbeam::assembly::{Problem, SystemError};
 use warpbeam::element::{ELEMENTS, side_weights};
 use warpbeam::exact_beam::{ClampedBeam, ExactBeam};
 use warpbeam::format::{count, number};
-use warpbeam::mesh::{GmshError, MaterialPoint, MeshError};
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::scene::{Source, open};
-use warpbeam::simulation::SimulationError;
 use warpbeam::solver::{Factor, Symbolic};
-use warpbeam::state::StateError;
 use warpbeam::study::{LoadCurve, Reference};
-use warpbeam::{Axis, ElementKind, LoadId, Material, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::{
+    Axis, ElementKind, GmshError, LoadId, Material, MaterialPoint, Mesh, MeshError, MethodKind, Scene, Simulation,
+    SimulationError, StateError, Status,
+};
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
 

@@ -6,9 +6,8 @@ use warpbeam::assembly::{Forces, Matrix, Problem, System};
 use warpbeam::element::{QuadraturePoint, Tangent, side_weights, warped_strain};
 use warpbeam::exact_beam::error_percent;
 use warpbeam::material::Lame;
-use warpbeam::mesh::Mesh;
 use warpbeam::rotation::{Rotation, polar};
-use warpbeam::{ElementKind, Load, Material, MethodKind, Plane, Scene, Simulation, Status};
+use warpbeam::{ElementKind, Load, Material, Mesh, MethodKind, Plane, Scene, Simulation, Status};
 
 const X: [[f64; 2]; 3] = [[0.0, 0.0], [2.0, 0.3], [0.4, 1.1]];
 const MOVED: [[f64; 2]; 3] = [[0.1, -0.2], [0.9, 1.7], [-0.8, 0.7]];

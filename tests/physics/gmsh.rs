@@ -6,8 +6,7 @@ use std::fs;
 use crate::common::{scene, scene_ids, stderr, stdout, warpbeam};
 use nalgebra::Vector2;
 use warpbeam::assembly::System;
-use warpbeam::mesh::{GmshError, Mesh, MeshError};
-use warpbeam::{ElementKind, Scene, Simulation};
+use warpbeam::{ElementKind, GmshError, Mesh, MeshError, Scene, Simulation};
 
 /// Two triangles, the second clockwise; the left side is a physical curve.
 const SQUARE: &str = r#"$MeshFormat

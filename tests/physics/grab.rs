@@ -113,7 +113,7 @@ fn a_grab_needs_a_point_of_the_mesh_and_a_finite_target() {
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(simulation.pull_to(Vector2::new(bad, 0.0)).is_err());
     }
-    let point = warpbeam::mesh::MaterialPoint { element: 1_000_000, at: [0.3, 0.3] };
+    let point = warpbeam::MaterialPoint { element: 1_000_000, at: [0.3, 0.3] };
     assert!(!simulation.grab(point));
     let mut finer = simulation.scene().clone();
     finer.beam.as_mut().unwrap().cells = [3, 3];

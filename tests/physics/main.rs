@@ -30,7 +30,6 @@ mod pulses;
 mod reference;
 #[cfg(feature = "rivals")]
 mod rivals;
-mod rotation;
 mod sections;
 mod stress;
 mod study;

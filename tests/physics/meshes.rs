@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
-use warpbeam::mesh::{MeshError, Segment};
-use warpbeam::{ElementKind, Mesh, Scene, Simulation, Status};
+use warpbeam::{ElementKind, Mesh, MeshError, Scene, Segment, Simulation, Status};
 
 fn square() -> Vec<Vector2<f64>> {
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from).to_vec()

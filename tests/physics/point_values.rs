@@ -2,11 +2,9 @@
 
 use crate::common::{scene, solved};
 use nalgebra::{Matrix2, Vector2};
-use warpbeam::mesh::MaterialPoint;
 use warpbeam::rotation::Rotation;
 use warpbeam::scene::{ElementKind, MethodKind};
-use warpbeam::simulation::{Field, PointState, PointValues, Simulation};
-use warpbeam::{Material, Plane, Scene};
+use warpbeam::{Field, Material, MaterialPoint, Plane, PointState, PointValues, Scene, Simulation};
 
 /// A body that is stretched by S and rotated by R has F = R S everywhere, and its stress follows from the strain S − I.
 #[test]

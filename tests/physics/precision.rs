@@ -8,12 +8,11 @@ use nalgebra::Vector2;
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem};
 use warpbeam::element::{ElementType, QuadraturePoint, StrainRate, Tangent};
 use warpbeam::material::Lame;
-use warpbeam::mesh::Mesh;
 use warpbeam::method::Reason;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;
 use warpbeam::study::extremes::{Case, CaseBody, CaseStart, Outcome};
-use warpbeam::{ElementKind, MethodKind, Simulation, State, Status};
+use warpbeam::{ElementKind, Mesh, MethodKind, Simulation, State, Status};
 
 /// Returns a cantilever with L/H = 1000 under α = 1e-6.
 fn slender(element: ElementKind, method: MethodKind) -> Case {

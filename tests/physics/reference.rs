@@ -7,11 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::random;
 use nalgebra::Vector2;
-use warpbeam::mesh::{Mesh, Segment};
 use warpbeam::scene::{Beam, Load, MethodKind, Place};
-use warpbeam::simulation::Status;
 use warpbeam::study::{Effort, Reference};
-use warpbeam::{ElementKind, Scene, Simulation};
+use warpbeam::{ElementKind, Mesh, Scene, Segment, Simulation, Status};
 
 /// Returns a mesh of six-node triangles on a grid that has a line at every point of a scene. Cells between
 /// lines are cut once, from lower left to upper right. Written for these tests, it shares no code with the

@@ -6,13 +6,13 @@ use libtest_mimic::Trial;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Tangent};
-use warpbeam::mesh::{MaterialPoint, Mesh};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::Rotation;
-use warpbeam::simulation::{Deformation, Field, Simulation};
 use warpbeam::solver::Factor;
-use warpbeam::stress::NodalStress;
-use warpbeam::{Axis, ElementKind, Load, Material, Plane, Scene, State, Status};
+use warpbeam::{
+    Axis, Deformation, ElementKind, Field, Load, Material, MaterialPoint, Mesh, NodalStress, Plane, Scene, Simulation,
+    State, Status,
+};
 
 use crate::{Test, suite};
 

@@ -3,9 +3,8 @@
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::method::METHODS;
-use warpbeam::simulation::{Field, Simulation};
 use warpbeam::study::color;
-use warpbeam::{LoadId, MethodKind, Scene, Status};
+use warpbeam::{Field, LoadId, MethodKind, Scene, Simulation, Status};
 
 use crate::common::{scene, scene_with};
 use crate::{Test, suite};

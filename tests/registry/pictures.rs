@@ -6,11 +6,10 @@ use std::path::PathBuf;
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
-use warpbeam::Place;
 use warpbeam::app::picture;
-use warpbeam::mesh::MaterialPoint;
 use warpbeam::render::{Camera, Gpu, colormap};
 use warpbeam::scene::registry;
+use warpbeam::{MaterialPoint, Place};
 
 use crate::common::pictures::{difference, distance, for_picture, lab, pixel, read_png};
 use crate::common::{stderr, warpbeam};

@@ -8,8 +8,7 @@ use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::method::METHODS;
 use warpbeam::method::Reason;
 use warpbeam::scene::Analysis;
-use warpbeam::simulation::Simulation;
-use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Status};
+use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Simulation, Status};
 
 use crate::common::{ids_of, scene, scene_ids};
 use crate::{Test, suite};

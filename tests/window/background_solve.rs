@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Load, LoadId, MethodKind, Scene, Source};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::{Simulation, Status};
 
 /// Returns a window that solves everything in the background; every frame is checked.
 fn harness(id: &str) -> Harness<'static, Lab> {

@@ -13,8 +13,8 @@ use warpbeam::app::{Lab, Pane, PaneSetting, parse_panes, picture};
 use warpbeam::format::{count, percent};
 use warpbeam::render::Gpu;
 use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
-use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::Reference;
+use warpbeam::{Simulation, Status};
 
 fn lab_of(id: &str, scene: Scene) -> Lab {
     let simulation = Simulation::new(&scene).unwrap();

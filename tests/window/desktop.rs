@@ -14,9 +14,9 @@ use crate::common::{scene, solve_json, warpbeam};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use warpbeam::Simulation;
 use warpbeam::app::{Lab, RecoveryCopies};
 use warpbeam::scene::{Load, Source};
-use warpbeam::simulation::Simulation;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
 
 /// Longest time to wait for a condition: a busy machine takes half a minute to compile shaders for the first time.

@@ -10,9 +10,9 @@ use egui::{Key, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
+use warpbeam::Simulation;
 use warpbeam::app::{Lab, parse_panes};
 use warpbeam::scene::{Load, MethodKind, Scene, Source};
-use warpbeam::simulation::Simulation;
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::{LoadCurve, Reference};
 

@@ -9,14 +9,13 @@ use egui::accesskit::Role;
 use egui::{FontId, Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use warpbeam::Scene;
 use warpbeam::app::{Lab, Language, Settings, parse_panes};
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::{Source, registry};
-use warpbeam::simulation::{Field, Simulation};
 use warpbeam::study::{Extent, Study};
+use warpbeam::{Field, Scene, Simulation};
 
 /// Returns the Chinese texts by their English ones.
 fn catalogue() -> BTreeMap<String, String> {

@@ -14,7 +14,7 @@ use warpbeam::element::{QuadraturePoint, Tangent};
 use warpbeam::format::{engineering, percent, three_digits};
 use warpbeam::rotation::polar;
 use warpbeam::scene::{ElementKind, MethodKind, Source};
-use warpbeam::simulation::{Simulation, Status};
+use warpbeam::{Simulation, Status};
 
 fn harness(size: [f32; 2]) -> Harness<'static, Lab> {
     let scene = crate::common::scene("cantilever");

@@ -9,9 +9,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use crate::common::scene;
+use warpbeam::Simulation;
 use warpbeam::app::Lab;
 use warpbeam::scene::{ElementKind, MethodKind, Source};
-use warpbeam::simulation::Simulation;
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::limits::MethodLimits;
 

@@ -10,8 +10,7 @@ use crate::common::{ids_of, scene, warpbeam};
 use warpbeam::app::Lab;
 use warpbeam::format::{engineering, engineering_pair, percent, three_digits, two_digits};
 use warpbeam::scene::{Analysis, Source};
-use warpbeam::simulation::Simulation;
-use warpbeam::{MethodKind, Scene};
+use warpbeam::{MethodKind, Scene, Simulation};
 
 /// Texts of the window.
 struct Shown(Vec<String>);

@@ -8,14 +8,13 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
-use warpbeam::Scene;
 use warpbeam::app::Lab;
 use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, MethodKind, Plane, Source};
-use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
 use warpbeam::study::{Demand, Reference};
+use warpbeam::{Scene, Simulation, Status};
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let mut harness = harness_of(id);

@@ -2,10 +2,10 @@
 
 use crate::common::pictures::{difference, distance, lab, pixel, read_png};
 use crate::common::{program, scene, stderr, warpbeam};
+use warpbeam::Status;
 use warpbeam::app::picture;
 use warpbeam::image::Picture;
 use warpbeam::render::Gpu;
-use warpbeam::simulation::Status;
 
 /// The golden comparison detects a beam that bends a little more.
 #[test]

@@ -10,8 +10,8 @@ use crate::common::scene;
 use crate::ui_interaction::on_body;
 use warpbeam::app::Lab;
 use warpbeam::scene::Source;
-use warpbeam::simulation::{Simulation, Status};
 use warpbeam::study::section_chart;
+use warpbeam::{Simulation, Status};
 
 fn harness(id: &str) -> Harness<'static, Lab> {
     let scene = scene(id);

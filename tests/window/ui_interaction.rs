@@ -10,7 +10,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Analysis, Load, LoadId, MethodKind, Source};
-use warpbeam::simulation::{Field, PointValues, Simulation, Status};
+use warpbeam::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s; short enough for double clicks within a few frames.
 const STEP: f32 = 0.05;

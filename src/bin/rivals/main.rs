@@ -20,8 +20,7 @@ use warpbeam::assembly::{Problem, System};
 use warpbeam::export::{ExportError, write_text};
 use warpbeam::scene::{Source, open};
 use warpbeam::study::{Reference, StudyError, times_from_rest};
-use warpbeam::timings::Timings;
-use warpbeam::{ElementKind, MethodKind, Scene, SceneError, Simulation, SimulationError, Status};
+use warpbeam::{ElementKind, MethodKind, Scene, SceneError, Simulation, SimulationError, Status, Timings};
 
 mod rapier;
 

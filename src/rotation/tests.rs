@@ -1,9 +1,9 @@
 //! Tests of the closed-form rotation against exact arithmetic and the SVD.
 
+use super::{Rotation, polar, polar_or};
+use crate::simd::{LANES, Lanes};
 use nalgebra::Matrix2;
 use num_bigint::BigInt;
-use warpbeam::rotation::{Rotation, polar, polar_or};
-use warpbeam::simd::{LANES, Lanes};
 
 /// Returns a finite f64 as an integer times 2^−1074, exactly.
 fn exact(value: f64) -> BigInt {
