@@ -6,13 +6,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 
-use crate::common::lab::pick;
+use crate::common::lab::{pick, unfold};
 use crate::common::scene;
 use crate::ui_interaction::{click, harness, harness_of, on_body, shapes};
 use warpbeam::app::{Lab, Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
 use warpbeam::scene::{Axis, Load, Place};
-use warpbeam::simulation::{Field, PointValues};
+use warpbeam::{Field, PointValues};
 
 /// Returns all texts that are painted without a widget.
 fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
@@ -237,4 +237,26 @@ fn bases_of_objects_are_dragged_along_the_body() {
     let probe = seen(&harness, at);
     click(&mut harness, probe);
     assert!(harness.state().probed().is_some(), "a press without a drag inspects");
+}
+
+/// The coordinates of a load at a point are typed with units.
+#[test]
+fn coordinates_of_a_point_are_typed() {
+    let mut harness = harness_of("cantilever", scene("cantilever").force([5.0, 0.5], [0.0, -10.0]));
+    harness.run();
+    unfold(&mut harness, "Force on");
+    harness.get_by_role_and_label(Role::SpinButton, "x").click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(egui::Event::Text("250 cm".to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+    let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
+    assert_eq!(*place, Place::At([2.5, 0.5]));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run();
+    let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
+    assert_eq!(*place, Place::At([5.0, 0.5]), "undone");
 }

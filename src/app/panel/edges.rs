@@ -1,6 +1,6 @@
 //! Loads and supports in the panel: the edge or point of each, and buttons that add and remove them.
 
-use egui::{Align, Button, ComboBox, Layout, Role, Ui, WidgetInfo, vec2};
+use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Ui, WidgetInfo, vec2};
 
 use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
@@ -11,8 +11,8 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::show_message;
 use crate::assembly::{Edge, System};
-use crate::format::number;
-use crate::scene::{Axis, Load, Place, Scene, Support};
+use crate::format::{editable, number};
+use crate::scene::{Axis, Load, Place, Scene, Support, limits, units};
 
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
@@ -133,7 +133,35 @@ fn row(
             }
         });
     });
+    if let Place::At(at) = present {
+        let moved = coordinates(ui, (label, id), *at);
+        change = change.or(moved.map(|at| EdgeChange::Move(at.into())));
+    }
     change
+}
+
+/// Shows the coordinates of a point, m; returns the point that was typed.
+fn coordinates(ui: &mut Ui, id: (&'static str, usize), at: [f64; 2]) -> Option<[f64; 2]> {
+    let mut moved = at;
+    ui.push_id(id, |ui| {
+        ui.horizontal(|ui| {
+            for (name, value) in ["x", "y"].into_iter().zip(&mut moved) {
+                let label = ui.label(name);
+                let mut typed = *value;
+                let field = DragValue::new(&mut typed)
+                    .speed(0.0)
+                    .update_while_editing(false)
+                    .custom_formatter(|v, _| editable(v, "m"))
+                    .custom_parser(|text| units::parse(text, "m").ok());
+                let tip = tr("Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm");
+                let response = ui.add(field).labelled_by(label.id).on_hover_text(tip);
+                if response.changed() && limits::COORDINATE.check(typed).is_ok() {
+                    *value = typed;
+                }
+            }
+        });
+    });
+    (moved != at).then_some(moved)
 }
 
 /// Returns the numbers of loads and supports.
