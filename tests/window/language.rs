@@ -247,6 +247,7 @@ const NOT_SHOWN: &[&str] = &[
     "Noto Sans SC",
     "probe values",
     "probe matrices",
+    "status line",
     "σ_x, σ_y",
     "τ_xy",
     "σ_1, σ_2",

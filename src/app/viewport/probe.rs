@@ -209,7 +209,7 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     let rows = rows_of(point, *axes);
     Grid::new("probe values").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         for (name, text, tip) in &rows {
-            ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
+            ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
             ui.label(text).on_hover_text(tr(tip));
             ui.end_row();
         }
@@ -234,7 +234,8 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     ui.horizontal(|ui| {
         if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
             let title = fill!("Point %{place}", place = place.as_str());
-            let lines = std::iter::once(title).chain(rows.iter().map(|(name, text, _)| format!("{name}\t{text}")));
+            let lines =
+                std::iter::once(title).chain(rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name))));
             request = Some(CardRequest::Copy(lines.map(|line| line + "\n").collect()));
         }
         let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";

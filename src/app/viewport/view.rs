@@ -686,8 +686,9 @@ impl BodyView {
 /// Returns the margins around a box that do not depend on the loads.
 fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
     match (content.card.is_some(), overlay::has_legend_on_top(view[1] as f32)) {
-        (_, true) => LOW_MARGINS,
+        (true, true) => Margins { bottom: CARD_MARGINS.bottom, ..LOW_MARGINS },
         (true, false) => CARD_MARGINS,
+        (false, true) => LOW_MARGINS,
         (false, false) => FIT_MARGINS,
     }
 }
