@@ -125,10 +125,8 @@ pub mod export;
 #[doc(hidden)]
 pub mod format;
 #[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod image;
-#[doc(hidden)]
-pub mod material;
+mod image;
+mod material;
 mod mesh;
 #[doc(hidden)]
 pub mod method;

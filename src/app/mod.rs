@@ -22,6 +22,7 @@ mod viewport;
 mod widgets;
 mod window;
 
+pub use crate::image::Picture;
 pub use language::Language;
 pub use modes::compare::{MotionPane, Pane, PaneSetting, PaneSettingError, parse_panes};
 #[doc(hidden)]

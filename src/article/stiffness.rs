@@ -8,7 +8,7 @@
 //! use warpbeam::ElementKind;
 //! use warpbeam::article::stiffness::ElementStiffness;
 //! use warpbeam::element::QuadraturePoint;
-//! use warpbeam::material::Lame;
+//! use warpbeam::element::Lame;
 //! use warpbeam::rotation::polar;
 //!
 //! let rest = [Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)];

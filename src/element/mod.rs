@@ -6,7 +6,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::displacement::Compensated;
-use crate::material::Lame;
+pub use crate::material::Lame;
 use crate::model::ElementKind;
 use crate::rotation::{Rotation, polar_or_else};
 use crate::simd::{LANES, Lanes, Number, one_plus};

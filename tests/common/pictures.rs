@@ -6,8 +6,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use warpbeam::Simulation;
-use warpbeam::app::Lab;
-use warpbeam::image::Picture;
+use warpbeam::app::{Lab, Picture};
 use warpbeam::scene::{Analysis, Source};
 
 use super::{scene, scene_with};

@@ -3,9 +3,8 @@
 use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
 use warpbeam::article::stiffness::ElementStiffness;
 use warpbeam::assembly::{Forces, Matrix, Problem, System};
-use warpbeam::element::{QuadraturePoint, Tangent, side_weights, warped_strain};
+use warpbeam::element::{Lame, QuadraturePoint, Tangent, side_weights, warped_strain};
 use warpbeam::exact_beam::error_percent;
-use warpbeam::material::Lame;
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::{ElementKind, Load, Material, Mesh, MethodKind, Plane, Scene, Simulation, Status};
 

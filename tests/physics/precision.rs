@@ -6,8 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::Vector2;
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem};
-use warpbeam::element::{ElementType, QuadraturePoint, StrainRate, Tangent};
-use warpbeam::material::Lame;
+use warpbeam::element::{ElementType, Lame, QuadraturePoint, StrainRate, Tangent};
 use warpbeam::method::Reason;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;

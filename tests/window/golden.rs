@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use crate::common::pictures::{difference, lab, read_png};
 use egui::{Key, Theme};
 use egui_kittest::Harness;
-use warpbeam::app::{Lab, Language, parse_panes, picture};
-use warpbeam::image::Picture;
+use warpbeam::app::{Lab, Language, Picture, parse_panes, picture};
 use warpbeam::render::Gpu;
 
 /// Size of the window in pixels, wide enough for the panel.

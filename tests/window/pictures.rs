@@ -3,8 +3,7 @@
 use crate::common::pictures::{difference, distance, lab, pixel, read_png};
 use crate::common::{program, scene, stderr, warpbeam};
 use warpbeam::Status;
-use warpbeam::app::picture;
-use warpbeam::image::Picture;
+use warpbeam::app::{Picture, picture};
 use warpbeam::render::Gpu;
 
 /// The golden comparison detects a beam that bends a little more.

@@ -68,7 +68,7 @@ pub(crate) struct FactWork<F>(SentScene, PhantomData<fn() -> F>);
 
 impl<F: Fact> Work for FactWork<F> {
     const NAME: &'static str = F::NAME;
-    type Report = f64;
+    type Reported = f64;
     type Output = Computed<F::Value>;
 
     fn run(self, reporter: &Reporter<f64, Self::Output>) -> Self::Output {

@@ -51,7 +51,7 @@ type SentOutcome = Option<Box<(SentBodies, Option<Quality>)>>;
 
 impl Work for SolveWork {
     const NAME: &'static str = "solve";
-    type Report = SentProgress;
+    type Reported = SentProgress;
     type Output = SentOutcome;
 
     fn run(self, reporter: &Reporter<SentProgress, SentOutcome>) -> SentOutcome {

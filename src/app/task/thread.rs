@@ -43,10 +43,10 @@ impl<T: Serialize + DeserializeOwned + Send + 'static> Data for T {}
 pub(crate) trait Work: Data {
     /// Name under which a worker looks up the work.
     const NAME: &'static str;
-    type Report: Data;
+    type Reported: Data;
     type Output: Data;
 
-    fn run(self, reporter: &Reporter<Self::Report, Self::Output>) -> Self::Output;
+    fn run(self, reporter: &Reporter<Self::Reported, Self::Output>) -> Self::Output;
 }
 
 /// Work in a background thread that reports its progress as `P` and ends with a `T`. Dropping it cancels it.
@@ -108,7 +108,7 @@ impl<P: Data, T: Data> Task<P, T> {
     /// # Errors
     /// The system cannot start another thread.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn run<W: Work<Report = P, Output = T>>(work: W) -> io::Result<Self> {
+    pub(crate) fn run<W: Work<Reported = P, Output = T>>(work: W) -> io::Result<Self> {
         Self::start(W::NAME, move |reporter| work.run(reporter))
     }
 
@@ -117,7 +117,7 @@ impl<P: Data, T: Data> Task<P, T> {
     /// # Errors
     /// The browser cannot start another worker.
     #[cfg(target_arch = "wasm32")]
-    pub(crate) fn run<W: Work<Report = P, Output = T>>(work: W) -> io::Result<Self> {
+    pub(crate) fn run<W: Work<Reported = P, Output = T>>(work: W) -> io::Result<Self> {
         use platform::work::Received;
         let (sender, receiver) = channel();
         let receive = move |bytes: &[u8]| {
@@ -149,7 +149,7 @@ impl<P, T> Task<P, T> {
 pub(crate) fn serve<W: Work>(request: &[u8]) {
     let Some(work) = platform::work::decode::<W>(request) else { return platform::work::post(&[]) };
     let send = Box::new(|message| {
-        platform::work::post(&platform::work::encode::<Message<W::Report, W::Output>>(&message));
+        platform::work::post(&platform::work::encode::<Message<W::Reported, W::Output>>(&message));
         true
     });
     let reporter = Reporter { send, is_cancelled: Arc::new(AtomicBool::new(false)) };

@@ -1,22 +1,19 @@
 //! Report of the window's state, which tests of the web page read.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::app::shell::lab::Lab;
 use crate::scene::Load;
 
 /// Returns the state of the window as JSON. `frames` is the number of frames drawn. Positions are in points from the
-/// upper left corner of the window.
+/// upper left corner of the window. A number that is not finite is `null`.
 pub(super) fn json(lab: &Lab, frames: u64) -> String {
     let (scene, simulation) = (lab.scene(), lab.simulation());
-    let probes = scene.probes.iter().map(|probe| {
-        let u = simulation.probe(&probe.name).map(|u| [number(u.x), number(u.y)]);
-        json!({ "name": probe.name, "u": u })
-    });
+    let probes = scene.probes.iter().map(|probe| json!({ "name": probe.name, "u": simulation.probe(&probe.name) }));
     let loads = scene.loads.iter().map(|load| match load {
-        Load::Force { force, .. } => json!({ "force": force.map(number) }),
-        Load::Moment { moment, .. } => json!({ "moment": number(*moment) }),
-        Load::Gravity { acceleration, .. } => json!({ "gravity": acceleration.map(number) }),
+        Load::Force { force, .. } => json!({ "force": force }),
+        Load::Moment { moment, .. } => json!({ "moment": moment }),
+        Load::Gravity { acceleration, .. } => json!({ "gravity": acceleration }),
     });
     let tips = lab.arrow_tips().into_iter().map(|(load, at)| json!({ "load": load, "x": at.x, "y": at.y }));
     let (study, is_measuring) = lab.study();
@@ -34,14 +31,14 @@ pub(super) fn json(lab: &Lab, frames: u64) -> String {
         "language": lab.language(),
         "status": simulation.status().id(),
         "iterations": simulation.iterations(),
-        "residual": number(simulation.residual()),
+        "residual": simulation.residual(),
         "unknowns": simulation.system().dofs(),
         "probes": probes.collect::<Vec<_>>(),
         "loads": loads.collect::<Vec<_>>(),
         "motion": simulation.motion().map(|motion| json!({
-            "time": number(simulation.state().time()),
+            "time": simulation.state().time(),
             "steps": motion.counts().steps,
-            "energy_drift": number(motion.ledger().drift()),
+            "energy_drift": motion.ledger().drift(),
         })),
         "card": lab.card().map(|(card, _)| card),
         "cards": lab.card().map(|(_, cards)| cards),
@@ -50,14 +47,9 @@ pub(super) fn json(lab: &Lab, frames: u64) -> String {
         "is_computing": lab.is_computing(),
         "offers_unsaved": lab.offers_unsaved(),
         "arrow_tips": tips.collect::<Vec<_>>(),
-        "scale": number(lab.camera().scale),
+        "scale": lab.camera().scale,
         "view": [view.left(), view.top(), view.right(), view.bottom()],
         "body": [body.left(), body.top(), body.right(), body.bottom()],
     })
     .to_string()
-}
-
-/// Returns a number, or `null` if it is not finite.
-fn number(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
 }

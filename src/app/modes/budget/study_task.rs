@@ -27,7 +27,7 @@ pub(crate) struct StudyWork(SentScene, Extent);
 
 impl Work for StudyWork {
     const NAME: &'static str = "study";
-    type Report = StudyProgress;
+    type Reported = StudyProgress;
     type Output = Done;
 
     fn run(self, reporter: &Reporter<StudyProgress, Done>) -> Done {

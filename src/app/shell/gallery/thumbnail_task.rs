@@ -15,7 +15,7 @@ pub(crate) type Made = (usize, Thumbnail);
 
 impl Work for ThumbnailWork {
     const NAME: &'static str = "thumbnails";
-    type Report = Made;
+    type Reported = Made;
     type Output = ();
 
     fn run(self, reporter: &Reporter<Made, ()>) {
