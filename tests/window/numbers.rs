@@ -1,4 +1,6 @@
-//! The numbers of the window are those of `warpbeam solve --json`, wherever they stand: status bar, summary, Details.
+//! The numbers of the window are those of `warpbeam solve --json`, wherever they stand: status bar, summary, Details, the
+//! panes of Compare, the cards of Learn, and plots. Those of Budget are those of `warpbeam study`, and those of Limits are
+//! those of `warpbeam limits`.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -6,31 +8,62 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use serde_json::Value;
 
 use crate::common::lab::unfold;
-use crate::common::{ids_of, scene, warpbeam};
-use warpbeam::app::Lab;
-use warpbeam::format::{engineering, engineering_pair, percent, three_digits, two_digits};
+use crate::common::{ids_of, scene, stdout, warpbeam};
+use warpbeam::app::{Lab, parse_panes};
+use warpbeam::format::{bound_percent, count, engineering, engineering_pair, percent, three_digits, two_digits};
 use warpbeam::scene::{Analysis, Source};
-use warpbeam::{MethodKind, Scene, Simulation};
+use warpbeam::study::{Extent, Study};
+use warpbeam::{MethodKind, Scene, Simulation, Status};
 
 /// Texts of the window.
 struct Shown(Vec<String>);
 
+fn lab_of(id: &str, scene: Scene) -> Lab {
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
+}
+
+fn harness_of(lab: Lab) -> Harness<'static, Lab> {
+    let mut harness = Harness::builder().with_size([1280.0, 2000.0]).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    );
+    harness.run_steps(3);
+    harness
+}
+
+/// Returns the numbers of `solve` for a scene.
+fn solve(scene: &Scene) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene.to_toml().unwrap()).unwrap();
+    serde_json::from_slice(&warpbeam(&["solve", path.to_str().unwrap(), "--json"]).stdout).unwrap()
+}
+
+/// Formats a displacement as plots do.
+fn pair(value: &Value) -> String {
+    engineering_pair([0, 1].map(|i| three_digits(value[i].as_f64().unwrap())), "m")
+}
+
 impl Shown {
     fn of(id: &str, scene: Scene) -> Self {
-        let simulation = Simulation::new(&scene).unwrap();
-        let mut lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+        let mut lab = lab_of(id, scene);
         lab.solve();
-        let mut harness: Harness<'_, Lab> = Harness::builder().with_size([1280.0, 2000.0]).build_ui_state(
-            |ui, lab: &mut Lab| {
-                lab.advance(ui.input(|i| i.time));
-                lab.ui(ui);
-            },
-            lab,
-        );
-        harness.run_steps(3);
+        let mut harness = harness_of(lab);
         unfold(&mut harness, "stable");
-        let labels = harness.get_all_by(|node| node.role() == Role::Label);
-        Self(labels.filter_map(|node| node.accesskit_node().value().or(node.accesskit_node().label())).collect())
+        Self::with_role(&harness, &|role| role == Role::Label)
+    }
+
+    fn in_window(harness: &Harness<'_, Lab>) -> Self {
+        Self::with_role(harness, &|_| true)
+    }
+
+    fn with_role(harness: &Harness<'_, Lab>, has: &dyn Fn(Role) -> bool) -> Self {
+        let nodes = harness.get_all_by(|node| has(node.role())).map(|node| node.accesskit_node());
+        Self(nodes.filter_map(|node| node.value().or(node.label())).collect())
     }
 
     /// Returns the value of a row of Details.
@@ -42,6 +75,10 @@ impl Shown {
 
     fn starting_with(&self, start: &str) -> Option<&str> {
         self.0.iter().map(String::as_str).find(|text| text.starts_with(start))
+    }
+
+    fn has(&self, text: &str) -> bool {
+        self.0.iter().any(|shown| shown == text)
     }
 }
 
@@ -138,4 +175,173 @@ fn numbers_are_those_of_solve() {
         }
     }
     assert!(results > 20 && diverged > 4, "{results} results, {diverged} diverged");
+}
+
+/// Each pane of Compare, and its row beside the plot, have the numbers of `solve` for the pane's scene. The time in the
+/// header is the pane's.
+#[test]
+fn panes_have_the_numbers_of_solve() {
+    let mut diverged = 0;
+    for (id, factor) in [("article", 1.0), ("cantilever", 1.0), ("cantilever", 3.0), ("gravity", 1.0)] {
+        let mut scene = scene(id);
+        scene.scale_loads(factor);
+        let mut lab = lab_of(id, scene);
+        lab.show_comparison(&parse_panes("linear,warped,newton,newton:t6").unwrap());
+        lab.solve();
+        let harness = harness_of(lab);
+        let shown = Shown::in_window(&harness);
+        for (number, pane) in harness.state().panes().iter().enumerate() {
+            let json = solve(pane.scene().unwrap());
+            let setting = pane.setting().of(harness.state().scene());
+            let what = format!("{id} at {factor}, {setting}");
+            let header = shown.starting_with(&format!("Pane {}: ", number + 1)).unwrap();
+            let row = shown.starting_with(&format!("{setting}: ")).unwrap();
+            if json["status"] != "converged" {
+                assert!(header.contains("Does not converge") && !header.contains("error"), "{what}: {header}");
+                assert_eq!(row, format!("{setting}: does not converge"), "{what}");
+                diverged += 1;
+                continue;
+            }
+            let probe = &json["probes"][0];
+            let error = probe["error_percent"].as_f64().map(percent).unwrap();
+            let time = engineering(two_digits(pane.seconds().unwrap()), "s");
+            let iterations = count(json["iterations"].as_u64().unwrap(), "iteration");
+            assert!(header.ends_with(&format!(": error {error}, {time} \u{b7} {iterations}")), "{what}: {header}");
+            assert_eq!(row, format!("{setting}: {}, {error}", pair(&probe["u"])), "{what}");
+            assert!(shown.has(&format!("reference: {}", pair(&probe["reference_u"]))), "{what}: {:?}", shown.0);
+        }
+    }
+    assert!(diverged > 0);
+}
+
+/// The rows beside the load curve of a cantilever have the displacements of `solve` with each method, and of its
+/// reference solution.
+#[test]
+fn rows_of_the_load_curve_have_the_numbers_of_solve() {
+    for id in ["cantilever", "elastica"] {
+        let scene = scene(id);
+        let mut lab = lab_of(id, scene.clone());
+        lab.show_curve();
+        lab.solve();
+        let shown = Shown::in_window(&harness_of(lab));
+        for method in [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton] {
+            let json = solve(&scene.clone().with_method(method));
+            let probe = &json["probes"][0];
+            let is_solved = json["status"] == "converged";
+            let value = if is_solved { pair(&probe["u"]) } else { "not converged".to_owned() };
+            assert!(shown.has(&format!("{}: {value}", method.id())), "{id} {}: {value}, {:?}", method.id(), shown.0);
+            if is_solved {
+                let exact = format!("exact beam: {}", pair(&probe["reference_u"]));
+                assert!(shown.has(&exact), "{id}: {exact}, {:?}", shown.0);
+            }
+        }
+    }
+}
+
+/// On every card of Learn the status bar has the numbers of `solve` for the card's scene.
+#[test]
+fn cards_have_the_numbers_of_solve() {
+    let mut lab = lab_of("cantilever", scene("cantilever"));
+    lab.show_card(1);
+    let (_, count) = lab.card().unwrap();
+    let (mut errors, mut rhos) = (0, 0);
+    for number in 1..=count {
+        lab.show_card(number);
+        lab.solve();
+        let mut harness = harness_of(lab);
+        let scene = harness.state().scene().clone();
+        let (shown, json) = (Shown::in_window(&harness), solve(&scene));
+        let what = format!("card {number}");
+        let is_solved = *harness.state().simulation().status() == Status::Converged;
+        assert_eq!(json["status"] == "converged", is_solved, "{what}: {}", json["status"]);
+        let bar = shown.starting_with("ERROR ").unwrap();
+        match json["probes"][0]["error_percent"].as_f64().filter(|_| is_solved) {
+            Some(error) => {
+                assert!(bar.starts_with(&format!("ERROR {}", percent(error))), "{what}: {bar}, {error}");
+                errors += 1;
+            }
+            None => assert!(!bar.contains('%'), "{what}: {bar}"),
+        }
+        // A card about the iteration has ρ at the equilibrium, which `newton` finds.
+        if let Some(text) = shown.0.iter().find(|text| text.contains("rho = ")) {
+            let rho = solve(&scene.with_method(MethodKind::Newton))["fixed_point_rho"].as_f64().unwrap();
+            assert!(text.ends_with(&format!("rho = {}", two_digits(rho))), "{what}: {text}, {rho}");
+            rhos += 1;
+        }
+        harness.step();
+        lab = harness.into_state();
+    }
+    assert!(errors >= 6 && rhos == 2, "{errors} errors, {rhos} numbers ρ");
+}
+
+/// Each setting in the list of Budget and in the table of Learn has the bound of the error that `study` writes. The
+/// error of the scene's own setting is that of `solve`.
+#[test]
+fn settings_have_the_errors_of_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let output = warpbeam(&["study", "article", "--quick", "--out", out]);
+    assert!(output.status.success(), "{output:?}");
+    let table = std::fs::read_to_string(folder.path().join("study.csv")).unwrap();
+    let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let head = rows.next().unwrap();
+    let column = |name: &str| head.iter().position(|own| *own == name).unwrap();
+    let scene = scene("article");
+    let study = Study::new(&scene, Extent::Quick, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+    let written: Vec<_> = rows.zip(&study.measurements).collect();
+    assert_eq!(written.len(), study.measurements.len());
+    let texts = written.iter().map(|(row, m)| {
+        assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));
+        let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
+        let bound: f64 = row[column("at_most_percent")].parse().unwrap();
+        (format!("{time:>8} {:>8}  {}", bound_percent(bound), m.setting), bound)
+    });
+    let texts: Vec<(String, f64)> = texts.collect();
+    let mut lab = lab_of("article", scene.clone());
+    lab.solve();
+    lab.show_study(study.clone());
+    let harness = harness_of(lab);
+    let buttons = Shown::with_role(&harness, &|role| role == Role::Button);
+    let listed: Vec<&String> = buttons.0.iter().filter(|text| text.contains(" %  ")).collect();
+    assert!(listed.len() > 3, "{listed:?}");
+    for label in listed {
+        assert!(texts.iter().any(|(text, bound)| text == label && *bound <= 1.0), "{label}: {texts:?}");
+    }
+    // The table of Learn.
+    let mut lab = harness.into_state();
+    lab.show_card(9);
+    lab.show_study(study.clone());
+    let shown = Shown::in_window(&harness_of(lab));
+    let at_most = shown.0.iter().filter_map(|text| text.strip_prefix("at most ")).collect::<Vec<_>>();
+    assert!(!at_most.is_empty(), "{:?}", shown.0);
+    for bound in at_most {
+        assert!(texts.iter().any(|(text, _)| text.contains(&format!(" {bound}  "))), "{bound}: {texts:?}");
+    }
+    let scene = scene.with_method(MethodKind::Newton);
+    let own = written.iter().find(|(row, m)| m.is_applied_to(&scene) && row[column("converged")] == "true");
+    let (row, _) = own.unwrap();
+    let error: f64 = row[column("error_percent")].parse().unwrap();
+    let solved = solve(&scene)["probes"][0]["error_percent"].as_f64().unwrap();
+    assert_eq!(percent(error), percent(solved));
+}
+
+/// Each strip of Limits has the words of a row of `limits`.
+#[test]
+fn strips_have_the_words_of_limits() {
+    let text = stdout(&warpbeam(&["limits", "article"]));
+    let mut lab = lab_of("article", scene("article"));
+    lab.show_limits();
+    lab.solve();
+    let shown = Shown::in_window(&harness_of(lab));
+    let rows: Vec<&str> = text.lines().skip(3).filter(|row| !row.is_empty()).collect();
+    assert_eq!(rows.len(), 9, "{text}");
+    for row in rows {
+        // Columns are at least two spaces apart.
+        let cells: Vec<&str> = row.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
+        let [name, good, usable, converges, law] = cells[..] else { panic!("{row}") };
+        let words = format!(
+            "{name}: within 1 % to: {good}; within 5 % to: {usable}; converges to: {converges}; strains above 10 %: {law}"
+        );
+        assert!(shown.has(&words), "{words}: {:?}", shown.0);
+    }
 }

@@ -106,6 +106,11 @@ pub(super) fn percent(value: f64) -> String {
     tr(&format::percent(value)).to_owned()
 }
 
+/// Formats the bound of an error, percent: translation of [`format::bound_percent`].
+pub(super) fn bound_percent(value: f64) -> String {
+    tr(&format::bound_percent(value)).to_owned()
+}
+
 /// Increases the line spacing of a text of this size, points, in Chinese, whose characters fill the line.
 pub(super) fn spaced(text: RichText, size: f32) -> RichText {
     const LINE: f32 = 1.5;

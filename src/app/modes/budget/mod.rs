@@ -12,7 +12,7 @@ use egui_plot::{
 };
 
 use crate::app::action::Action;
-use crate::app::language::{fill, joined, percent, said, tr};
+use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
 use crate::app::modes::budget::measured::{Choice, Group, Measured};
 use crate::app::modes::budget::study_task::{BackgroundStudy, StudyState};
 use crate::app::task::thread::POLL;
@@ -20,7 +20,7 @@ use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
-use crate::format::{bound_percent, engineering, number, three_digits};
+use crate::format::{engineering, number, two_digits};
 use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{Analysis, Scene, limits};
@@ -289,7 +289,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let row_height = ui.spacing().interact_size.y;
     ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let text = format!("{:>8} {:>8}  {}", milliseconds(m), bound(error(m)), m.text());
+            let text = format!("{:>8} {:>8}  {}", milliseconds(m), bound_percent(error(m)), m.text());
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
@@ -302,14 +302,9 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     });
 }
 
-/// Formats the time of a solve or of a frame with three digits.
+/// Formats the time of a solve or of a frame.
 fn milliseconds(m: &Choice) -> String {
-    engineering(three_digits(1e-3 * m.milliseconds()), "s")
-}
-
-/// Formats the bound of an error, percent.
-fn bound(error: f64) -> String {
-    tr(&bound_percent(error)).to_owned()
+    engineering(two_digits(1e-3 * m.milliseconds()), "s")
 }
 
 /// Returns a tick at every power of ten.
@@ -383,7 +378,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), bound(error(m)))),
+                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), bound_percent(error(m)))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)

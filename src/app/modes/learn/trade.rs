@@ -4,7 +4,7 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 
 use super::{Learn, Shown};
 use crate::app::action::Action;
-use crate::app::language::{fill, percent, said, tr};
+use crate::app::language::{bound_percent, fill, percent, said, tr};
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, two_digits};
@@ -87,13 +87,13 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, f64, bool)>)
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let text = if *good { time.clone() } else { fill!("at most %{error}", error = percent(*bound)) };
+    let text = if *good { time.clone() } else { fill!("at most %{error}", error = bound_percent(*bound)) };
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
         "%{setting}: %{time}, error at most %{error}",
         setting = said(&m.setting),
         time = time,
-        error = percent(*bound)
+        error = bound_percent(*bound)
     );
     ui.label(RichText::new(text).color(color)).on_hover_text(tip);
 }
