@@ -8,14 +8,14 @@ use serde_json::{Value, json};
 use super::args::LimitsArgs;
 use super::progress::Watch;
 use super::{CliError, json, named, simulate, text};
-use crate::plot;
+use crate::plot::{self, Scale};
 use crate::scene::{self, Scene};
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{GOOD, LimitPoint, MethodLimits, RANGE, Strip, USABLE, load_text};
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
-    let LimitsArgs { scene, json, outputs } = args;
+    let LimitsArgs { scene, json, outputs, linear } = args;
     let source = scene::Source::from(scene);
     outputs.check()?;
     let (scene, _) = simulate(&source)?;
@@ -23,8 +23,9 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
+    let scale = if linear { Scale::Linear } else { Scale::Logarithmic };
     outputs.write_table(|| table(&limits))?;
-    outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
+    outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
     text::print(&if json { as_json(&limits, &scene) } else { summary(&limits, &scene) })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,7 +1,7 @@
-//! Axes of drawings: margins, decades, grids and the marks of elements.
+//! Axes of drawings: margins, scales, grids and the marks of elements.
 
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, Outline, Shape, Text, solid};
-use crate::format::number;
+use crate::format::{number, ticks};
 use crate::scene::ElementKind;
 
 /// Size of a drawing.
@@ -22,30 +22,44 @@ pub(super) struct PlotMargins {
 pub(super) const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
 
-/// A logarithmic axis.
-pub(crate) struct Decades {
+/// Scale of the axes of a chart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal distances are equal ratios.
+    #[default]
+    Logarithmic,
+    /// Equal distances are equal differences.
+    Linear,
+}
+
+impl Scale {
+    /// Returns an axis between two places. It shows a range of positive values, a linear one from 0. `full` is the text
+    /// value of 1: its multiples are round at the ticks of a linear axis.
+    pub(crate) fn axis(self, [low, high]: [f64; 2], full: f64, ends: [f64; 2]) -> ScaledAxis {
+        let [from, to] = if self == Self::Linear { [0.0, high] } else { [low.log10(), high.log10()] };
+        ScaledAxis { scale: self, from, to, full, ends }
+    }
+}
+
+/// Axis of positive values.
+pub(crate) struct ScaledAxis {
+    scale: Scale,
+    /// Values at the ends, or their logarithms.
     from: f64,
     to: f64,
+    full: f64,
     ends: [f64; 2],
 }
 
-impl Decades {
+impl ScaledAxis {
     /// Decades around these values, between two places.
-    pub fn new(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
+    pub fn decades(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
         let (low, high) = values
             .filter(|v| *v > 0.0 && v.is_finite())
             .map(f64::log10)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        if low > high {
-            return Self { from: 0.0, to: 1.0, ends };
-        }
-        Self { from: low.floor(), to: high.ceil().max(low.floor() + 1.0), ends }
-    }
-
-    /// The range of these positive values, widened by a part of a decade, between two places.
-    #[cfg(feature = "app")]
-    pub fn around([low, high]: [f64; 2], part: f64, ends: [f64; 2]) -> Self {
-        Self { from: low.log10() - part, to: high.log10() + part, ends }
+        let [from, to] = if low > high { [0.0, 1.0] } else { [low.floor(), high.ceil().max(low.floor() + 1.0)] };
+        Self { scale: Scale::Logarithmic, from, to, full: 1.0, ends }
     }
 
     /// Returns the value at a place; the inverse of [`Self::place`].
@@ -53,24 +67,34 @@ impl Decades {
     pub fn value(&self, place: f64) -> f64 {
         let [start, end] = self.ends;
         let fraction = if end == start { 0.0 } else { (place - start) / (end - start) };
-        10f64.powf(self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0))
+        let at = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
+        if self.scale == Scale::Linear { at } else { 10f64.powf(at) }
     }
 
     pub fn place(&self, value: f64) -> f64 {
-        let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
+        let at = if self.scale == Scale::Linear { value } else { value.max(f64::MIN_POSITIVE).log10() };
+        let fraction = (at - self.from) / (self.to - self.from);
         let [start, end] = self.ends;
         start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
-    /// Iterates over the positions and the values of the decades.
-    pub fn values(&self) -> impl Iterator<Item = (f64, f64)> {
-        let decades = (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e));
-        decades.map(|value| (self.place(value), value))
+    /// Returns the positions and the values of the decades, or of the ticks of a linear axis.
+    pub fn values(&self) -> Vec<(f64, f64)> {
+        /// Largest number of ticks of a linear axis.
+        const TICKS: u32 = 6;
+        let values: Vec<f64> = match self.scale {
+            Scale::Logarithmic => (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e)).collect(),
+            Scale::Linear => {
+                let texts = ticks(self.from * self.full, self.to * self.full, TICKS);
+                texts.into_iter().map(|text| text / self.full).collect()
+            }
+        };
+        values.into_iter().map(|value| (self.place(value), value)).collect()
     }
 
     /// Returns the position and the label of every decade.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        self.values().map(|(place, value)| (place, number(value))).collect()
+        self.values().into_iter().map(|(place, value)| (place, number(value))).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
-use super::axes::Decades;
+use super::axes::{Scale, ScaledAxis};
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
@@ -27,10 +27,11 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
     }
 }
 
-/// Draws the limits of a scene over the logarithm of the load.
+/// Draws the limits of a scene over the load.
 #[must_use]
-pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
-    let (axis, loads) = (Decades::new(RANGE.into_iter(), ACROSS), LoadAxis::of(scene));
+pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
+    let loads = LoadAxis::of(scene);
+    let axis = scale.axis(RANGE, loads.full, ACROSS);
     let top = CURVE[1] + 44.0;
     let bottom = top + ROW * limits.strips.len() as f64;
     let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
@@ -44,7 +45,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     let own = axis.place(1.0);
     drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
     drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
-    curve(&mut drawing, limits, &axis);
+    curve(&mut drawing, limits, scale, &axis);
     for (row, strip) in limits.strips.iter().enumerate() {
         let y = top + ROW * row as f64;
         drawing.text(
@@ -61,11 +62,15 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     drawing
 }
 
-/// Draws the length of the reference displacement over the load, both logarithmic.
-fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &Decades) {
+/// Draws the length of the reference displacement over the load.
+fn curve(drawing: &mut Drawing, limits: &MethodLimits, scale: Scale, axis: &ScaledAxis) {
     let lengths = limits.reference.iter().map(|(factor, u)| (*factor, u.map(|u| u.norm()).filter(|u| *u > 0.0)));
     let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
-    let up = Decades::new(lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
+    let (known, ends) = (lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
+    let up = match scale {
+        Scale::Logarithmic => ScaledAxis::decades(known, ends),
+        Scale::Linear => scale.axis([0.0, known.fold(f64::MIN_POSITIVE, f64::max)], 1.0, ends),
+    };
     for (y, length) in up.values() {
         drawing.line(vec![[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
         drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, engineering(length, "m"));
@@ -79,7 +84,7 @@ fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &Decades) {
 }
 
 /// Draws the bars of a strip.
-fn bars(drawing: &mut Drawing, strip: &Strip, axis: &Decades, y: f64) {
+fn bars(drawing: &mut Drawing, strip: &Strip, axis: &ScaledAxis, y: f64) {
     const HEIGHT: f64 = 18.0;
     /// No gap shows between bars of one colour.
     const OVERLAP: f64 = 0.5;

@@ -9,9 +9,10 @@ mod raster;
 mod trade;
 
 pub use atlas::{atlas, motion_atlas};
+pub use axes::Scale;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;
 pub use trade::{LARGEST_ERROR, SMALLEST_ERROR, motion_study, scaling, study};
 #[cfg(feature = "app")]
-pub(crate) use {axes::Decades, limits::rating_color};
+pub(crate) use {axes::ScaledAxis, limits::rating_color};

@@ -1,6 +1,6 @@
 //! Studies as drawings: error over time with the Pareto front, and time over unknowns; both axes are logarithmic.
 
-use super::axes::{Decades, MARGINS, ROW, mark};
+use super::axes::{MARGINS, ROW, ScaledAxis, mark};
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, INK, Outline, Shape, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::method::METHODS;
@@ -73,8 +73,8 @@ pub fn motion_study(study: &MotionStudy) -> Drawing {
 #[must_use]
 pub fn scaling(study: &Scaling) -> Drawing {
     let point = |p: &ScalingPoint| [p.dofs as f64, p.milliseconds];
-    let x = Decades::new(study.points.iter().map(|p| point(p)[0]), MARGINS.across());
-    let y = Decades::new(study.points.iter().map(|p| point(p)[1]), MARGINS.up());
+    let x = ScaledAxis::decades(study.points.iter().map(|p| point(p)[0]), MARGINS.across());
+    let y = ScaledAxis::decades(study.points.iter().map(|p| point(p)[1]), MARGINS.up());
     let mut drawing = MARGINS.start(format!("{}: time of an iteration", study.scene));
     MARGINS.grid(&mut drawing, [x.ticks(), y.ticks()], ["unknowns", "time of an iteration, ms"]);
     let [_, right] = MARGINS.across();
@@ -129,8 +129,8 @@ const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };
 impl Chart<'_> {
     fn draw(&self) -> Drawing {
         let times = self.points.iter().map(|p| p.time).chain(self.mark.iter().map(|m| m.time));
-        let x = Decades::new(times, MARGINS.across());
-        let y = Decades::new(self.points.iter().map(|p| p.error), MARGINS.up());
+        let x = ScaledAxis::decades(times, MARGINS.across());
+        let y = ScaledAxis::decades(self.points.iter().map(|p| p.error), MARGINS.up());
         let mut drawing = MARGINS.start(self.title.as_str());
         MARGINS.grid(&mut drawing, [x.ticks(), y.ticks()], [self.time_label, self.error_label]);
         if let Some(mark) = &self.mark {

@@ -1,7 +1,7 @@
 //! Limits of every method and element on a scene: up to which load each is within 1 % and 5 % of the reference solution,
 //! where it stops to converge, and where strains leave the linear law.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -116,9 +116,16 @@ pub struct Strip {
     pub points: Vec<LimitPoint>,
     /// Part of the load beyond which the method does not converge; `None` if it converges at the largest load.
     pub ends_at: Option<f64>,
+    /// Fraction of the loads that have been solved; 1 once the strip is complete.
+    pub done: f64,
 }
 
 impl Strip {
+    /// Returns the strip of a scene's element and method before the first load is solved.
+    fn new(scene: &Scene) -> Self {
+        Self { element: scene.element(), method: scene.solver.method, points: Vec::new(), ends_at: None, done: 0.0 }
+    }
+
     /// Returns the part of the load up to which the error is at most `percent`, interpolated between two loads: 0 if it is
     /// larger at the smallest load, and `None` if it is not larger at any load at which the error is known.
     #[must_use]
@@ -149,13 +156,15 @@ impl Strip {
         self.points.iter().find(|point| point.is_beyond_law()).map(|point| point.factor)
     }
 
-    /// Returns the strip in pieces: each result stands for the loads up to half way, in their logarithm, to the next.
+    /// Returns the strip in pieces: each result stands for the loads up to half way, in their logarithm, to the next. The
+    /// pieces of a strip that is not complete end at its last result.
     #[must_use]
     pub fn pieces(&self) -> Vec<Piece> {
         let between = |i: usize| match (i.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(i))
         {
             (Some(a), Some(b)) => (a.factor * b.factor).sqrt(),
             (None, _) => RANGE[0],
+            (Some(last), None) if self.done < 1.0 => last.factor,
             (_, None) => self.ends_at.unwrap_or(RANGE[1]),
         };
         let results = self.points.iter().enumerate().map(|(i, point)| Piece {
@@ -231,6 +240,19 @@ impl MethodLimits {
     /// # Errors
     /// [`StudyError`]: the scene is in motion, has no probe or cannot be simulated, or `observe` cancelled the computation.
     pub fn of(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
+        Self::with_partial(scene, observe, &|_| {})
+    }
+
+    /// Computes as [`Self::of`]; `partial` receives the limits so far each time a load has been solved. Strips with the
+    /// scene's own element and method are computed first.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn with_partial(
+        scene: &Scene,
+        observe: Observer<'_>,
+        partial: &(dyn Fn(&Self) + Sync),
+    ) -> Result<Self, StudyError> {
         if scene.analysis == Analysis::Dynamic {
             return Err(StudyError::InMotion);
         }
@@ -245,19 +267,34 @@ impl MethodLimits {
             Ok((own, Arc::new(system)))
         });
         let systems = systems.collect::<Result<Vec<_>, SimulationError>>()?;
-        let factors = factors();
         let now = [sentence!("reference solutions"), sentence!("following each method")];
         let methods = || METHODS.iter().map(|method| method.kind).filter(|method| *method != MethodKind::Auto);
-        let settings: Vec<(Scene, &Arc<System>)> = (systems.iter())
-            .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)))
-            .collect();
+        let own = systems
+            .iter()
+            .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)));
+        let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
+        let factors: Vec<(usize, f64)> = factors().into_iter().enumerate().collect();
         let all = (factors.len() + settings.len()) as f64;
+        let so_far = Mutex::new(Self {
+            reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
+            strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
+        });
+        let report = |change: &dyn Fn(&mut Self)| {
+            let mut limits = so_far.lock().unwrap_or_else(PoisonError::into_inner);
+            change(&mut limits);
+            partial(&limits);
+        };
         let solved = all_done(parallel::map(
             &factors,
-            |&factor, observe| match Reference::find(&at(scene, factor), None, Effort::Bounded, observe) {
-                Err(StudyError::Cancelled) => Err(StudyError::Cancelled),
+            |&(i, factor), observe| {
                 // Without a reference solution the error is not known.
-                found => Ok(found.ok().and_then(|reference| reference.first())),
+                let known = match Reference::find(&at(scene, factor), None, Effort::Bounded, observe) {
+                    Err(StudyError::Cancelled) => return Err(StudyError::Cancelled),
+                    found => found.ok().and_then(|reference| reference.first()),
+                };
+                let displacement = known.map(|known| known.displacement);
+                report(&|limits| _ = limits.reference.get_mut(i).map(|(_, u)| *u = displacement));
+                Ok(known)
             },
             |done| observe(Progress { fraction: done as f64 / all, now: Some(&now[0]) }),
         ))?;
@@ -265,19 +302,19 @@ impl MethodLimits {
             let reference = solved.get(i).copied().flatten()?;
             Some(error_percent(u, reference.displacement)? + reference.own_error_percent)
         };
-        let strips = all_done(parallel::map(
+        settings.sort_by_key(|(_, (own, _))| {
+            u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
+        });
+        all_done(parallel::map(
             &settings,
-            |(own, system), observe| strip(own, system, &factors, &known, observe),
+            |(row, (own, system)), observe| {
+                strip(own, system, &factors, &known, observe, &|strip| {
+                    report(&|limits| _ = limits.strips.get_mut(*row).map(|old| old.clone_from(strip)));
+                })
+            },
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
         ))?;
-        Ok(Self {
-            reference: factors
-                .iter()
-                .zip(&solved)
-                .map(|(&f, known)| (f, known.map(|known| known.displacement)))
-                .collect(),
-            strips,
-        })
+        Ok(so_far.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
@@ -297,14 +334,15 @@ fn at(scene: &Scene, factor: f64) -> Scene {
 }
 
 /// Solves a scene with its method and element from load to load until it does not converge. Each solve starts from
-/// rest, as `warpbeam solve` does.
+/// rest, as `warpbeam solve` does. `report` receives the strip so far after each load.
 fn strip(
     scene: &Scene,
     system: &Arc<System>,
-    factors: &[f64],
+    factors: &[(usize, f64)],
     error: &dyn Fn(usize, Vector2<f64>) -> Option<f64>,
     observe: Observer<'_>,
-) -> Result<Strip, StudyError> {
+    report: &dyn Fn(&Strip),
+) -> Result<(), StudyError> {
     let solve = |factor: f64| {
         let mut simulation = Simulation::with_system(&at(scene, factor), system.clone())?;
         let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
@@ -313,9 +351,8 @@ fn strip(
             false => Ok(Some(simulation).filter(|simulation| *simulation.status() == Status::Converged)),
         }
     };
-    let (element, method) = (scene.element(), scene.solver.method);
-    let mut strip = Strip { element, method, points: Vec::new(), ends_at: None };
-    for (i, &factor) in factors.iter().enumerate() {
+    let mut strip = Strip::new(scene);
+    for &(i, factor) in factors {
         let Some(solved) = solve(factor)? else {
             let reached = strip.points.last().map_or(0.0, |point| point.factor);
             strip.ends_at = Some(end_between([reached, factor], &|factor| Ok(solve(factor)?.is_some()))?);
@@ -327,8 +364,12 @@ fn strip(
             Deformation::of(problem, solved.state(), &solved.nodal_stress());
         let error_percent = error(i, displacement);
         strip.points.push(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements });
+        strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
+        report(&strip);
     }
-    Ok(strip)
+    strip.done = 1.0;
+    report(&strip);
+    Ok(())
 }
 
 /// Returns the load between two parts beyond which the method does not converge.

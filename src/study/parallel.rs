@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::progress::Observer;
 
-/// Processes all items on all cores, and returns the results in order. `observe` is called on the calling thread with
+/// Processes all items on all cores, and returns the results in order. Items are started in order. `observe` is called on the calling thread with
 /// the number of finished items, and can cancel the rest: items not started then give `None`, and the observer of
 /// running ones breaks.
 #[cfg(not(target_arch = "wasm32"))]
@@ -13,7 +13,7 @@ pub fn map<T: Sync, R: Send>(
     work: impl Fn(&T, Observer<'_>) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::sync::mpsc::{self, RecvTimeoutError};
     use std::time::Duration;
 
@@ -29,14 +29,15 @@ pub fn map<T: Sync, R: Send>(
         false => ControlFlow::Continue(()),
     };
     let (sender, receiver) = mpsc::channel();
-    let one = |sender: &mut mpsc::Sender<()>, item: &T| {
-        if cancelled.load(Ordering::Relaxed) {
-            return None;
-        }
-        let result = work(item, &flow);
+    // Splitting the items among cores does not keep their order: each start takes the next one.
+    let next = AtomicUsize::new(0);
+    let one = |sender: &mut mpsc::Sender<()>, _: &T| {
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        let item = items.get(number).filter(|_| !cancelled.load(Ordering::Relaxed));
+        let result = item.map(|item| work(item, &flow));
         // Sending fails only if the caller panics.
-        let _ = sender.send(());
-        Some(result)
+        let _ = result.as_ref().map(|_| sender.send(()));
+        (number, result)
     };
     std::thread::scope(|scope| {
         // Items are split one by one, because they are few and long compared with the overhead of a task.
@@ -52,7 +53,9 @@ pub fn map<T: Sync, R: Send>(
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
-        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        let mut results: Vec<_> = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        results.sort_by_key(|(number, _)| *number);
+        results.into_iter().map(|(_, result)| result).collect()
     })
 }
 

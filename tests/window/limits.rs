@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::common::scene;
 use warpbeam::Simulation;
@@ -90,6 +90,62 @@ fn strips_are_those_of_the_command() {
             strip.element.id(),
             strip.method.id()
         ));
+    }
+}
+
+/// Returns the labels of the strips that are complete, and of those that are not.
+fn strips(harness: &Harness<'_, Lab>) -> [Vec<String>; 2] {
+    let labels = harness.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+    let labels: Vec<String> = labels.collect();
+    ["within 1 % to", "of the loads are solved"]
+        .map(|part| labels.iter().filter(|label| label.contains(part)).cloned().collect())
+}
+
+/// Strips are shown as they become complete. A change of the method does not start them again, a change of the body does.
+#[test]
+fn strips_appear_one_after_another() {
+    let mut harness = harness("cantilever");
+    harness.key_press(Key::M);
+    let until = |harness: &mut Harness<'_, Lab>, holds: &dyn Fn([usize; 2]) -> bool| {
+        for _ in 0..6000 {
+            let found = strips(harness).map(|strips| strips.len());
+            if holds(found) {
+                return;
+            }
+            assert!(harness.state().is_computing() || found == [0, 0], "{found:?}");
+            std::thread::sleep(std::time::Duration::from_millis(10));
+            harness.step();
+        }
+        unreachable!("waited in vain for the strips")
+    };
+    until(&mut harness, &|[complete, rest]| complete > 0 && rest > 0);
+    let [first, rest] = strips(&harness);
+    assert_eq!(first.len() + rest.len(), 9, "{first:?} {rest:?}");
+    let mut newton = harness.state().scene().clone();
+    newton.solver.method = MethodKind::Newton;
+    harness.state_mut().set_scene(newton.clone()).unwrap();
+    harness.run_steps(2);
+    assert!(first.iter().all(|strip| strips(&harness)[0].contains(strip)), "{first:?}");
+    newton.beam.as_mut().unwrap().length *= 0.5;
+    harness.state_mut().set_scene(newton).unwrap();
+    harness.run_steps(2);
+    assert_eq!(strips(&harness)[0], Vec::<String>::new());
+    until(&mut harness, &|[complete, _]| complete > 0);
+}
+
+/// A linear axis begins at 0, and the pointer sets the load where the axis has it.
+#[test]
+fn the_axis_can_be_linear() {
+    let mut harness = opened("article");
+    let before = force(harness.state());
+    harness.get_by_label("linear axis").click();
+    harness.run_steps(2);
+    let area = harness.get_by_role_and_label(Role::Slider, "Load").rect();
+    let start = Pos2::new(area.left() + 0.1 * area.width(), area.top() + 4.0);
+    for (part, factor) in [(0.5, 5.0), (0.0, 0.01)] {
+        drag(&mut harness, start, Pos2::new(area.left() + part * area.width(), start.y));
+        let ratio = force(harness.state()) / before;
+        assert!((ratio - factor).abs() < 0.02, "{ratio}");
     }
 }
 

@@ -9,9 +9,10 @@ use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::session::Session;
 use crate::app::session::facts::without_methods;
+use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
-use crate::plot::{Decades, rating_color};
+use crate::plot::{Scale, ScaledAxis, rating_color};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
@@ -42,22 +43,24 @@ pub(crate) struct LimitMap {
     placed: Option<(Scene, f64)>,
     /// Part of the base's loads that the lab's scene has.
     factor: f64,
+    /// Scale of loads and displacements.
+    scale: Scale,
 }
 
 impl Default for LimitMap {
     fn default() -> Self {
-        Self { base: None, placed: None, factor: 1.0 }
+        Self { base: None, placed: None, factor: 1.0, scale: Scale::default() }
     }
 }
 
 impl LimitMap {
     /// Turns to the lab's scene. A load that was set here does not change the limits, nor do method and element.
     pub(crate) fn turn_to(&mut self, scene: &Scene) {
-        let scene = without_methods(scene);
-        let placed = self.placed.as_ref().filter(|(placed, _)| *placed == scene);
+        let own = without_methods(scene);
+        let placed = self.placed.as_ref().filter(|(placed, _)| *placed == own);
         self.factor = placed.map_or(1.0, |(_, factor)| *factor);
-        if placed.is_none() && self.base.as_ref() != Some(&scene) {
-            *self = Self { base: Some(scene), ..Self::default() };
+        if placed.is_none() && self.base.as_ref().map(without_methods) != Some(own) {
+            *self = Self { base: Some(scene.clone()), scale: self.scale, ..Self::default() };
         }
     }
 
@@ -90,20 +93,25 @@ impl LimitMap {
         if let Some(reason) = facts.failure(&base) {
             return message(ui, &said(reason));
         }
-        let Some(limits) = facts.get(&base) else {
+        let progress = facts.progress().map(|done| done as f32);
+        let Some(limits) = facts.so_far(&base) else {
             ui.add_space(0.3 * ui.available_height());
             ui.vertical_centered(|ui| {
                 ui.weak(tr("Solving with every method and element, from a hundredth to ten times the load"));
-                let done = facts.progress().unwrap_or_default() as f32;
-                ui.add(ProgressBar::new(done).desired_width(240.0).show_percentage());
+                ui.add(progress_bar(progress.unwrap_or_default()).desired_width(240.0));
             });
             return;
         };
         let whole = ui.available_rect_before_wrap();
-        ui.horizontal(legend);
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            self.scales(ui);
+            progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
+            legend(ui);
+        });
         let axis = LoadAxis::of(&base);
         let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
-        let chart = StripChart::new(ui, below, limits, &axis);
+        let chart = StripChart::new(ui, below, limits, &axis, self.scale);
         let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
             let placed = self.place(scene, &axis, factor);
@@ -117,6 +125,21 @@ impl LimitMap {
         }
         chart.load_line(ui, load.unwrap_or(self.factor), first_probe(shown));
     }
+
+    /// Shows the choice of the scale.
+    fn scales(&mut self, ui: &mut Ui) {
+        for (scale, name) in [(Scale::Logarithmic, "logarithmic axis"), (Scale::Linear, "linear axis")] {
+            let text = RichText::new(tr(name)).size(SMALL);
+            if ui.add(option_button(self.scale == scale, text)).clicked() {
+                self.scale = scale;
+            }
+        }
+    }
+}
+
+/// Returns the bar of the fraction of the limits that is known.
+fn progress_bar(done: f32) -> ProgressBar {
+    ProgressBar::new(done).show_percentage()
 }
 
 /// Returns the length of the displacement of the first probe, m, at an equilibrium.
@@ -128,7 +151,6 @@ fn first_probe(shown: &Simulation) -> Option<f64> {
 /// Shows the key of the colours in one line.
 fn legend(ui: &mut Ui) {
     const BOX: f32 = 10.0;
-    ui.add_space(8.0);
     ui.spacing_mut().item_spacing.x = 5.0;
     let entry = |ui: &mut Ui, name: &str, paint: &dyn Fn(&Ui, Rect)| {
         let (rect, _) = ui.allocate_exact_size(vec2(BOX, BOX), Sense::hover());
@@ -166,7 +188,8 @@ fn hatch(ui: &Ui, rect: Rect, ink: Color32) {
 struct StripChart<'a> {
     limits: &'a MethodLimits,
     axis: &'a LoadAxis,
-    across: Decades,
+    across: ScaledAxis,
+    scale: Scale,
     palette: Palette,
     curve: Rect,
     strips: Rect,
@@ -178,7 +201,7 @@ struct StripChart<'a> {
 }
 
 impl<'a> StripChart<'a> {
-    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis) -> Self {
+    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: Scale) -> Self {
         let has_ends = whole.width() >= WITH_ENDS;
         let (left, right) = (whole.left() + NAMES, whole.right() - if has_ends { ENDS } else { 24.0 });
         let count = limits.strips.len().max(1) as f32;
@@ -191,7 +214,8 @@ impl<'a> StripChart<'a> {
         Self {
             limits,
             axis,
-            across: Decades::around(RANGE, 0.0, [left, right].map(f64::from)),
+            across: scale.axis(RANGE, axis.full, [left, right].map(f64::from)),
+            scale,
             palette: Palette::new(ui.visuals()),
             curve: Rect::from_min_max(pos2(left, whole.top() + LINE), pos2(right, top - 8.0)),
             strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
@@ -221,7 +245,8 @@ impl<'a> StripChart<'a> {
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         // A press that is a click belongs to a strip.
         if response.dragged() && ui.input(|i| i.pointer.is_decidedly_dragging()) {
-            return response.interact_pointer_pos().map(|at| self.across.value(f64::from(at.x)));
+            let factor = |at: egui::Pos2| self.across.value(f64::from(at.x)).clamp(RANGE[0], RANGE[1]);
+            return response.interact_pointer_pos().map(factor);
         }
         if !response.has_focus() {
             return None;
@@ -233,11 +258,11 @@ impl<'a> StripChart<'a> {
         (change != 1.0).then(|| (factor * change).clamp(RANGE[0], RANGE[1]))
     }
 
-    /// Draws the length of the reference displacement over the load, both logarithmic, and the axis of loads.
+    /// Draws the length of the reference displacement over the load, and the axis of loads.
     fn curve(&self, ui: &Ui) {
         let Self { palette, curve, strips, .. } = self;
         let painter = ui.painter();
-        for (x, factor) in self.across.values().map(|(place, factor)| (place as f32, factor)) {
+        for (x, factor) in self.across.values().into_iter().map(|(place, factor)| (place as f32, factor)) {
             let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
             painter.line_segment(ends, Stroke::new(1.0, palette.line));
             let at = pos2(x, strips.bottom() + 2.0);
@@ -248,8 +273,9 @@ impl<'a> StripChart<'a> {
         let Some(up) = self.up() else { return };
         // Only as many decades as have room for their labels.
         let room = (curve.height() / LINE).max(1.0) as usize;
-        let step = up.values().count().saturating_sub(1) / room + 1;
-        for (y, length) in up.values().step_by(step).map(|(place, length)| (place as f32, length)) {
+        let values = up.values();
+        let step = values.len().saturating_sub(1) / room + 1;
+        for (y, length) in values.into_iter().step_by(step).map(|(place, length)| (place as f32, length)) {
             painter.line_segment([pos2(curve.left(), y), pos2(curve.right(), y)], Stroke::new(1.0, palette.line));
             let at = pos2(curve.left() - 8.0, y);
             self.text(ui, at, Align2::RIGHT_CENTER, &engineering(length, "m"), palette.secondary);
@@ -267,13 +293,14 @@ impl<'a> StripChart<'a> {
     }
 
     /// Returns the vertical axis of the curve; `None` if no reference displacement is known, or the curve has no room.
-    fn up(&self) -> Option<Decades> {
-        /// Space above and below the curve, decades.
-        const EDGE: f64 = 0.1;
+    fn up(&self) -> Option<ScaledAxis> {
+        /// Space above and below the curve, as a ratio of displacements.
+        const EDGE: f64 = 1.2589;
         let lengths = self.limits.reference.iter().filter_map(|(_, u)| u.map(|u| u.norm())).filter(|u| *u > 0.0);
         let range = lengths.fold([f64::INFINITY, 0.0_f64], |[low, high], u| [low.min(u), high.max(u)]);
         let ends = [self.curve.bottom(), self.curve.top()].map(f64::from);
-        (self.has_curve && range[1].is_finite() && range[1] > 0.0).then(|| Decades::around(range, EDGE, ends))
+        let range = [range[0] / EDGE, range[1] * EDGE];
+        (self.has_curve && range[1].is_finite() && range[1] > 0.0).then(|| self.scale.axis(range, 1.0, ends))
     }
 
     /// Shows a strip; a click uses its method and element.
@@ -285,15 +312,19 @@ impl<'a> StripChart<'a> {
         let name = format!("{} {}", strip.element.id(), tr(strip.method.id()));
         let is_used = scene.element() == strip.element && scene.solver.method == strip.method;
         let [good, usable, converges, law] = strip.words(self.axis).map(|words| said(&words));
-        let text = fill!(
-            "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; converges to: %{converges}; strains above \
-             10 %: %{law}",
-            name = name.as_str(),
-            good = good,
-            usable = usable,
-            converges = converges,
-            law = law
-        );
+        let done = format!("{:.0} %", 100.0 * strip.done);
+        let text = match strip.done < 1.0 {
+            true => fill!("%{name}: %{done} of the loads are solved", name = name.as_str(), done = done.as_str()),
+            false => fill!(
+                "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; converges to: %{converges}; strains above \
+                 10 %: %{law}",
+                name = name.as_str(),
+                good = good,
+                usable = usable,
+                converges = converges,
+                law = law
+            ),
+        };
         let response = ui.interact(rect, ui.scope_id().with(("strip", row)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, &text));
         let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };
@@ -301,17 +332,22 @@ impl<'a> StripChart<'a> {
         ui.painter().rect(rect, 3.0, fill, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
         let ink = if is_used { palette.text } else { palette.method(strip.method) };
         self.text(ui, pos2(strips.left() - 10.0, rect.center().y), Align2::RIGHT_CENTER, &name, ink);
+        let bar = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to, top + 1.0..=top + self.row - 2.0);
+        if strip.done < 1.0 {
+            ui.painter().rect_filled(bar(strips.left(), strips.right()), 0.0, palette.line);
+        }
         for piece in strip.pieces() {
             let [from, to] = piece.range.map(|factor| self.x(factor));
-            let bar = Rect::from_min_max(pos2(from, top + 1.0), pos2(to, top + self.row - 2.0));
+            let bar = bar(from, to);
             ui.painter().rect_filled(bar, 0.0, color(piece.rating));
             if piece.is_beyond_law {
                 hatch(ui, bar, Color32::from_black_alpha(200));
             }
         }
-        if let Some(end) = strip.end(self.axis).filter(|_| self.has_ends) {
+        let end = if strip.done < 1.0 { Some(done) } else { strip.end(self.axis).map(|end| said(&end)) };
+        if let Some(end) = end.filter(|_| self.has_ends) {
             let at = pos2(strips.right() + 10.0, rect.center().y);
-            self.text(ui, at, Align2::LEFT_CENTER, &said(&end), palette.text);
+            self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
         }
         if response.on_hover_text(text).clicked() && !is_used {
             let mut own = scene.clone().with_method(strip.method);

@@ -34,7 +34,10 @@ facts! {
     /// End of the load path from rest, and the jumps on it.
     PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
     /// Limits of every method and element.
-    LimitsFact = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe));
+    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe)),
+        in parts |scene, observe, partial| {
+            found(MethodLimits::with_partial(scene, observe, &|limits| partial(limits.clone())))
+        };
     /// Time of a solve from rest.
     TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Data, Reporter, Task, Update, Work};
-use crate::progress::Observer;
+use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::sentence::{Sentence, sentence};
 
@@ -28,12 +28,31 @@ pub(crate) trait Fact: Debug + 'static {
 
     /// Computes the value of a scene.
     fn compute(scene: &Scene, observe: Observer<'_>) -> Computed<Self::Value>;
+
+    /// Computes the value of a scene; `partial` receives the value so far each time a part of it is known.
+    fn compute_in_parts(
+        scene: &Scene,
+        observe: Observer<'_>,
+        _partial: &(dyn Fn(Self::Value) + Sync),
+    ) -> Computed<Self::Value> {
+        Self::compute(scene, observe)
+    }
 }
 
-/// Defines kinds of values, each by its name, its type, the function that computes it, and `by` its key where that is
-/// not the whole scene.
+/// Progress report of a computation.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) enum FactProgress<V> {
+    /// Fraction done.
+    Fraction(f64),
+    /// Value so far.
+    SoFar(V),
+}
+
+/// Defines kinds of values, each by its name, its type, the function that computes it, `by` its key where that is not
+/// the whole scene, and the function that computes it `in parts` where it becomes known in parts.
 macro_rules! facts {
-    ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr;)*) => {$(
+    ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr
+        $(, in parts $parts:expr)?;)*) => {$(
         $(#[$about])*
         #[derive(Debug)]
         pub(crate) struct $kind;
@@ -56,6 +75,19 @@ macro_rules! facts {
                 ) -> $crate::app::task::keyed::Computed<$value> = $compute;
                 compute(scene, observe)
             }
+
+            $(fn compute_in_parts(
+                scene: &$crate::scene::Scene,
+                observe: $crate::progress::Observer<'_>,
+                partial: &(dyn Fn($value) + Sync),
+            ) -> $crate::app::task::keyed::Computed<$value> {
+                let compute: fn(
+                    &$crate::scene::Scene,
+                    $crate::progress::Observer<'_>,
+                    &(dyn Fn($value) + Sync),
+                ) -> $crate::app::task::keyed::Computed<$value> = $parts;
+                compute(scene, observe, partial)
+            })?
         }
     )*};
 }
@@ -68,16 +100,18 @@ pub(crate) struct FactWork<F>(SentScene, PhantomData<fn() -> F>);
 
 impl<F: Fact> Work for FactWork<F> {
     const NAME: &'static str = F::NAME;
-    type Reported = f64;
+    type Reported = FactProgress<F::Value>;
     type Output = Computed<F::Value>;
 
-    fn run(self, reporter: &Reporter<f64, Self::Output>) -> Self::Output {
-        F::compute(&self.0.0, &|progress| reporter.report(progress.fraction))
+    fn run(self, reporter: &Reporter<Self::Reported, Self::Output>) -> Self::Output {
+        let observe = |progress: Progress<'_>| reporter.report(FactProgress::Fraction(progress.fraction));
+        // A cancellation is seen by the next report of progress.
+        F::compute_in_parts(&self.0.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
     }
 }
 
 /// Running computation of a value.
-type FactTask<F> = Task<f64, Computed<<F as Fact>::Value>>;
+type FactTask<F> = Task<FactProgress<<F as Fact>::Value>, Computed<<F as Fact>::Value>>;
 
 /// Scene that a value is asked for.
 #[derive(Debug)]
@@ -97,13 +131,14 @@ pub(crate) struct Keyed<F: Fact> {
     /// Running computation, and `true` if it is for the scene that was asked for. Only one runs at a time, so that edits
     /// do not pile up.
     running: Option<(FactTask<F>, bool)>,
-    /// Fraction of the running computation that is done.
+    /// Fraction of the running computation that is done, and the value so far.
     done: f64,
+    so_far: Option<F::Value>,
 }
 
 impl<F: Fact> Default for Keyed<F> {
     fn default() -> Self {
-        Self { asked: None, computed: None, previous: None, running: None, done: 0.0 }
+        Self { asked: None, computed: None, previous: None, running: None, done: 0.0, so_far: None }
     }
 }
 
@@ -115,10 +150,7 @@ impl<F: Fact> Keyed<F> {
         }
         let computed = self.computed.take().map(|computed| computed.ok().flatten());
         self.previous = computed.unwrap_or_else(|| self.previous.take());
-        if let Some((task, is_current)) = &mut self.running {
-            (*is_current, self.done) = (false, 0.0);
-            task.cancel();
-        }
+        self.cancel();
         self.asked = Some(Asked { scene: scene.clone(), key: F::key(scene) });
     }
 
@@ -130,8 +162,14 @@ impl<F: Fact> Keyed<F> {
     /// Removes all values.
     pub(crate) fn clear(&mut self) {
         (self.asked, self.computed, self.previous) = (None, None, None);
+        self.cancel();
+    }
+
+    /// Cancels the running computation.
+    fn cancel(&mut self) {
+        (self.done, self.so_far) = (0.0, None);
         if let Some((task, is_current)) = &mut self.running {
-            (*is_current, self.done) = (false, 0.0);
+            *is_current = false;
             task.cancel();
         }
     }
@@ -145,14 +183,16 @@ impl<F: Fact> Keyed<F> {
         if let Some((task, is_current)) = &self.running {
             let computed = loop {
                 match task.poll() {
-                    Update::Progress(done) => self.done = if *is_current { done } else { 0.0 },
+                    Update::Progress(_) if !*is_current => {}
+                    Update::Progress(FactProgress::Fraction(done)) => self.done = done,
+                    Update::Progress(FactProgress::SoFar(value)) => self.so_far = Some(value),
                     Update::None => return true,
                     Update::Done(computed) => break computed,
                     Update::Died => break Err(sentence!("the computation ended unexpectedly")),
                 }
             };
             if *is_current {
-                self.computed = Some(computed);
+                (self.computed, self.so_far) = (Some(computed), None);
             }
             self.running = None;
         }
@@ -176,7 +216,7 @@ impl<F: Fact> Keyed<F> {
         self.turn_to(scene);
         if self.computed.is_none() {
             self.computed = Some(F::compute(scene, &|_| ControlFlow::Continue(())));
-            self.running = None;
+            (self.running, self.so_far) = (None, None);
         }
     }
 
@@ -187,6 +227,11 @@ impl<F: Fact> Keyed<F> {
     /// Returns the value of a scene, if it has been computed and the scene has one.
     pub(crate) fn get(&self, scene: &Scene) -> Option<&F::Value> {
         self.computed(scene)?.as_ref().ok()?.as_ref()
+    }
+
+    /// Returns the value of a scene, or the part of it that has been computed.
+    pub(crate) fn so_far(&self, scene: &Scene) -> Option<&F::Value> {
+        self.get(scene).or(self.so_far.as_ref().filter(|_| self.is_of(scene)))
     }
 
     /// Returns the reason why the value of a scene could not be computed.
