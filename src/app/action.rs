@@ -84,6 +84,8 @@ pub(crate) enum Action {
     Measure(bool),
     /// Show the card with this number, from 0, and load its scene.
     Card(usize),
+    /// Tell the story of the first start again.
+    Story,
     /// Use a measured setting: its scene, and its number of iterations per displayed frame.
     Apply(Box<Scene>, u32),
     /// Cancel the background solve of a large model, and keep the previous model.

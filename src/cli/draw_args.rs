@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use thiserror::Error;
 
-use super::scene_args::{NumberError, RequiredSceneArgs, parse_number};
+use super::scene_args::{NumberError, RequiredSceneArgs, SetArgs, parse_number};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
@@ -105,8 +105,14 @@ Ctrl-C ends with a shorter, valid recording and exit code 1.
 
 #[derive(Debug, Args)]
 pub(super) struct RecordArgs {
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
+    #[arg(required_unless_present = "story")]
+    pub scene: Option<PathBuf>,
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub set: SetArgs,
+    /// Record the story of the window's first start, 20 s on the article's beam, in place of a scene.
+    #[arg(long, conflicts_with_all = ["scene", "assignments", "seconds", "speed"])]
+    pub story: bool,
     /// File or folder to write.
     #[arg(short, long, value_name = "OUT.gif|FOLDER")]
     pub output: PathBuf,
@@ -116,7 +122,7 @@ pub(super) struct RecordArgs {
     /// Playback speed, simulated seconds per second: 0.1 is slow motion.
     #[arg(long, value_name = "FACTOR", value_parser = parse_speed)]
     pub speed: Option<f64>,
-    /// Frames per second, 1 to 100. Default: 25, or 4 for the iterations of a static scene.
+    /// Frames per second, 1 to 100. Default: 25, 4 for the iterations of a static scene, or 10 for the story.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
     pub fps: Option<u16>,
     /// Size in pixels, 64x64 to 8192x8192.

@@ -121,7 +121,10 @@ pub fn main() -> ExitCode {
         #[cfg(not(feature = "app"))]
         None => Ok(ExitCode::from(BAD_INPUT)),
         #[cfg(feature = "app")]
-        Some(Command::Run { scene, output, adapter }) => window::run(scene.into(), &output, adapter.adapter),
+        Some(Command::Run { scene, output, adapter }) => {
+            let is_default = scene.scene.is_none() && scene.set.assignments.is_empty();
+            window::run(scene.into(), &output, adapter.adapter, is_default)
+        }
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),
         Some(Command::Solve(args)) => commands::solve(args),
         Some(Command::Curve(args)) => commands::curve(args),

@@ -11,13 +11,16 @@ use crate::format::{count, number};
 use crate::scene;
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
-    let RecordArgs { scene, output, seconds, speed, fps, size, overwrite, look } = args;
+    let RecordArgs { scene, set, story: _, output, seconds, speed, fps, size, overwrite, look } = args;
     let LookArgs { theme, language, adapter } = look;
-    let source = scene::Source::from(scene);
-    let scene = scene::open(&source)?;
     let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language, adapter: adapter.adapter };
+    let source = scene.map(|name| scene::Source { name, assignments: set.assignments });
+    let opened = source.map(|source| Ok::<_, CliError>((scene::open(&source)?, source))).transpose()?;
     let watch = Watch::new();
-    let recorded = app::record(&source, scene, &options, &output, &|progress| watch.observe(progress));
+    let recorded = match opened {
+        Some((scene, source)) => app::record(&source, scene, &options, &output, &|progress| watch.observe(progress)),
+        None => app::record_story(&options, &output, &|progress| watch.observe(progress)),
+    };
     drop(watch);
     let recorded = recorded?;
     if recorded.pictures == 0 {

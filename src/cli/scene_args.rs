@@ -11,9 +11,8 @@ use crate::scene::units::{self, UnitError};
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
-    #[arg(default_value = scene::registry::DEFAULT)]
-    pub scene: PathBuf,
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input. Default: article.
+    pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub set: SetArgs,
 }
@@ -36,7 +35,8 @@ pub(super) struct SetArgs {
 
 impl From<SceneArgs> for scene::Source {
     fn from(args: SceneArgs) -> Self {
-        Self { name: args.scene, assignments: args.set.assignments }
+        let name = args.scene.unwrap_or_else(|| scene::registry::DEFAULT.into());
+        Self { name, assignments: args.set.assignments }
     }
 }
 

@@ -86,17 +86,23 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
 /// Runs `warpbeam` without a command.
 pub(super) fn run_default() -> Result<ExitCode, CliError> {
     let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-    run(source, Path::new(DEFAULT_PICTURE), None)
+    run(source, Path::new(DEFAULT_PICTURE), None, true)
 }
 
-pub(super) fn run(source: scene::Source, output: &Path, adapter: Option<String>) -> Result<ExitCode, CliError> {
+/// Opens the window. `is_default` is `true` if no scene was asked for.
+pub(super) fn run(
+    source: scene::Source,
+    output: &Path,
+    adapter: Option<String>,
+    is_default: bool,
+) -> Result<ExitCode, CliError> {
     check_suffix(output, &[".png"], ".png")?;
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
     // A window opens without waiting for a large mesh; errors of a small one are reported before opening a window.
     let small = if app::opens_in_background(&scene) { None } else { Some(simulation()?) };
     match app::Display::open() {
-        Ok(display) => app::run(display, source, scene, small, adapter)?,
+        Ok(display) => app::run(display, source, scene, small, adapter, is_default)?,
         Err(reason) => {
             let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();

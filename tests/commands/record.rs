@@ -117,6 +117,25 @@ fn rates_are_rounded_to_those_of_the_format_and_slow_motion_is_slow() {
     assert_eq!(decode_gif(&folder.join("slow.gif")).frames.len(), 51);
 }
 
+/// The story is recorded without a scene, in full and the same every time.
+#[test]
+fn the_story_is_recorded_in_place_of_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let args = ["--story", "--fps", "2", "--size", "400x300"];
+    let text = record(folder, &[&args[..], &["-o", "a.gif"]].concat());
+    assert!(text.contains("40 pictures, 2 per second"), "{text}");
+    let movie = decode_gif(&folder.join("a.gif"));
+    assert_eq!((movie.size, movie.frames.len()), ([400, 300], 40));
+    assert!(movie.frames.windows(2).filter(|pair| pair[0].0 != pair[1].0).count() > 15, "the body stands still");
+    record(folder, &[&args[..], &["-o", "b.gif"]].concat());
+    assert_eq!(fs::read(folder.join("a.gif")).unwrap(), fs::read(folder.join("b.gif")).unwrap());
+    for refused in [&["--story", "article"][..], &["--story", "--seconds", "2"], &[]] {
+        let output = warpbeam_in(folder, &[&["record", "-o", "c.gif"], refused].concat());
+        assert_eq!(output.status.code(), Some(2), "{refused:?}: {}", stderr(&output));
+    }
+}
+
 /// The path to an equilibrium is recorded with one iteration per picture, and the last picture stays longer.
 #[test]
 fn a_search_is_recorded_iteration_by_iteration() {

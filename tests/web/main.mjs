@@ -309,7 +309,7 @@ const TESTS = {
 
   async "files are opened, saved and kept out of a broken state"(browser) {
     const toml = readFileSync("assets/scenes/elastica.toml", "utf8");
-    await onPage(browser, "?lang=en", async ({ page, until }) => {
+    await onPage(browser, "?scene=article&lang=en", async ({ page, until }) => {
       const choose = async (name, text) => {
         const chooser = page.waitForEvent("filechooser");
         await page.keyboard.press("Control+o");

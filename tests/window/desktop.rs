@@ -411,7 +411,7 @@ fn a_body_in_motion_is_pulled_released_and_reset() {
 fn s_saves_a_screenshot() {
     let Some(desktop) = Desktop::start() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let window = Window::open_in(&desktop, folder.path(), &[]);
+    let window = Window::open_in(&desktop, folder.path(), &["run", "article"]);
     window.point(1000.0, 700.0);
     let shown = window.settle();
     let path = folder.path().join("warpbeam-001.png");

@@ -241,6 +241,7 @@ const NOT_SHOWN: &[&str] = &[
     "the browser is set to keep nothing",
     ".toml,.msh",
     "scene=",
+    "(prefers-reduced-motion: reduce)",
     "no document",
     "# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}",
     "English",

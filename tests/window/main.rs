@@ -21,4 +21,5 @@ mod pictures;
 mod points;
 mod sections;
 mod soak;
+mod story;
 mod ui_interaction;

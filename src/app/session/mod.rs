@@ -595,6 +595,15 @@ impl Session {
         self.facts.wait_at_rest(&self.scene, shown);
     }
 
+    /// Solves the scene from rest and certifies the result; for a body so small that this takes less than a frame.
+    pub(crate) fn solve_from_rest(&mut self) {
+        self.reset();
+        while *self.simulation.status() == Status::Running {
+            self.iterate(1);
+        }
+        self.certify();
+    }
+
     fn certify(&mut self) {
         self.simulation.certify();
         self.quality.update(&self.simulation);
@@ -669,6 +678,11 @@ impl Session {
     /// Requests the reference solution, in any state of the body; returns `true` while it is pending.
     pub(crate) fn request_reference(&mut self) -> bool {
         self.facts.reference.request(&self.scene)
+    }
+
+    /// Computes the reference solution, and waits for it.
+    pub(crate) fn wait_for_reference(&mut self) {
+        self.facts.reference.wait(&self.scene);
     }
 
     /// Stores a copy of an equilibrium, to be displayed when a later state diverges. If the first state diverges, the

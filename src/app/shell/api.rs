@@ -214,7 +214,7 @@ impl Lab {
     #[must_use]
     pub fn title(&self) -> String {
         let session = &self.desk.session;
-        let edited = if session.is_edited() { "*" } else { "" };
+        let edited = if session.is_edited() && self.story.is_none() { "*" } else { "" };
         language::speak(self.settings.language);
         let file = session.document().path().and_then(Path::file_name);
         let file = file.map_or_else(String::new, |file| format!(" ({})", file.to_string_lossy()));
@@ -334,12 +334,13 @@ impl Lab {
             egui::ThemePreference::Light => Some(ThemeChoice::Light),
             egui::ThemePreference::System => None,
         };
-        // The cards of Learn have view options of their own, which are not saved.
-        let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
-        let ViewOptions { panel, drawer, field, .. } = desk.view;
         let mut settings = self.settings.clone();
-        (settings.theme, settings.panel, settings.drawer) = (theme, panel, drawer);
-        settings.set_color(field);
+        settings.theme = theme;
+        // The cards of Learn and the story have view options of their own, which are not saved.
+        if let Some(ViewOptions { panel, drawer, field, .. }) = self.own_desk().map(|desk| &desk.view) {
+            (settings.panel, settings.drawer) = (*panel, *drawer);
+            settings.set_color(*field);
+        }
         settings
     }
 

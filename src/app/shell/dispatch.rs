@@ -151,6 +151,10 @@ impl Lab {
                 self.go_to_card(card);
                 ctx.request_repaint();
             }
+            Action::Story => {
+                self.tell_story();
+                ctx.request_repaint();
+            }
             Action::Color(field) => self.desk.view.color_with(field),
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;

@@ -1,5 +1,7 @@
 //! [`Lab`]: the complete content of a window. Window, screenshots and tests all show it through [`Lab::ui`].
 
+use web_time::Duration;
+
 use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
 use crate::app::modes::explore::section_plot::SectionPlot;
@@ -103,6 +105,33 @@ pub(super) struct Lesson {
     pub aside: Desk,
 }
 
+/// Story while it is told.
+#[derive(Debug)]
+pub(super) struct Story {
+    /// Time of the start, s.
+    pub start: Option<f64>,
+    /// Index of the current part, and the time until its end, s.
+    pub part: usize,
+    pub left: f64,
+    /// `true` if each part is a still.
+    pub is_still: bool,
+    /// `true` if the body is compared with the reference solution: under the scene's load.
+    pub compares: bool,
+    /// ρ of the warped iteration at the equilibrium that it does not reach.
+    pub rho: Option<f64>,
+    /// View options before the story.
+    pub view: ViewOptions,
+    /// State of Learn, if the story was started there.
+    pub lesson: Option<Box<Lesson>>,
+}
+
+impl Story {
+    /// Returns the time until the next frame.
+    pub(super) fn delay(&self) -> Duration {
+        Duration::try_from_secs_f64(if self.is_still { self.left } else { 0.0 }).unwrap_or_default()
+    }
+}
+
 /// Action that would lose unsaved edits.
 #[derive(Clone, Debug)]
 pub(super) enum UnsavedDeparture {
@@ -134,6 +163,8 @@ pub struct Lab {
     /// Number of the last displayed card, from 0.
     pub(super) card: usize,
     pub(super) intro: Option<Intro>,
+    /// Story of the first start, while it is told.
+    pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
     pub(super) question: Question,
     /// Edits left by a crashed window, while they are offered.
@@ -160,6 +191,7 @@ impl Lab {
             lesson: None,
             card: 0,
             intro: None,
+            story: None,
             dialog: None,
             question: Question::None,
             left: None,
@@ -195,6 +227,10 @@ impl Lab {
     /// Makes the iterations of one displayed frame if the lab runs, or the time steps that are due at `now`, s (any
     /// clock that runs in real time). Returns `true` if more remain.
     pub fn advance(&mut self, now: f64) -> bool {
+        if self.story.is_some() {
+            self.advance_story(now);
+            return self.story.is_some() || self.iterates();
+        }
         if self.compares_motions() {
             let Desk { session, motions, .. } = &mut self.desk;
             session.poll();
@@ -255,6 +291,12 @@ impl Lab {
         }
     }
 
+    /// Returns the desk of the user's scene, which Learn puts aside; `None` while the story is told on it.
+    pub(super) fn own_desk(&self) -> Option<&Desk> {
+        let lesson = self.story.as_ref().map_or(self.lesson.as_ref(), |story| story.lesson.as_ref());
+        lesson.map(|lesson| &lesson.aside).or_else(|| self.story.is_none().then_some(&self.desk))
+    }
+
     /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
         let Self { desk: Desk { session, view, panel, .. }, intro, lesson, .. } = self;
@@ -275,7 +317,10 @@ impl Lab {
             reference: reference.and_then(Result::ok),
             reference_failure: reference.and_then(Result::err),
             path: facts.path.get(session.scene()).map(|path| path.to(session.simulation().displacement())),
-            equilibrium_rho: self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
+            equilibrium_rho: match &self.story {
+                Some(story) => story.rho,
+                None => self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
+            },
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
             shows_converged: viewport.shows_converged(),

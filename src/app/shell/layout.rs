@@ -35,6 +35,7 @@ impl Lab {
         palette::install(ui.ctx());
         language::speak(self.settings.language);
         let mut actions = Vec::new();
+        self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
@@ -88,6 +89,8 @@ impl Lab {
         requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         if self.desk.session.is_working() {
             ui.ctx().request_repaint_after(POLL);
+        } else if let Some(story) = &self.story {
+            ui.ctx().request_repaint_after(story.delay());
         } else if self.iterates() || self.intro.is_some() {
             ui.ctx().request_repaint();
         }
@@ -96,6 +99,13 @@ impl Lab {
 
     /// Requests the displayed results of the scene.
     fn request_facts(&mut self, ctx: &egui::Context) {
+        // Results of a load that changes with every frame would be late.
+        if let Some(story) = &self.story {
+            if story.compares && self.desk.session.request_reference() {
+                ctx.request_repaint_after(POLL);
+            }
+            return;
+        }
         let is_pressed = ctx.input(|i| i.pointer.any_down());
         let (session, shown) = self.desk.shown_facts();
         if session.request_facts(shown, is_pressed) {
@@ -299,6 +309,8 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
+        self.aim_story();
+        let (viewport, content) = self.viewport_and_content();
         viewport.fit_camera(ui, &content);
         let painter = ui.painter_at(rect);
         let readout = self.readout();
@@ -339,6 +351,7 @@ impl Lab {
         let (viewport, content) = self.viewport_and_content();
         let kept = viewport.show_values(ui, &painter, &content);
         actions.extend(kept.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
+        self.paint_story(ui, &painter, rect);
         if self.desk.view.bars && self.intro.is_none() {
             let mut free = rect;
             if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
@@ -386,9 +399,10 @@ impl Lab {
         }
     }
 
-    /// Returns the remedy for an error; the other modes have remedies of their own.
+    /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
     fn remedy(&self, input: &Readout<'_>, errors: &Errors) -> Option<diagnosis::Remedy> {
-        diagnosis::remedy(input, errors).filter(|_| self.desk.view.mode == Mode::Explore)
+        let offers = self.desk.view.mode == Mode::Explore && self.story.is_none();
+        diagnosis::remedy(input, errors).filter(|_| offers)
     }
 
     /// Shows the explanation of the status over the body; if the status has no line of its own, also the status and a

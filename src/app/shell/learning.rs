@@ -55,7 +55,7 @@ impl Lab {
     }
 
     /// Sets up the scene and the view of the card.
-    fn set_card_up(&mut self) {
+    pub(super) fn set_card_up(&mut self) {
         let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
         let Some((source, mut scene)) = learn::article() else { return };
         (setup.edit)(&mut scene);

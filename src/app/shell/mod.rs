@@ -14,5 +14,6 @@ mod messages;
 pub(crate) mod settings;
 pub(crate) mod shortcuts;
 pub(crate) mod status_bar;
+pub(crate) mod story;
 pub(crate) mod toolbar;
 mod unsaved;

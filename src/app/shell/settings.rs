@@ -26,6 +26,8 @@ pub struct Settings {
     pub theme: Option<ThemeChoice>,
     /// Language of the user interface.
     pub language: Language,
+    /// `true` if animations are replaced by stills.
+    pub reduced_motion: bool,
     /// `true` if the panel is shown.
     pub panel: bool,
     /// Drawer that is open under the body.
@@ -44,6 +46,7 @@ impl Default for Settings {
         Self {
             theme: None,
             language: Language::default(),
+            reduced_motion: false,
             panel: true,
             drawer: None,
             color: Field::default().name().to_owned(),
@@ -58,6 +61,11 @@ impl Settings {
     #[must_use]
     pub fn file() -> Option<PathBuf> {
         platform::settings::file()
+    }
+
+    /// Returns `true` if there is no file of settings yet.
+    pub(crate) fn is_missing(file: &Path) -> bool {
+        platform::settings::read(file).is_err_and(|error| error.kind() == ErrorKind::NotFound)
     }
 
     /// Reads the settings from a file; returns the defaults if there is none. If the file cannot be read, it is renamed

@@ -17,7 +17,7 @@ use crate::scene::Scene;
 impl Lab {
     /// Returns the edited scene and its document; `None` if there are no unsaved edits.
     pub(crate) fn unsaved(&self) -> Option<(&Document, &Scene)> {
-        let desk = self.lesson.as_ref().map_or(&self.desk, |lesson| &lesson.aside);
+        let desk = self.own_desk()?;
         desk.session.is_edited().then(|| (desk.session.document(), desk.session.scene()))
     }
 
@@ -34,6 +34,7 @@ impl Lab {
     /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits or
     /// a recording, and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
+        self.end_story();
         if self.unsaved().is_some() && self.lesson.is_some() {
             self.desk.view.mode = Mode::Explore;
             self.enter_or_leave();

@@ -84,7 +84,8 @@ pub fn opens_in_background(scene: &Scene) -> bool {
 
 /// Opens the window and returns when it is closed. Without a simulation the scene is meshed in the background while the
 /// window shows another one: see [`opens_in_background`]. `adapter` is a part of the name of the graphics adapter;
-/// `None` stands for `WGPU_ADAPTER_NAME`.
+/// `None` stands for `WGPU_ADAPTER_NAME`. If no scene was asked for, which `is_default` says, the first start tells a
+/// story.
 ///
 /// # Errors
 /// [`AppError`]: no adapter, or no window.
@@ -94,9 +95,10 @@ pub fn run(
     scene: Scene,
     simulation: Option<Simulation>,
     adapter: Option<String>,
+    is_default: bool,
 ) -> Result<(), AppError> {
     let settings = Settings::file().as_deref().map(Settings::load).unwrap_or_default();
-    let mut app = App::new((source, scene, simulation), settings, None)?;
+    let mut app = App::new((source, scene, simulation), settings, None, is_default)?;
     app.adapter = adapter;
     app.run(display)
 }
@@ -112,6 +114,9 @@ struct App {
     /// Settings as stored in their file.
     settings: Settings,
     settings_file: Option<PathBuf>,
+    /// `true` if the file of the settings is to be made although they have their defaults: the next start is not the
+    /// first one.
+    needs_settings_file: bool,
     /// Copy of unsaved edits; `None` if the system has no folder for it.
     recovery: Option<RecoveryCopies>,
     open: Option<OpenWindow>,
@@ -138,11 +143,12 @@ struct App {
 
 impl App {
     /// Prepares a window with these settings, or a message that they could not be read, and with this card of Learn,
-    /// from 1.
+    /// from 1. `is_default` is `true` if no scene was asked for: the first start then tells the story.
     fn new(
         (source, scene, simulation): (Source, Scene, Option<Simulation>),
         (settings, unreadable): (Settings, Option<String>),
         card: Option<usize>,
+        is_default: bool,
     ) -> Result<Self, AppError> {
         let first_picture = source.name.to_str() == Some(registry::DEFAULT);
         let file = Settings::file();
@@ -155,7 +161,8 @@ impl App {
             return Err(AppError::Window("the scene to begin with is missing".to_owned()));
         };
         lab.set_settings(&ctx, settings.clone());
-        lab.set_easing(true);
+        lab.set_easing(!lab.reduces_motion());
+        let is_first_start = unreadable.is_none() && file.as_deref().is_some_and(Settings::is_missing);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
         let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
@@ -178,14 +185,17 @@ impl App {
         });
         match card {
             Some(card) => lab.show_card(card),
-            None if first_picture => lab.introduce(),
+            None if is_default && is_first_start && !lab.offers_unsaved() => lab.tell_story(),
+            None if first_picture && !lab.reduces_motion() => lab.introduce(),
             None => {}
         }
+        let needs_settings_file = lab.story().is_some();
         Ok(Self {
             lab,
             ctx,
             settings,
             settings_file: file,
+            needs_settings_file,
             recovery,
             open: None,
             opening: Rc::default(),
@@ -509,7 +519,8 @@ impl App {
     /// Writes the settings to their file, if they have changed.
     fn keep_settings(&mut self) {
         let settings = self.lab.settings(&self.ctx);
-        if let (Some(file), true) = (&self.settings_file, settings != self.settings) {
+        let is_due = std::mem::take(&mut self.needs_settings_file) || settings != self.settings;
+        if let (Some(file), true) = (&self.settings_file, is_due) {
             match settings.save(&self.settings, file) {
                 Ok(()) => self.settings = settings,
                 Err(error) => {

@@ -35,6 +35,7 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
         settings.language = if language.starts_with("zh") { Language::Chinese } else { Language::English };
     }
     language::speak(settings.language);
+    let is_default = address.scene.is_none() && address.toml.is_none();
     let name = match address.toml {
         Some(Ok(toml)) => files::add(SHARED, toml),
         Some(Err(error)) => {
@@ -47,7 +48,7 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
     let scene = files::open(&source)?;
     // A large model is meshed in the background.
     let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    let app = App::new((source, scene, simulation), (settings, unreadable), address.card)?;
+    let app = App::new((source, scene, simulation), (settings, unreadable), address.card, is_default)?;
     // Shortcuts have the Cmd key on systems of Apple.
     app.ctx.set_os(OperatingSystem::from_user_agent(&page::user_agent()));
     Ok(app.run(Display::open()?)?)

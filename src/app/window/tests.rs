@@ -109,7 +109,7 @@ fn lose() {
     let scene = open(&source).unwrap();
     let simulation = Simulation::new(&scene).unwrap();
     let settings = Settings::file().as_deref().map(Settings::load).unwrap();
-    let mut app = App::new((source, scene.clone(), Some(simulation)), settings, None).unwrap();
+    let mut app = App::new((source, scene.clone(), Some(simulation)), settings, None, false).unwrap();
     let mut edited = scene.clone();
     let Load::Force { force, .. } = &mut edited.loads[0] else { unreachable!() };
     force[1] *= 0.5;
@@ -137,6 +137,40 @@ fn lose() {
     for number in [2, 3] {
         assert!(panel(number) == first, "screenshot {number}");
     }
+}
+
+/// The first start tells the story and makes a file of settings, so that later starts do not tell it.
+#[test]
+fn only_the_first_start_tells_the_story() {
+    let name = "app::window::tests::only_the_first_start_tells_the_story";
+    if std::env::var_os(CHILD).is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", name])
+            .env(CHILD, "1")
+            .env("XDG_CONFIG_HOME", folder.path())
+            .output()
+            .unwrap();
+        let out = String::from_utf8_lossy(&output.stdout);
+        return assert!(output.status.success() && out.contains("1 passed"), "{out}");
+    }
+    let file = Settings::file().unwrap();
+    let open = |is_default| {
+        let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
+        let scene = open(&source).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        App::new((source, scene, Some(simulation)), Settings::load(&file), None, is_default).unwrap()
+    };
+    let tells = |app: &App| app.lab.story().is_some();
+    let mut other = open(false);
+    assert!(!tells(&other), "a scene was asked for");
+    other.keep_settings();
+    let mut first = open(true);
+    assert!(tells(&first) && !file.exists());
+    first.keep_settings();
+    assert!(!tells(&open(true)));
+    std::fs::write(&file, "theme = 3").unwrap();
+    assert!(!tells(&open(true)), "the settings could not be read");
 }
 
 #[test]

@@ -317,7 +317,7 @@ impl Learn {
         ui.horizontal(|ui| {
             let wide = ui.available_width() > 720.0;
             let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
-            let nav = if wide { 470.0 } else { 246.0 };
+            let nav = if wide { 540.0 } else { 316.0 };
             let room = (ui.available_width() - nav).max(80.0);
             ui.scope(|ui| {
                 ui.set_max_width(room);
@@ -327,6 +327,10 @@ impl Learn {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
                     actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
+                }
+                let tip = "Twenty seconds on the article\u{2019}s beam; any key or click ends them";
+                if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
+                    actions.push(Action::Story);
                 }
                 if wide {
                     let tip = "Restores this card\u{2019}s scene";
@@ -485,7 +489,7 @@ pub(crate) fn article() -> Option<(Source, Scene)> {
 
 /// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
 /// warped iteration may diverge.
-fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
+pub(crate) fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     if scene.analysis != Analysis::Static {
         return None;
     }

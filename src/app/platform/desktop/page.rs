@@ -22,6 +22,11 @@ pub(crate) fn drawn(_report: impl FnOnce(u64) -> String) {}
 /// Does nothing: the fingers on a touch screen belong to one device.
 pub(crate) fn join_touches(_: &mut [egui::Event]) {}
 
+/// Returns `false`: the settings of a window say whether motion is reduced.
+pub(crate) fn prefers_reduced_motion() -> bool {
+    false
+}
+
 /// Shows an error in place of the window; a program prints it instead.
 pub(crate) fn fail(_: &str) {}
 

@@ -91,6 +91,13 @@ pub(crate) fn user_agent() -> String {
     web_sys::window().and_then(|window| window.navigator().user_agent().ok()).unwrap_or_default()
 }
 
+/// Returns `true` if the browser is set to reduce motion.
+pub(crate) fn prefers_reduced_motion() -> bool {
+    let query =
+        web_sys::window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
+    query.is_some_and(|query| query.matches())
+}
+
 /// Returns the text of a scene in a link.
 fn decode(packed: &str) -> Result<String, LinkError> {
     let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;

@@ -1,0 +1,239 @@
+//! Story of the first start: in five parts the article's beam shows linear theory, the limit of the warped iteration,
+//! Newton's method and another element. At the end the user's own scene is as before.
+
+use std::ops::ControlFlow;
+
+use egui::{Align2, Event, FontId, Painter, Rect, Role, Sense, Stroke, TouchPhase, Ui, WidgetInfo, vec2};
+use nalgebra::Vector2;
+
+use crate::app::language::tr;
+use crate::app::modes::learn;
+use crate::app::platform::page;
+use crate::app::shell::lab::{Desk, Lab, Story};
+use crate::app::view_options::ViewOptions;
+use crate::app::viewport::overlay;
+use crate::app::widgets::palette::{HEADLINE, Palette};
+use crate::render::{Camera, Margins};
+use crate::scene::{ElementKind, MethodKind};
+
+/// Part of the story.
+struct Part {
+    /// Text over the body, of at most eight words.
+    caption: &'static str,
+    /// Duration, s.
+    seconds: f64,
+    /// Returns the method, the element, and the load relative to the scene's, at a fraction of the duration.
+    setting: fn(f64) -> (MethodKind, ElementKind, f64),
+    /// `true` if the outline of the linear solution is shown, and (second) that of the reference solution.
+    outlines: [bool; 2],
+}
+
+/// Load beyond the limit of the warped iteration, and the largest one, relative to the scene's.
+const PAST: f64 = 1.8;
+const FAR: f64 = 2.5;
+
+/// All parts.
+const PARTS: [Part; 5] = [
+    Part {
+        caption: "Linear theory (orange) grows; warped keeps its area.",
+        seconds: 5.0,
+        setting: |t| (MethodKind::Warped, ElementKind::T3, between(0.0, 1.0, t / 0.8)),
+        outlines: [true, false],
+    },
+    Part {
+        caption: "Beyond ρ = 1 the warped iteration diverges.",
+        seconds: 4.5,
+        setting: |t| (MethodKind::Warped, ElementKind::T3, between(1.0, PAST, t / 0.8)),
+        outlines: [false, false],
+    },
+    Part {
+        caption: "Newton\u{2019}s method carries on.",
+        seconds: 3.0,
+        setting: |t| (MethodKind::Newton, ElementKind::T3, between(PAST, FAR, t / 0.8)),
+        outlines: [false, false],
+    },
+    Part {
+        caption: "Same five cells, another element: the error falls.",
+        seconds: 4.5,
+        setting: |t| {
+            let element = if t < 0.5 { ElementKind::T3 } else { ElementKind::Q4 };
+            (MethodKind::Newton, element, between(FAR, 1.0, t / 0.25))
+        },
+        outlines: [false, true],
+    },
+    Part {
+        caption: "Your turn: drag the arrow.",
+        seconds: 3.0,
+        setting: |_| (MethodKind::Warped, ElementKind::T3, 1.0),
+        outlines: [true, true],
+    },
+];
+
+/// Space that the bodies of all parts take beyond the beam at rest, m: to the right and below.
+const BEYOND: Vector2<f64> = Vector2::new(0.6, 4.0);
+/// Distance of the caption from the top of the view, points: below the line key and the note of a diverged load.
+const CAPTION: f32 = 80.0;
+/// Margins around the bodies; the caption is above them.
+const MARGINS: Margins = Margins { sides: 76.0, top: 124.0, bottom: 165.0 };
+/// Margins in a low view, whose caption is below the bodies.
+const LOW_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 130.0 };
+
+/// Moves from one load to another, with zero velocity at both ends.
+fn between(from: f64, to: f64, t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    from + (to - from) * t * t * (3.0 - 2.0 * t)
+}
+
+/// Returns the duration of the story, s.
+pub(crate) fn seconds() -> f64 {
+    PARTS.iter().map(|part| part.seconds).sum()
+}
+
+impl Lab {
+    /// Tells the story on the article's beam, from the time of the next [`Self::advance`] on. Does nothing if an edited
+    /// scene or another one would be lost.
+    pub fn tell_story(&mut self) {
+        let Some((source, article)) = learn::article() else { return };
+        let is_lost = self.lesson.is_none() && (*self.scene() != article || self.can_undo());
+        if self.story.is_some() || is_lost {
+            return;
+        }
+        let Desk { session, view, panel, .. } = &mut self.desk;
+        // Cannot fail: the scene is built in.
+        if session.set_scene(article).is_err() {
+            return;
+        }
+        session.rebase(source);
+        session.set_running(true);
+        panel.clear();
+        let own = ViewOptions { bars: view.bars, narrow: view.narrow, ..ViewOptions::default() };
+        let view = std::mem::replace(view, own);
+        let (is_still, lesson) = (self.reduces_motion(), self.lesson.take());
+        let (start, part, left, compares, rho) = (None, 0, 0.0, false, None);
+        self.story = Some(Box::new(Story { start, part, left, is_still, compares, rho, view, lesson }));
+        self.apply_session_changes();
+    }
+
+    /// Returns the index of the story's current part, and its caption; `None` if no story is told.
+    #[must_use]
+    pub fn story(&self) -> Option<(usize, &'static str)> {
+        let part = self.story.as_ref()?.part;
+        Some((part, PARTS.get(part)?.caption))
+    }
+
+    /// Returns `true` if animations are replaced by stills.
+    pub(crate) fn reduces_motion(&self) -> bool {
+        self.settings.reduced_motion || page::prefers_reduced_motion()
+    }
+
+    /// Shows the story at the time `now`, s. The body depends on that time only, not on the frames before.
+    pub(super) fn advance_story(&mut self, now: f64) {
+        let Some(story) = &mut self.story else { return };
+        let mut time = now - *story.start.get_or_insert(now);
+        let Some((number, part)) = PARTS.iter().enumerate().find(|(_, part)| {
+            let is_current = time < part.seconds;
+            time -= if is_current { 0.0 } else { part.seconds };
+            is_current
+        }) else {
+            return self.end_story();
+        };
+        (story.part, story.left) = (number, part.seconds - time);
+        let (method, element, load) = (part.setting)(if story.is_still { 1.0 } else { time / part.seconds });
+        story.compares = load == 1.0;
+        let Desk { session, view, .. } = &mut self.desk;
+        [view.ghost, view.exact] = part.outlines;
+        let mut scene = session.document().original.clone();
+        scene.solver.method = method;
+        scene.set_element(element);
+        scene.scale_loads(load);
+        if *session.scene() == scene && session.has_ended() {
+            return;
+        }
+        if session.set_scene(scene).is_err() {
+            return self.end_story();
+        }
+        session.solve_from_rest();
+        let is_lost = method == MethodKind::Warped && !session.simulation().status().is_success();
+        story.rho =
+            if is_lost { learn::fixed_point_rho(session.scene(), &|_| ControlFlow::Continue(())) } else { None };
+        self.apply_session_changes();
+    }
+
+    /// Waits for the reference solution, if the body is compared with it.
+    pub(crate) fn finish_story_frame(&mut self) {
+        if self.story.as_ref().is_some_and(|story| story.compares) {
+            self.desk.session.wait_for_reference();
+        }
+    }
+
+    /// Ends the story if the user does something; a movement of the pointer alone does not count.
+    pub(super) fn end_story_on_input(&mut self, ctx: &egui::Context) {
+        let is_input = |event: &Event| match event {
+            Event::Key { pressed, repeat, .. } => *pressed && !repeat,
+            Event::PointerButton { pressed, .. } => *pressed,
+            Event::Touch { phase, .. } => *phase == TouchPhase::Start,
+            Event::MouseWheel { .. } | Event::Zoom(_) | Event::Paste(_) | Event::AccessKitActionRequest(_) => true,
+            _ => false,
+        };
+        if self.story.is_some() && ctx.input(|i| i.events.iter().any(is_input) || !i.raw.dropped_files.is_empty()) {
+            self.end_story();
+            // The key that ends the story does nothing else.
+            ctx.input_mut(|i| i.events.retain(|event| !matches!(event, Event::Key { pressed: true, .. })));
+        }
+    }
+
+    /// Ends the story: the scene is solved as it was opened, or Learn shows its card again.
+    pub(super) fn end_story(&mut self) {
+        let Some(story) = self.story.take() else { return };
+        let Story { view, lesson, .. } = *story;
+        (self.desk.view, self.lesson) = (view, lesson);
+        self.desk.viewport.fit();
+        if self.lesson.is_some() {
+            return self.set_card_up();
+        }
+        let session = &mut self.desk.session;
+        let original = session.document().original.clone();
+        if *session.scene() != original && session.set_scene(original).is_ok() {
+            session.solve_from_rest();
+        }
+        self.apply_session_changes();
+    }
+
+    /// Fits the camera to the bodies of all parts: a camera that followed the body would hide its growth.
+    pub(super) fn aim_story(&mut self) {
+        if self.story.is_none() {
+            return;
+        }
+        let Desk { session, viewport, .. } = &mut self.desk;
+        let (low, high) = session.simulation().system().mesh().bounds();
+        let (low, high) = (low - Vector2::new(0.0, BEYOND.y), high + Vector2::new(BEYOND.x, 0.0));
+        let rect = viewport.rect();
+        let margins = if overlay::has_legend_on_top(rect.height()) { LOW_MARGINS } else { MARGINS };
+        viewport.set_camera(Camera::fit(low, high, [rect.width(), rect.height()].map(f64::from), margins));
+    }
+
+    /// Paints the caption, and in the last part a ring around the tip of the arrow.
+    pub(super) fn paint_story(&self, ui: &Ui, painter: &Painter, rect: Rect) {
+        const RING: f32 = 13.0;
+        let Some((part, caption)) = self.story() else { return };
+        let palette = Palette::new(ui.visuals());
+        if part + 1 == PARTS.len() {
+            for (_, tip) in self.arrow_tips() {
+                painter.circle_stroke(tip, RING, Stroke::new(2.5, palette.accent));
+            }
+        }
+        let caption = tr(caption);
+        let font = FontId::proportional(HEADLINE);
+        let galley = painter.layout(caption.to_owned(), font, palette.text, (rect.width() - 48.0).max(40.0));
+        let area = if overlay::has_legend_on_top(rect.height()) {
+            Align2::CENTER_BOTTOM.anchor_size(rect.center_bottom() - vec2(0.0, 12.0), galley.size())
+        } else {
+            Align2::CENTER_TOP.anchor_size(rect.center_top() + vec2(0.0, CAPTION), galley.size())
+        };
+        painter.rect_filled(area.expand2(vec2(12.0, 5.0)), 6.0, palette.panel);
+        painter.galley(area.min, galley, palette.text);
+        // For screen readers.
+        let response = ui.interact(area, egui::Id::unique("story"), Sense::empty());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, caption));
+    }
+}
