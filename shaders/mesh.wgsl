@@ -177,8 +177,11 @@ fn cauchy(e: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(ts / (area * thickness(e)), zz / area);
 }
 
-// R σ Rᵀ: xx, yy, xy.
+// R σ Rᵀ: xx, yy, xy; σ in linear theory, which has no rotation.
 fn rotated(t: vec4<f32>, rotation: vec2<f32>) -> vec3<f32> {
+    if view.is_corotated == 0u {
+        return t.xyz;
+    }
     let r = normalize(rotation);
     let cc = r.x * r.x;
     let ss = r.y * r.y;

@@ -92,9 +92,10 @@ pub(super) enum Command {
         scaling: bool,
     },
     /// Find the loads up to which each method and element holds on the cells of a static scene, from a hundredth to ten
-    /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %. The table has
-    /// a row for each load, method and element; the picture shows the load curve, and below it a strip for each method
-    /// and element.
+    /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %. For a dynamic
+    /// scene, find the time steps up to which each integrator does, from a sixteenth to eight times its own. The table has
+    /// a row for each load or time step; the picture shows the load curve, and below it a strip for each method and
+    /// element, or for each integrator.
     Limits(LimitsArgs),
     /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
     /// on this machine until both are met, and print the choice and the reason.

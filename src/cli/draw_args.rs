@@ -65,7 +65,8 @@ pub(super) struct ShotArgs {
     /// Add the plot of error against time, measured now.
     #[arg(long, conflicts_with_all = ["curve", "sections"])]
     pub study: bool,
-    /// Add the map of the loads up to which each method and element holds, as the window's Limits mode shows it.
+    /// Add the map of the loads up to which each method and element holds, or of the time steps up to which each
+    /// integrator does, as the window's Limits mode shows it.
     #[arg(long, conflicts_with_all = ["curve", "sections", "study", "learn", "motion", "compare"])]
     pub limits: bool,
     /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene. With

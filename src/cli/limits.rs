@@ -1,4 +1,5 @@
-//! Command `limits`: the loads up to which each method and element holds.
+//! Command `limits`: the loads up to which each method and element holds, or the time steps up to which each integrator
+//! does.
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -8,10 +9,10 @@ use serde_json::{Value, json};
 use super::args::LimitsArgs;
 use super::progress::Watch;
 use super::{CliError, json, named, simulate, text};
+use crate::format::{engineering, three_digits};
 use crate::plot::{self, Scale};
 use crate::scene::{self, Scene};
-use crate::study::figure::LoadAxis;
-use crate::study::limits::{GOOD, LimitPoint, MethodLimits, RANGE, Strip, USABLE, load_text};
+use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
@@ -24,58 +25,61 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
     let scale = if linear { Scale::Linear } else { Scale::Logarithmic };
-    outputs.write_table(|| table(&limits))?;
+    outputs.write_table(|| table(&limits, &scene))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
     text::print(&if json { as_json(&limits, &scene) } else { summary(&limits, &scene) })?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn summary(limits: &MethodLimits, scene: &Scene) -> String {
-    let axis = LoadAxis::of(scene);
+    let axis = limits::axis(scene);
     let load = |factor: f64| load_text(&axis, factor);
-    let known = limits.reference.iter().filter(|(_, u)| u.is_some()).count();
-    let mut text = format!(
-        "{}: {} from {} to {}, {} in the scene; the reference solution is known at {known} of {} loads\n\n",
-        scene.name,
-        axis.name,
-        load(RANGE[0]),
-        load(RANGE[1]),
-        load(1.0),
-        limits.reference.len()
-    );
-    let head =
-        [format!("within {GOOD} %"), format!("within {USABLE} %"), "converges to".into(), "strains > 10 %".into()];
-    let _ = write!(text, "{:<11}", "");
+    let [low, high] = limits.range.map(load);
+    let mut text = format!("{}: {} from {low} to {high}, {} in the scene; ", scene.name, axis.name, load(1.0));
+    let _ = match limits.duration {
+        Some(duration) => writeln!(text, "the first {} of the motion\n", engineering(three_digits(duration), "s")),
+        None => {
+            let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
+            writeln!(text, "the reference solution is known at {known} of {all} loads\n")
+        }
+    };
+    let ends = if limits.duration.is_some() { "finishes to" } else { "converges to" };
+    let head = [format!("within {GOOD} %"), format!("within {USABLE} %"), ends.into(), "strains > 10 %".into()];
+    let names: Vec<String> = limits.strips.iter().map(|strip| strip.name(str::to_owned)).collect();
+    let width = names.iter().map(String::len).fold(11, usize::max);
+    let _ = write!(text, "{:<width$}", "");
     head.iter().for_each(|head| _ = write!(text, "  {head:>15}"));
     text.push('\n');
-    for strip in &limits.strips {
-        let _ = write!(text, "{:<11}", format!("{} {}", strip.element.id(), strip.method.id()));
-        strip.words(&axis).iter().for_each(|cell| _ = write!(text, "  {:>15}", cell.to_string()));
+    for (strip, name) in limits.strips.iter().zip(names) {
+        let _ = write!(text, "{name:<width$}");
+        strip.words(&axis, limits.range).iter().for_each(|cell| _ = write!(text, "  {:>15}", cell.to_string()));
         text.push('\n');
     }
     text
 }
 
 /// Formats every result as CSV.
-fn table(limits: &MethodLimits) -> String {
-    let mut text =
-        "element,method,load_factor,displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n"
-            .to_owned();
-    for Strip { element, method, points, .. } in &limits.strips {
+fn table(limits: &MethodLimits, scene: &Scene) -> String {
+    let first = if limits.duration.is_some() { "integrator,time_step" } else { "element,method,load_factor" };
+    let mut text = format!("{first},displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n");
+    for Strip { element, method, integrator, points, .. } in &limits.strips {
         for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements } in points {
             let error = error_percent.map_or_else(String::new, |error| error.to_string());
-            let (element, method) = (element.id(), method.id());
+            let first = match integrator {
+                Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),
+                None => format!("{},{},{factor}", element.id(), method.id()),
+            };
             let [x, y] = [displacement.x, displacement.y];
-            let _ = writeln!(text, "{element},{method},{factor},{x},{y},{error},{max_strain},{inverted_elements}");
+            let _ = writeln!(text, "{first},{x},{y},{error},{max_strain},{inverted_elements}");
         }
     }
     text
 }
 
 fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
-    let axis = LoadAxis::of(scene);
+    let axis = limits::axis(scene);
     let strip = |strip: &Strip| {
-        json!({
+        let mut object = json!({
             "element": strip.element.id(),
             "method": strip.method.id(),
             "within_1_percent": strip.within(GOOD),
@@ -83,14 +87,23 @@ fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
             "error_known_to": strip.last_known().map(|(factor, _)| factor),
             "converges_to": strip.ends_at,
             "law_ends_at": strip.law_ends_at(),
-        })
+        });
+        // Equilibria have no integrator.
+        if let Some(integrator) = strip.integrator {
+            object["integrator"] = json!(integrator.id());
+        }
+        object
     };
-    json::text(&json!({
+    let mut object = json!({
         "scene": scene.name,
         "load": axis.name.to_string(),
         "unit": axis.unit,
         "full_load": axis.full,
         "reference": limits.reference.iter().map(|(factor, u)| json!({ "load_factor": factor, "displacement": u })).collect::<Value>(),
         "strips": limits.strips.iter().map(strip).collect::<Value>(),
-    }))
+    });
+    if let Some(duration) = limits.duration {
+        object["duration"] = json!(duration);
+    }
+    json::text(&object)
 }

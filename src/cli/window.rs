@@ -64,7 +64,6 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         false,
         "it measures solves; for a motion, use `warpbeam study`",
     )?;
-    fits("--limits", options.limits, false, "limits are those of equilibria")?;
     let watch = Watch::new();
     let shot = app::shot(source, scene, simulation, &options, &output, &|progress| watch.observe(progress))?;
     let interrupted = watch.is_cancelled();

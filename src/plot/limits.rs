@@ -4,8 +4,7 @@ use super::axes::{Scale, ScaledAxis};
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
-use crate::study::figure::LoadAxis;
-use crate::study::limits::{MethodLimits, RANGE, Rating, Strip, load_text};
+use crate::study::limits::{MethodLimits, Piece, Rating, axis as load_axis, load_text};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
@@ -30,9 +29,10 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
 /// Draws the limits of a scene over the load.
 #[must_use]
 pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
-    let loads = LoadAxis::of(scene);
-    let axis = scale.axis(RANGE, loads.full, ACROSS);
-    let top = CURVE[1] + 44.0;
+    let loads = load_axis(scene);
+    let axis = scale.axis(limits.range, loads.full, ACROSS);
+    // A motion has no load curve.
+    let top = 44.0 + if limits.reference.is_empty() { CURVE[0] } else { CURVE[1] };
     let bottom = top + ROW * limits.strips.len() as f64;
     let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
     let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
@@ -45,19 +45,17 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
     let own = axis.place(1.0);
     drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
     drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
-    curve(&mut drawing, limits, scale, &axis);
+    if !limits.reference.is_empty() {
+        curve(&mut drawing, limits, scale, &axis);
+    }
     for (row, strip) in limits.strips.iter().enumerate() {
         let y = top + ROW * row as f64;
-        drawing.text(
-            [ACROSS[0] - 12.0, y + 14.0],
-            Anchor::End,
-            format!("{} {}", strip.element.id(), strip.method.id()),
-        );
-        bars(&mut drawing, strip, &axis, y);
+        drawing.text([ACROSS[0] - 12.0, y + 14.0], Anchor::End, strip.name(str::to_owned));
+        bars(&mut drawing, &strip.pieces(limits.range), &axis, y);
         let end = strip.end(&loads).map_or_else(String::new, |end| end.to_string());
         drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
     }
-    legend(&mut drawing, bottom + 46.0);
+    legend(&mut drawing, bottom + 46.0, limits.duration.is_some());
     drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, loads.name.to_string());
     drawing
 }
@@ -84,11 +82,10 @@ fn curve(drawing: &mut Drawing, limits: &MethodLimits, scale: Scale, axis: &Scal
 }
 
 /// Draws the bars of a strip.
-fn bars(drawing: &mut Drawing, strip: &Strip, axis: &ScaledAxis, y: f64) {
+fn bars(drawing: &mut Drawing, pieces: &[Piece], axis: &ScaledAxis, y: f64) {
     const HEIGHT: f64 = 18.0;
     /// No gap shows between bars of one colour.
     const OVERLAP: f64 = 0.5;
-    let pieces = strip.pieces();
     for (i, piece) in pieces.iter().enumerate() {
         let [from, to] = piece.range.map(|factor| axis.place(factor));
         let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
@@ -114,9 +111,9 @@ fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
     });
 }
 
-fn legend(drawing: &mut Drawing, y: f64) {
+fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
     const BOX: f64 = 14.0;
-    let entries = Rating::all().map(|(rating, name)| (rating_color(rating), name.to_string()));
+    let entries = Rating::all(moves).map(|(rating, name)| (rating_color(rating), name.to_string()));
     let mut x = 20.0;
     for (color, text) in entries {
         drawing.rect([[x, y], [BOX, BOX]], color);

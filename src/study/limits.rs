@@ -1,5 +1,6 @@
 //! Limits of every method and element on a scene: up to which load each is within 1 % and 5 % of the reference solution,
-//! where it stops to converge, and where strains leave the linear law.
+//! where it stops to converge, and where strains leave the linear law. In motion: the same of every integrator, up to
+//! which time step.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,14 +8,16 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
-use super::progress::{StudyError, all_done};
+use super::motion::steps::{StepResult, StepStudy};
+use super::progress::{StudyError, all_done, check};
 use super::{Effort, Reference, parallel};
 use crate::assembly::System;
+use crate::dynamics::INTEGRATORS;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, number, three_digits};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
+use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Deformation, Simulation, SimulationError, Status};
 use crate::stress::LAW_HOLDS;
@@ -41,19 +44,19 @@ pub enum Rating {
     Beyond,
     /// Error without a known bound.
     Unknown,
-    /// The method does not converge.
+    /// The method does not converge, or the motion stops early.
     NotConverged,
 }
 
 impl Rating {
-    /// All classes, with their names.
+    /// All classes, with their names at rest or in motion.
     #[must_use]
-    pub fn all() -> [(Self, Sentence); 5] {
+    pub fn all(moves: bool) -> [(Self, Sentence); 5] {
         [
             (Self::Good, sentence!("within %{percent} %", percent = number(GOOD))),
             (Self::Usable, sentence!("within %{percent} %", percent = number(USABLE))),
             (Self::Beyond, sentence!("above %{percent} %", percent = number(USABLE))),
-            (Self::NotConverged, sentence!("does not converge")),
+            (Self::NotConverged, if moves { sentence!("stops early") } else { sentence!("does not converge") }),
             (Self::Unknown, sentence!("error not known")),
         ]
     }
@@ -70,17 +73,17 @@ pub struct Piece {
     pub is_beyond_law: bool,
 }
 
-/// Result of a method at a load.
+/// Result of a method at a load, or of an integrator with a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitPoint {
-    /// Part of the scene's loads and prescribed displacements.
+    /// Part of the scene's loads and prescribed displacements, or of its time step.
     pub factor: f64,
-    /// Displacement of the first probe, m.
+    /// Displacement of the first probe, m; of a motion at its end.
     pub displacement: Vector2<f64>,
     /// Largest error against the reference solution, percent of its displacement, its own error included; `None` if the
     /// reference solution is not known.
     pub error_percent: Option<f64>,
-    /// Largest strain.
+    /// Largest strain, of a motion over its time.
     pub max_strain: f64,
     /// Number of inverted elements.
     pub inverted_elements: usize,
@@ -112,6 +115,8 @@ pub struct Strip {
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
+    /// Integrator of a motion.
+    pub integrator: Option<IntegratorKind>,
     /// Results, in the order of their loads.
     pub points: Vec<LimitPoint>,
     /// Part of the load beyond which the method does not converge; `None` if it converges at the largest load.
@@ -123,7 +128,23 @@ pub struct Strip {
 impl Strip {
     /// Returns the strip of a scene's element and method before the first load is solved.
     fn new(scene: &Scene) -> Self {
-        Self { element: scene.element(), method: scene.solver.method, points: Vec::new(), ends_at: None, done: 0.0 }
+        Self {
+            element: scene.element(),
+            method: scene.solver.method,
+            integrator: (scene.analysis == Analysis::Dynamic).then_some(scene.dynamics.integrator),
+            points: Vec::new(),
+            ends_at: None,
+            done: 0.0,
+        }
+    }
+
+    /// Returns the name of the integrator, or the names of element and method, translated by `text`.
+    #[must_use]
+    pub fn name(&self, text: impl Fn(&'static str) -> String) -> String {
+        match self.integrator {
+            Some(integrator) => text(integrator.id()),
+            None => format!("{} {}", self.element.id(), text(self.method.id())),
+        }
     }
 
     /// Returns the part of the load up to which the error is at most `percent`, interpolated between two loads: 0 if it is
@@ -157,15 +178,15 @@ impl Strip {
     }
 
     /// Returns the strip in pieces: each result stands for the loads up to half way, in their logarithm, to the next. The
-    /// pieces of a strip that is not complete end at its last result.
+    /// pieces of a strip that is not complete end at its last result. `range` is that of the limits.
     #[must_use]
-    pub fn pieces(&self) -> Vec<Piece> {
+    pub fn pieces(&self, range: [f64; 2]) -> Vec<Piece> {
         let between = |i: usize| match (i.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(i))
         {
             (Some(a), Some(b)) => (a.factor * b.factor).sqrt(),
-            (None, _) => RANGE[0],
+            (None, _) => range[0],
             (Some(last), None) if self.done < 1.0 => last.factor,
-            (_, None) => self.ends_at.unwrap_or(RANGE[1]),
+            (_, None) => self.ends_at.unwrap_or(range[1]),
         };
         let results = self.points.iter().enumerate().map(|(i, point)| Piece {
             range: [between(i), between(i + 1)],
@@ -173,7 +194,7 @@ impl Strip {
             is_beyond_law: point.is_beyond_law(),
         });
         let failed = self.ends_at.map(|end| Piece {
-            range: [end.max(RANGE[0]), RANGE[1]],
+            range: [end.max(range[0]), range[1]],
             rating: Rating::NotConverged,
             is_beyond_law: false,
         });
@@ -181,12 +202,12 @@ impl Strip {
     }
 
     /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
-    /// that from which strains exceed 10 %. `axis` is that of the scene.
+    /// that from which strains exceed 10 %. `axis` is that of the scene, and `range` that of the limits.
     #[must_use]
-    pub fn words(&self, axis: &LoadAxis) -> [Sentence; 4] {
+    pub fn words(&self, axis: &LoadAxis, range: [f64; 2]) -> [Sentence; 4] {
         let load = |factor: f64| load_text(axis, factor);
         let within = |percent: f64| match (self.within(percent), self.last_known()) {
-            (Some(0.0), _) => sentence!("not at %{load}", load = load(RANGE[0])),
+            (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
             (Some(factor), _) => load(factor).into(),
             (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),
             (None, None) => sentence!("not known"),
@@ -194,7 +215,7 @@ impl Strip {
         let converges = match self.ends_at {
             Some(0.0) => sentence!("nowhere"),
             Some(factor) => load(factor).into(),
-            None => sentence!("at least %{load}", load = load(RANGE[1])),
+            None => sentence!("at least %{load}", load = load(range[1])),
         };
         let law = self.law_ends_at().map_or_else(|| "\u{2013}".into(), |f| sentence!("from %{load}", load = load(f)));
         [within(GOOD), within(USABLE), converges, law]
@@ -212,33 +233,49 @@ impl Strip {
             (Some(factor), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
             }
+            (None, Some(factor)) if self.integrator.is_some() => {
+                Some(sentence!("finishes to %{load}", load = load_text(axis, factor)))
+            }
             (None, Some(factor)) => Some(sentence!("converges to %{load}", load = load_text(axis, factor))),
             (None, None) => None,
         }
     }
 }
 
-/// Formats a part of a scene's load.
+/// Returns the axis of a scene's loads, or of the time step of a motion.
+#[must_use]
+pub fn axis(scene: &Scene) -> LoadAxis {
+    match scene.analysis {
+        Analysis::Static => LoadAxis::of(scene),
+        Analysis::Dynamic => LoadAxis { name: sentence!("time step"), unit: "s", full: scene.dynamics.time_step },
+    }
+}
+
+/// Formats a part of a scene's load or time step.
 #[must_use]
 pub fn load_text(axis: &LoadAxis, factor: f64) -> String {
     engineering(three_digits(factor * axis.full), axis.unit)
 }
 
-/// Limits of all methods and elements on a scene.
+/// Limits of all methods and elements on a scene at rest, or of all integrators of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodLimits {
-    /// Reference displacement of the first probe, m, at every load; `None` if it is not known.
+    /// Smallest and largest part of the scene's loads, or of its time step.
+    pub range: [f64; 2],
+    /// Simulated time of a motion, s.
+    pub duration: Option<f64>,
+    /// Reference displacement of the first probe, m, at every load; `None` if it is not known. Empty for a motion.
     pub reference: Vec<(f64, Option<Vector2<f64>>)>,
     /// Strips, by element and method.
     pub strips: Vec<Strip>,
 }
 
 impl MethodLimits {
-    /// Computes the limits of a static scene with a probe, on the scene's cells. The reference solution is that of
-    /// [`Reference`] at every load.
+    /// Computes the limits of a scene with a probe, on the scene's cells. The reference solution is that of
+    /// [`Reference`] at every load, or that of a quick study of the motion.
     ///
     /// # Errors
-    /// [`StudyError`]: the scene is in motion, has no probe or cannot be simulated, or `observe` cancelled the computation.
+    /// [`StudyError`]: the scene has no probe or cannot be simulated, or `observe` cancelled the computation.
     pub fn of(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         Self::with_partial(scene, observe, &|_| {})
     }
@@ -254,7 +291,7 @@ impl MethodLimits {
         partial: &(dyn Fn(&Self) + Sync),
     ) -> Result<Self, StudyError> {
         if scene.analysis == Analysis::Dynamic {
-            return Err(StudyError::InMotion);
+            return Self::of_motion(scene, observe, partial);
         }
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
@@ -275,15 +312,15 @@ impl MethodLimits {
         let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
         let factors: Vec<(usize, f64)> = factors().into_iter().enumerate().collect();
         let all = (factors.len() + settings.len()) as f64;
-        let so_far = Mutex::new(Self {
-            reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
-            strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
-        });
-        let report = |change: &dyn Fn(&mut Self)| {
-            let mut limits = so_far.lock().unwrap_or_else(PoisonError::into_inner);
-            change(&mut limits);
-            partial(&limits);
-        };
+        let so_far = SoFar::new(
+            partial,
+            Self {
+                range: RANGE,
+                duration: None,
+                reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
+                strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
+            },
+        );
         let solved = all_done(parallel::map(
             &factors,
             |&(i, factor), observe| {
@@ -293,7 +330,7 @@ impl MethodLimits {
                     found => found.ok().and_then(|reference| reference.first()),
                 };
                 let displacement = known.map(|known| known.displacement);
-                report(&|limits| _ = limits.reference.get_mut(i).map(|(_, u)| *u = displacement));
+                so_far.change(|limits| _ = limits.reference.get_mut(i).map(|(_, u)| *u = displacement));
                 Ok(known)
             },
             |done| observe(Progress { fraction: done as f64 / all, now: Some(&now[0]) }),
@@ -308,13 +345,102 @@ impl MethodLimits {
         all_done(parallel::map(
             &settings,
             |(row, (own, system)), observe| {
-                strip(own, system, &factors, &known, observe, &|strip| {
-                    report(&|limits| _ = limits.strips.get_mut(*row).map(|old| old.clone_from(strip)));
-                })
+                let solve = |factor: f64| {
+                    let mut simulation = Simulation::with_system(&at(own, factor), (*system).clone())?;
+                    let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
+                    check(flow).map(|()| Some(simulation).filter(|s| *s.status() == Status::Converged))
+                };
+                let point = |i: usize, factor: f64| {
+                    let Some(solved) = solve(factor)? else { return Ok(None) };
+                    let problem = solved.problem();
+                    let probe = problem.probes().first();
+                    let displacement = probe.map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
+                    let Deformation { max_strain, inverted_elements, .. } =
+                        Deformation::of(problem, solved.state(), &solved.nodal_stress());
+                    let error_percent = known(i, displacement);
+                    Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
+                };
+                let converges = |factor: f64| Ok(solve(factor)?.is_some());
+                follow(Strip::new(own), &factors, &point, &converges, &|strip| so_far.set(*row, strip))
             },
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
         ))?;
-        Ok(so_far.into_inner().unwrap_or_else(PoisonError::into_inner))
+        Ok(so_far.end())
+    }
+
+    /// Computes the limits of the integrators of a motion: each with time steps of powers of two, from short to long.
+    fn of_motion(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(&Self) + Sync)) -> Result<Self, StudyError> {
+        /// Approximate fraction of the time spent on the reference solution.
+        const REFERENCE: f64 = 0.3;
+        let study = StepStudy::new(scene, &|progress| {
+            observe(Progress { fraction: REFERENCE * progress.fraction, ..progress })
+        })?;
+        let (powers, factors): (Vec<i32>, Vec<f64>) = study.steps().into_iter().unzip();
+        let (Some(&first), Some(&last)) = (factors.first(), factors.last()) else {
+            return Err(StudyError::NoReference);
+        };
+        let factors: Vec<(usize, f64)> = factors.into_iter().enumerate().collect();
+        let strips = INTEGRATORS.iter().map(|entry| Strip { integrator: Some(entry.kind), ..Strip::new(scene) });
+        let mut settings: Vec<(usize, (IntegratorKind, Strip))> =
+            INTEGRATORS.iter().map(|entry| entry.kind).zip(strips).enumerate().collect();
+        let so_far = SoFar::new(
+            partial,
+            Self {
+                range: [first, last],
+                duration: Some(study.duration()),
+                reference: Vec::new(),
+                strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),
+            },
+        );
+        settings.sort_by_key(|(_, (integrator, _))| *integrator != scene.dynamics.integrator);
+        all_done(parallel::map(
+            &settings,
+            |(row, (integrator, strip)), observe| {
+                let point = |i: usize, factor: f64| {
+                    let Some(&power) = powers.get(i) else { return Ok(None) };
+                    let solved = study.solve(*integrator, power, observe)?;
+                    Ok(solved.map(|StepResult { displacement, error_percent, max_strain, inverted_elements }| {
+                        let error_percent = Some(error_percent);
+                        LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }
+                    }))
+                };
+                // Time steps shorter than the first are not measured.
+                let finishes = |factor: f64| Ok(factor >= first && study.finishes(*integrator, factor, observe)?);
+                follow(strip.clone(), &factors, &point, &finishes, &|strip| so_far.set(*row, strip))
+            },
+            |done| {
+                let fraction = REFERENCE + (1.0 - REFERENCE) * done as f64 / settings.len() as f64;
+                observe(Progress { fraction, now: Some(&sentence!("following each integrator")) })
+            },
+        ))?;
+        Ok(so_far.end())
+    }
+}
+
+/// Limits that become known in parts, on several threads.
+struct SoFar<'a> {
+    limits: Mutex<MethodLimits>,
+    partial: &'a (dyn Fn(&MethodLimits) + Sync),
+}
+
+impl<'a> SoFar<'a> {
+    fn new(partial: &'a (dyn Fn(&MethodLimits) + Sync), limits: MethodLimits) -> Self {
+        Self { limits: Mutex::new(limits), partial }
+    }
+
+    /// Changes the limits, and reports them.
+    fn change(&self, change: impl FnOnce(&mut MethodLimits)) {
+        let mut limits = self.limits.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut limits);
+        (self.partial)(&limits);
+    }
+
+    fn set(&self, row: usize, strip: &Strip) {
+        self.change(|limits| _ = limits.strips.get_mut(row).map(|old| old.clone_from(strip)));
+    }
+
+    fn end(self) -> MethodLimits {
+        self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -333,37 +459,22 @@ fn at(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Solves a scene with its method and element from load to load until it does not converge. Each solve starts from
-/// rest, as `warpbeam solve` does. `report` receives the strip so far after each load.
-fn strip(
-    scene: &Scene,
-    system: &Arc<System>,
+/// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection. Each
+/// solve starts from rest, as `warpbeam solve` does. `report` receives the strip so far after each load.
+fn follow(
+    mut strip: Strip,
     factors: &[(usize, f64)],
-    error: &dyn Fn(usize, Vector2<f64>) -> Option<f64>,
-    observe: Observer<'_>,
+    solve: &dyn Fn(usize, f64) -> Result<Option<LimitPoint>, StudyError>,
+    converges: &dyn Fn(f64) -> Result<bool, StudyError>,
     report: &dyn Fn(&Strip),
 ) -> Result<(), StudyError> {
-    let solve = |factor: f64| {
-        let mut simulation = Simulation::with_system(&at(scene, factor), system.clone())?;
-        let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
-        match flow.is_break() {
-            true => Err(StudyError::Cancelled),
-            false => Ok(Some(simulation).filter(|simulation| *simulation.status() == Status::Converged)),
-        }
-    };
-    let mut strip = Strip::new(scene);
     for &(i, factor) in factors {
-        let Some(solved) = solve(factor)? else {
+        let Some(point) = solve(i, factor)? else {
             let reached = strip.points.last().map_or(0.0, |point| point.factor);
-            strip.ends_at = Some(end_between([reached, factor], &|factor| Ok(solve(factor)?.is_some()))?);
+            strip.ends_at = Some(end_between([reached, factor], converges)?);
             break;
         };
-        let problem = solved.problem();
-        let displacement = problem.probes().first().map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
-        let Deformation { max_strain, inverted_elements, .. } =
-            Deformation::of(problem, solved.state(), &solved.nodal_stress());
-        let error_percent = error(i, displacement);
-        strip.points.push(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements });
+        strip.points.push(point);
         strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
         report(&strip);
     }

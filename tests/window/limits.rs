@@ -8,17 +8,16 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::common::scene;
+use crate::common::{scene, scene_with};
 use warpbeam::Simulation;
 use warpbeam::app::Lab;
-use warpbeam::scene::{ElementKind, MethodKind, Source};
+use warpbeam::scene::{ElementKind, IntegratorKind, MethodKind, Scene, Source};
 use warpbeam::study::figure::LoadAxis;
-use warpbeam::study::limits::MethodLimits;
+use warpbeam::study::limits::{self, MethodLimits};
 
-fn harness(id: &str) -> Harness<'static, Lab> {
-    let scene = scene(id);
+fn harness(scene: Scene) -> Harness<'static, Lab> {
     let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    let lab = Lab::new(Source { name: "scene".into(), assignments: Vec::new() }, scene, simulation);
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));
@@ -41,8 +40,8 @@ fn wait(harness: &mut Harness<'_, Lab>) {
 }
 
 /// Opens Limits, and waits for its strips.
-fn opened(id: &str) -> Harness<'static, Lab> {
-    let mut harness = harness(id);
+fn opened(scene: Scene) -> Harness<'static, Lab> {
+    let mut harness = harness(scene);
     harness.key_press(Key::M);
     harness.run_steps(3);
     wait(&mut harness);
@@ -78,13 +77,13 @@ fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2) {
 /// Every strip has the words of the command, in the window's order.
 #[test]
 fn strips_are_those_of_the_command() {
-    let harness = opened("article");
+    let harness = opened(scene("article"));
     let scene = scene("article");
     let limits = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
     let axis = LoadAxis::of(&scene);
     assert_eq!(limits.strips.len(), 9);
     for strip in &limits.strips {
-        let [good, usable, converges, law] = strip.words(&axis).map(|words| words.to_string());
+        let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
         harness.get_by_label(&format!(
             "{} {}: within 1 % to: {good}; within 5 % to: {usable}; converges to: {converges}; strains above 10 %: {law}",
             strip.element.id(),
@@ -104,7 +103,7 @@ fn strips(harness: &Harness<'_, Lab>) -> [Vec<String>; 2] {
 /// Strips are shown as they become complete. A change of the method does not start them again, a change of the body does.
 #[test]
 fn strips_appear_one_after_another() {
-    let mut harness = harness("cantilever");
+    let mut harness = harness(scene("cantilever"));
     harness.key_press(Key::M);
     let until = |harness: &mut Harness<'_, Lab>, holds: &dyn Fn([usize; 2]) -> bool| {
         for _ in 0..6000 {
@@ -121,6 +120,8 @@ fn strips_appear_one_after_another() {
     until(&mut harness, &|[complete, rest]| complete > 0 && rest > 0);
     let [first, rest] = strips(&harness);
     assert_eq!(first.len() + rest.len(), 9, "{first:?} {rest:?}");
+    // The scene's own strip is among the first.
+    assert!(!rest.iter().any(|strip| strip.starts_with("t3 warped: 0 %")), "{rest:?}");
     let mut newton = harness.state().scene().clone();
     newton.solver.method = MethodKind::Newton;
     harness.state_mut().set_scene(newton.clone()).unwrap();
@@ -136,7 +137,7 @@ fn strips_appear_one_after_another() {
 /// A linear axis begins at 0, and the pointer sets the load where the axis has it.
 #[test]
 fn the_axis_can_be_linear() {
-    let mut harness = opened("article");
+    let mut harness = opened(scene("article"));
     let before = force(harness.state());
     harness.get_by_label("linear axis").click();
     harness.run_steps(2);
@@ -152,7 +153,7 @@ fn the_axis_can_be_linear() {
 /// A click on a strip sets its method and element; one undo takes both back. The limits stay.
 #[test]
 fn a_click_on_a_strip_sets_method_and_element() {
-    let mut harness = opened("article");
+    let mut harness = opened(scene("article"));
     let used = |lab: &Lab| (lab.scene().element(), lab.scene().solver.method);
     let before = used(harness.state());
     let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
@@ -170,7 +171,7 @@ fn a_click_on_a_strip_sets_method_and_element() {
 /// ten. The limits are not computed again; one undo restores the load.
 #[test]
 fn the_line_sets_the_load() {
-    let mut harness = opened("article");
+    let mut harness = opened(scene("article"));
     let before = force(harness.state());
     let area = harness.get_by_role_and_label(Role::Slider, "Load").rect();
     let middle = Pos2::new(area.left() + area.width() * 2.0 / 3.0, area.top() + 4.0);
@@ -194,7 +195,7 @@ fn the_line_sets_the_load() {
 /// Another body has other limits, which replace those of the body before.
 #[test]
 fn an_edit_of_the_body_computes_the_limits_again() {
-    let mut harness = opened("article");
+    let mut harness = opened(scene("article"));
     let mut longer = harness.state().scene().clone();
     longer.beam.as_mut().unwrap().length *= 2.0;
     harness.state_mut().set_scene(longer.clone()).unwrap();
@@ -202,15 +203,36 @@ fn an_edit_of_the_body_computes_the_limits_again() {
     wait(&mut harness);
     let limits = MethodLimits::of(&longer, &|_| ControlFlow::Continue(())).unwrap();
     let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
-    let usable = linear.words(&LoadAxis::of(&longer))[1].to_string();
+    let usable = linear.words(&LoadAxis::of(&longer), limits.range)[1].to_string();
     let found = |label: String| label.starts_with("t6 linear:") && label.contains(&format!("within 5 % to: {usable};"));
     assert!(harness.query_by(|node| node.label().is_some_and(found)).is_some(), "{usable}");
 }
 
+/// The strips of a motion are its integrators; a click sets the integrator, and the line sets the time step.
 #[test]
-fn a_motion_has_no_limits() {
-    let mut harness = harness("swing");
-    harness.key_press(Key::M);
-    harness.run_steps(3);
-    harness.get_by_label("Limits are those of equilibria. Compare and Budget judge the integrators of a motion.");
+fn a_motion_has_limits_of_its_integrators() {
+    // A coarse mesh keeps the test short.
+    let scene = scene_with("swing", &["beam.cells=[6,1]"]);
+    let mut harness = opened(scene.clone());
+    let found = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
+    for strip in &found.strips {
+        let [good, usable, finishes, law] =
+            strip.words(&limits::axis(&scene), found.range).map(|words| words.to_string());
+        harness.get_by_label(&format!(
+            "{}: within 1 % to: {good}; within 5 % to: {usable}; finishes to: {finishes}; strains above 10 %: {law}",
+            strip.integrator.unwrap().id()
+        ));
+    }
+    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("energy-momentum:"))).rect();
+    drag(&mut harness, row.center(), row.center());
+    let dynamics = |lab: &Lab| lab.scene().dynamics.clone();
+    assert_eq!(dynamics(harness.state()).integrator, IntegratorKind::EnergyMomentum);
+    assert_eq!(dynamics(harness.state()).time_step, scene.dynamics.time_step);
+    // The panel has a slider of this name, too.
+    let sliders = harness.get_all_by_role_and_label(Role::Slider, "Time step").map(|slider| slider.rect());
+    let area = sliders.max_by(|a, b| a.width().total_cmp(&b.width())).unwrap();
+    drag(&mut harness, area.center(), area.right_top() + egui::vec2(0.0, 4.0));
+    let factor = dynamics(harness.state()).time_step / scene.dynamics.time_step;
+    assert!((factor / found.range[1] - 1.0).abs() < 0.01, "{factor}");
+    assert!(strips(&harness)[1].is_empty() && strips(&harness)[0].len() == 4, "the limits are those of before");
 }

@@ -1,4 +1,5 @@
-//! Mode Limits: up to which load each method and element holds, with the load of the scene on the same axis.
+//! Mode Limits: up to which load each method and element holds, with the load of the scene on the same axis; in motion up
+//! to which time step each integrator does.
 
 use egui::{
     Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
@@ -13,15 +14,16 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
 use crate::plot::{Scale, ScaledAxis, rating_color};
-use crate::scene::Scene;
+use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
-use crate::study::limits::{MethodLimits, RANGE, Rating, Strip, load_text};
+use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
 
 /// Distance of slanted lines over a strip, points.
 const HATCH: f32 = 6.0;
 /// Widths of the columns left and right of the strips, points.
 const NAMES: f32 = 92.0;
+const INTEGRATORS: f32 = 120.0;
 const ENDS: f32 = 148.0;
 /// Width, points, below which the right column is omitted.
 const WITH_ENDS: f32 = 560.0;
@@ -33,15 +35,17 @@ const SHARE: f32 = 0.62;
 const MIN_CURVE: f32 = 40.0;
 /// Smallest and largest height of a strip with the space below it, points.
 const ROW: [f32; 2] = [13.0, 19.0];
+/// Largest height of a strip of a motion, which has no curve.
+const HIGH_ROW: f32 = 40.0;
 
 /// State of Limits: the scene whose limits are shown.
 #[derive(Debug)]
 pub(crate) struct LimitMap {
     /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
     base: Option<Scene>,
-    /// Lab's scene after its load was set here, and its part of the base's loads.
+    /// Lab's scene after its load or its time step was set here, and its part of the base's.
     placed: Option<(Scene, f64)>,
-    /// Part of the base's loads that the lab's scene has.
+    /// Part of the base's loads, or of its time step, that the lab's scene has.
     factor: f64,
     /// Scale of loads and displacements.
     scale: Scale,
@@ -69,11 +73,14 @@ impl LimitMap {
         self.base.as_ref()
     }
 
-    /// Returns the lab's scene under a part of the base's loads, rounded to three digits.
+    /// Returns the lab's scene with a part of the base's loads or time step, rounded to three digits.
     fn place(&mut self, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene {
         let factor = three_digits(factor * axis.full) / axis.full;
         let mut placed = scene.clone();
-        placed.scale_loads(factor / self.factor);
+        match placed.analysis {
+            Analysis::Static => placed.scale_loads(factor / self.factor),
+            Analysis::Dynamic => placed.dynamics.time_step = factor * axis.full,
+        }
         self.placed = Some((without_methods(&placed), factor));
         placed
     }
@@ -83,12 +90,6 @@ impl LimitMap {
         let scene = session.scene();
         let facts = &session.facts().limits;
         let message = |ui: &mut Ui, text: &str| _ = ui.centered_and_justified(|ui| ui.weak(text));
-        if session.is_motion() {
-            return message(
-                ui,
-                tr("Limits are those of equilibria. Compare and Budget judge the integrators of a motion."),
-            );
-        }
         let Some(base) = self.base.clone() else { return };
         if let Some(reason) = facts.failure(&base) {
             return message(ui, &said(reason));
@@ -97,7 +98,12 @@ impl LimitMap {
         let Some(limits) = facts.so_far(&base) else {
             ui.add_space(0.3 * ui.available_height());
             ui.vertical_centered(|ui| {
-                ui.weak(tr("Solving with every method and element, from a hundredth to ten times the load"));
+                ui.weak(match scene.analysis {
+                    Analysis::Static => {
+                        tr("Solving with every method and element, from a hundredth to ten times the load")
+                    }
+                    Analysis::Dynamic => tr("Computing the reference solution, and the motion with every integrator"),
+                });
                 ui.add(progress_bar(progress.unwrap_or_default()).desired_width(240.0));
             });
             return;
@@ -107,16 +113,16 @@ impl LimitMap {
             ui.add_space(8.0);
             self.scales(ui);
             progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
-            legend(ui);
+            legend(ui, limits.duration.is_some());
         });
-        let axis = LoadAxis::of(&base);
+        let axis = limits::axis(&base);
         let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
         let chart = StripChart::new(ui, below, limits, &axis, self.scale);
         let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
             let placed = self.place(scene, &axis, factor);
             if placed != *scene {
-                actions.push(Action::Edit("Load", Box::new(placed)));
+                actions.push(Action::Edit(chart.label(), Box::new(placed)));
             }
         }
         chart.curve(ui);
@@ -149,7 +155,7 @@ fn first_probe(shown: &Simulation) -> Option<f64> {
 }
 
 /// Shows the key of the colours in one line.
-fn legend(ui: &mut Ui) {
+fn legend(ui: &mut Ui, moves: bool) {
     const BOX: f32 = 10.0;
     ui.spacing_mut().item_spacing.x = 5.0;
     let entry = |ui: &mut Ui, name: &str, paint: &dyn Fn(&Ui, Rect)| {
@@ -158,7 +164,7 @@ fn legend(ui: &mut Ui) {
         ui.add(egui::Label::new(RichText::new(name).size(SMALL)).truncate());
         ui.add_space(6.0);
     };
-    for (rating, name) in Rating::all() {
+    for (rating, name) in Rating::all(moves) {
         entry(ui, &said(&name), &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
     }
     let ink = Palette::new(ui.visuals()).text;
@@ -194,6 +200,8 @@ struct StripChart<'a> {
     curve: Rect,
     strips: Rect,
     row: f32,
+    /// Width of the column of names.
+    names: f32,
     /// `true` if the loads at the ends of the strips have room.
     has_ends: bool,
     /// `true` if the curve has room.
@@ -203,26 +211,34 @@ struct StripChart<'a> {
 impl<'a> StripChart<'a> {
     fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: Scale) -> Self {
         let has_ends = whole.width() >= WITH_ENDS;
-        let (left, right) = (whole.left() + NAMES, whole.right() - if has_ends { ENDS } else { 24.0 });
+        let names = if limits.duration.is_some() { INTEGRATORS } else { NAMES };
+        let (left, right) = (whole.left() + names, whole.right() - if has_ends { ENDS } else { 24.0 });
         let count = limits.strips.len().max(1) as f32;
         let room = whole.height() - 3.0 * LINE;
         let row = (SHARE * room / count).clamp(ROW[0], ROW[1]);
-        let has_curve = room - row * count >= MIN_CURVE;
-        let row = if has_curve { row } else { (room / count).clamp(ROW[0], ROW[1]) };
+        let has_curve = !limits.reference.is_empty() && room - row * count >= MIN_CURVE;
+        let high = if limits.reference.is_empty() { HIGH_ROW } else { ROW[1] };
+        let row = if has_curve { row } else { (room / count).clamp(ROW[0], high) };
         let bottom = whole.bottom() - 2.0 * LINE;
         let top = bottom - row * count;
         Self {
             limits,
             axis,
-            across: scale.axis(RANGE, axis.full, [left, right].map(f64::from)),
+            across: scale.axis(limits.range, axis.full, [left, right].map(f64::from)),
             scale,
             palette: Palette::new(ui.visuals()),
             curve: Rect::from_min_max(pos2(left, whole.top() + LINE), pos2(right, top - 8.0)),
             strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
             row,
+            names,
             has_ends,
             has_curve,
         }
+    }
+
+    /// Returns the name of the quantity along the axis.
+    fn label(&self) -> &'static str {
+        if self.limits.duration.is_some() { "Time step" } else { "Load" }
     }
 
     /// Returns the place of a part of the load.
@@ -238,14 +254,15 @@ impl<'a> StripChart<'a> {
     fn handle(&self, ui: &Ui, factor: f64) -> Option<f64> {
         /// Factor by which an arrow key changes the load.
         const STEP: f64 = 1.05;
+        let [low, high] = self.limits.range;
         let area = self.curve.union(self.strips);
         let response = ui.interact(area, ui.scope_id().with("load"), Sense::drag());
         let value = factor * self.axis.full;
-        response.widget_info(|| WidgetInfo::slider(true, value, tr("Load")));
+        response.widget_info(|| WidgetInfo::slider(true, value, tr(self.label())));
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         // A press that is a click belongs to a strip.
         if response.dragged() && ui.input(|i| i.pointer.is_decidedly_dragging()) {
-            let factor = |at: egui::Pos2| self.across.value(f64::from(at.x)).clamp(RANGE[0], RANGE[1]);
+            let factor = |at: egui::Pos2| self.across.value(f64::from(at.x)).clamp(low, high);
             return response.interact_pointer_pos().map(factor);
         }
         if !response.has_focus() {
@@ -255,7 +272,7 @@ impl<'a> StripChart<'a> {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
         let [less, more] = [egui::Key::ArrowLeft, egui::Key::ArrowRight].map(|key| ui.input(|i| i.num_presses(key)));
         let change = STEP.powf(more as f64 - less as f64);
-        (change != 1.0).then(|| (factor * change).clamp(RANGE[0], RANGE[1]))
+        (change != 1.0).then(|| (factor * change).clamp(low, high))
     }
 
     /// Draws the length of the reference displacement over the load, and the axis of loads.
@@ -308,13 +325,25 @@ impl<'a> StripChart<'a> {
         let Self { palette, strips, .. } = self;
         let top = strips.top() + self.row * row as f32;
         let right = strips.right() + if self.has_ends { ENDS } else { 0.0 };
-        let rect = Rect::from_min_max(pos2(strips.left() - NAMES, top), pos2(right, top + self.row));
-        let name = format!("{} {}", strip.element.id(), tr(strip.method.id()));
-        let is_used = scene.element() == strip.element && scene.solver.method == strip.method;
-        let [good, usable, converges, law] = strip.words(self.axis).map(|words| said(&words));
+        let rect = Rect::from_min_max(pos2(strips.left() - self.names, top), pos2(right, top + self.row));
+        let name = strip.name(|id| tr(id).to_owned());
+        let is_used = match strip.integrator {
+            Some(integrator) => scene.dynamics.integrator == integrator,
+            None => scene.element() == strip.element && scene.solver.method == strip.method,
+        };
+        let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
         let text = match strip.done < 1.0 {
             true => fill!("%{name}: %{done} of the loads are solved", name = name.as_str(), done = done.as_str()),
+            false if strip.integrator.is_some() => fill!(
+                "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; finishes to: %{finishes}; strains above \
+                 10 %: %{law}",
+                name = name.as_str(),
+                good = good,
+                usable = usable,
+                finishes = converges,
+                law = law
+            ),
             false => fill!(
                 "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; converges to: %{converges}; strains above \
                  10 %: %{law}",
@@ -330,13 +359,15 @@ impl<'a> StripChart<'a> {
         let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };
         let fill = if is_used { palette.chosen } else { Color32::TRANSPARENT };
         ui.painter().rect(rect, 3.0, fill, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
-        let ink = if is_used { palette.text } else { palette.method(strip.method) };
+        let own =
+            strip.integrator.map_or_else(|| palette.method(strip.method), |integrator| palette.integrator(integrator));
+        let ink = if is_used { palette.text } else { own };
         self.text(ui, pos2(strips.left() - 10.0, rect.center().y), Align2::RIGHT_CENTER, &name, ink);
         let bar = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to, top + 1.0..=top + self.row - 2.0);
         if strip.done < 1.0 {
             ui.painter().rect_filled(bar(strips.left(), strips.right()), 0.0, palette.line);
         }
-        for piece in strip.pieces() {
+        for piece in strip.pieces(self.limits.range) {
             let [from, to] = piece.range.map(|factor| self.x(factor));
             let bar = bar(from, to);
             ui.painter().rect_filled(bar, 0.0, color(piece.rating));
@@ -350,9 +381,16 @@ impl<'a> StripChart<'a> {
             self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
         }
         if response.on_hover_text(text).clicked() && !is_used {
-            let mut own = scene.clone().with_method(strip.method);
-            own.set_element(strip.element);
-            actions.push(Action::Edit("Method", Box::new(own)));
+            let mut own = scene.clone();
+            let label = if let Some(integrator) = strip.integrator {
+                own.dynamics.integrator = integrator;
+                "Integrator"
+            } else {
+                own.solver.method = strip.method;
+                own.set_element(strip.element);
+                "Method"
+            };
+            actions.push(Action::Edit(label, Box::new(own)));
         }
     }
 
@@ -361,7 +399,7 @@ impl<'a> StripChart<'a> {
         let (x, color) = (self.x(factor), self.palette.load);
         ui.painter().line_segment([pos2(x, self.curve.top()), pos2(x, self.strips.bottom())], Stroke::new(2.0, color));
         let half = 60.0_f32.min(0.5 * self.strips.width());
-        let at = x.clamp(self.strips.left() + half - NAMES, self.strips.right() - half + 24.0);
+        let at = x.clamp(self.strips.left() + half - self.names, self.strips.right() - half + 24.0);
         self.text(ui, pos2(at, self.curve.top() - 1.0), Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
         if let (Some(up), Some(u)) = (self.up(), displacement.filter(|u| *u > 0.0)) {
             ui.painter().circle_stroke(pos2(x, up.place(u) as f32), 5.0, Stroke::new(2.0, color));

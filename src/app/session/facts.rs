@@ -10,7 +10,7 @@ use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::format::number;
 use crate::progress::{Observer, Progress};
-use crate::scene::{DynamicsSettings, Scene, SolverSettings};
+use crate::scene::{Analysis, DynamicsSettings, Scene, SolverSettings};
 use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
@@ -138,9 +138,13 @@ pub(crate) fn without_settings(scene: &Scene) -> Scene {
 }
 
 /// Returns the scene with default values of all settings that its limits do not depend on: they are those of every
-/// method and element.
+/// method and element at rest, and of every integrator in motion.
 pub(crate) fn without_methods(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
+    if scene.analysis == Analysis::Dynamic {
+        scene.dynamics.integrator = DynamicsSettings::default().integrator;
+        return scene;
+    }
     let first = scene.elements().next().unwrap_or_default();
     scene.set_element(first);
     let any = SolverSettings::default();

@@ -589,6 +589,7 @@ impl Session {
             self.iterate(1);
         }
         if self.is_motion() {
+            shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
             return self.facts.frequency.wait(&self.scene);
         }
         self.certify();
@@ -656,7 +657,9 @@ impl Session {
     /// of a motion are not requested during a press, so that dragging a slider stays smooth.
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
         if self.is_motion() {
-            return !is_pressed && self.facts.frequency.request(&self.scene);
+            let facts = &mut self.facts;
+            let frequency = !is_pressed && facts.frequency.request(&self.scene);
+            return shown.limits_of.is_some_and(|scene| facts.limits.request(scene)) || frequency;
         }
         if self.iterates() || self.is_working() {
             return false;

@@ -85,7 +85,7 @@ impl Lab {
         self.desk.budget.set(self.desk.session.scene(), study);
     }
 
-    /// Shows the limits of every method and element.
+    /// Shows the limits of every method and element, or of every integrator.
     pub fn show_limits(&mut self) {
         self.desk.view.mode = Mode::Limits;
     }
@@ -290,8 +290,8 @@ impl Lab {
         let limits = view.mode == Mode::Limits && limits.base().is_none_or(|base| facts.limits.is_pending(base));
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
-        let at_rest = !session.is_motion() && (at_rest || limits);
-        session.is_working() || session.is_certifying() || plots || learns || at_rest
+        let at_rest = !session.is_motion() && at_rest;
+        session.is_working() || session.is_certifying() || plots || limits || learns || at_rest
     }
 
     /// Restores the saved settings.

@@ -70,7 +70,7 @@ impl Desk {
     /// Turns Limits to the scene while it is shown, and returns the results that only some views show.
     pub(super) fn shown_facts(&mut self) -> (&mut Session, ShownFacts<'_>) {
         let Self { session, view, limits, .. } = self;
-        let shows_limits = view.mode == Mode::Limits && !session.is_motion();
+        let shows_limits = view.mode == Mode::Limits;
         if shows_limits {
             limits.turn_to(session.scene());
         }

@@ -509,7 +509,7 @@ impl BodyView {
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
         let least = least_margins(content, self.size());
-        let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
+        let arrow = f64::from(0.25 * self.rect.height()).clamp(60.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
 

@@ -26,6 +26,7 @@ use crate::simulation::{Simulation, Status};
 mod plan;
 mod reference;
 mod report;
+pub(super) mod steps;
 
 /// Largest computing time per simulated second, ms, for which a motion runs in real time.
 pub const REAL_TIME: f64 = 1e3;
@@ -481,7 +482,7 @@ impl FirstRun {
             run(&mut simulation, MIN_STEPS);
             (MIN_STEPS, Vec::new())
         } else {
-            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, observe)?)
+            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
         };
         let stopped = matches!(simulation.status(), Status::Stopped(_));
         let ending = match (stopped, cut) {
@@ -520,12 +521,14 @@ fn run(simulation: &mut Simulation, steps: u32) {
     }
 }
 
-/// Returns the displacements of the first probe at the samples, m, from the start of a motion until it stops.
+/// Returns the displacements of the first probe at the samples, m, from the start of a motion until it stops. `each`
+/// receives the motion at every sample.
 fn path(
     simulation: &mut Simulation,
     samples: Samples,
     steps: u32,
     observe: Observer<'_>,
+    each: &mut dyn FnMut(&Simulation),
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
     let mut path = Vec::with_capacity(samples.count as usize);
     for _ in 0..samples.count {
@@ -535,6 +538,7 @@ fn path(
             break;
         }
         path.push(first_probe(simulation)?);
+        each(simulation);
     }
     Ok(path)
 }

@@ -143,7 +143,7 @@ pub(super) fn fine_path(
     dynamics.time_step = samples.interval / f64::from(steps);
     let mut simulation = Simulation::with_system(&scene, system.clone())?;
     simulation.keep_ledger(false);
-    let path = path(&mut simulation, samples, steps, observe)?;
+    let path = path(&mut simulation, samples, steps, observe, &mut |_| {})?;
     match simulation.status() {
         Status::Stopped(reason) => Err(StudyError::NoPath(*reason)),
         _ => Ok(path),
