@@ -27,6 +27,8 @@ const INTEGRATORS: f32 = 120.0;
 const ENDS: f32 = 148.0;
 /// Width, points, below which the right column is omitted.
 const WITH_ENDS: f32 = 560.0;
+/// Width from which the choice of the scale and the key of the colours are in one row, points.
+const ONE_ROW: f32 = 980.0;
 /// Height of a line of small text, points.
 const LINE: f32 = 18.0;
 /// Fraction of the height that the strips take from the curve, and the smallest height of the curve, points: in a lower
@@ -109,12 +111,22 @@ impl LimitMap {
             return;
         };
         let whole = ui.available_rect_before_wrap();
+        let moves = limits.duration.is_some();
+        let has_one_row = whole.width() >= ONE_ROW;
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             self.scales(ui);
             progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
-            legend(ui, limits.duration.is_some());
+            if has_one_row {
+                legend(ui, moves);
+            }
         });
+        if !has_one_row {
+            ui.horizontal(|ui| {
+                ui.add_space(8.0);
+                legend(ui, moves);
+            });
+        }
         let axis = limits::axis(&base);
         let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
         let chart = StripChart::new(ui, below, limits, &axis, self.scale);
