@@ -15,6 +15,7 @@ use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::viewport::view::STATUS_VIEW;
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
 
@@ -27,6 +28,9 @@ const STATUS_BAR_HEIGHT: f32 = 42.0;
 /// Height of the plots under the body, points, and its largest fraction of the window's height.
 const DRAWER_HEIGHT: f32 = 270.0;
 const DRAWER_SHARE: f32 = 0.45;
+
+/// Height of the status under a low view, points.
+const STATUS_LINE: f32 = 34.0;
 
 impl Lab {
     /// Shows the user interface and performs the user's actions. The body itself is drawn by another pass, under the
@@ -287,9 +291,8 @@ impl Lab {
 
     /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
-        /// Height below which the status would cover the body, points.
-        const LOW: f32 = 560.0;
-        let has_line = self.desk.view.bars && self.lesson.is_none() && ui.available_height() < LOW;
+        let has_line =
+            self.desk.view.bars && self.lesson.is_none() && ui.available_height() < STATUS_VIEW + STATUS_LINE;
         if has_line {
             self.status_line(ui, actions);
         }
@@ -369,13 +372,12 @@ impl Lab {
 
     /// Shows the status in a line under a low view, with a remedy.
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        const HEIGHT: f32 = 34.0;
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let (text, bad) = diagnosis::summary(&input);
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
-        Panel::bottom("status line").exact_size(HEIGHT).resizable(false).frame(frame).show(ui, |ui| {
+        Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 self.status_buttons(ui, &input, actions);
                 if let Some(remedy) = remedy {

@@ -30,8 +30,12 @@ use crate::study::{Reference, section_chart};
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
 /// and the colour bar below.
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
+/// Height below which a view has the status under it, because it would cover the body, points.
+pub(crate) const STATUS_VIEW: f32 = 526.0;
 /// Margins above a card of Learn, which leaves less of the view.
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
+/// Margins above a card in a low view: room for the arrow of the largest load of its slider.
+const LOW_CARD_MARGINS: Margins = Margins { top: 50.0, bottom: 80.0, ..LOW_MARGINS };
 /// Margins under the rows at the top of a low view.
 const LOW_MARGINS: Margins = Margins { sides: 60.0, top: TOP_ROWS_HEIGHT as f64, bottom: 30.0 };
 
@@ -509,7 +513,7 @@ impl BodyView {
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
         let least = least_margins(content, self.size());
-        let arrow = f64::from(0.25 * self.rect.height()).clamp(60.0, 120.0);
+        let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
 
@@ -686,9 +690,13 @@ impl BodyView {
 /// Returns the margins around a box that do not depend on the loads.
 fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
     match (content.card.is_some(), overlay::has_legend_on_top(view[1] as f32)) {
-        (true, true) => Margins { bottom: CARD_MARGINS.bottom, ..LOW_MARGINS },
+        (true, true) => LOW_CARD_MARGINS,
         (true, false) => CARD_MARGINS,
         (false, true) => LOW_MARGINS,
+        // The status is in a line under the view.
+        (false, false) if content.options.bars && view[1] < f64::from(STATUS_VIEW) => {
+            Margins { bottom: 110.0, ..FIT_MARGINS }
+        }
         (false, false) => FIT_MARGINS,
     }
 }
