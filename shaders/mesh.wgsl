@@ -218,7 +218,7 @@ fn has_volume(e: vec3<f32>) -> bool {
     return s.x * s.y - s.z * s.z > 0.0 && thickness(e) > 0.0;
 }
 
-// Of a stress xx, yy, xy and zz.
+// Returns the von Mises stress of xx, yy, xy and zz.
 fn von_mises(t: vec4<f32>) -> f32 {
     let d = vec3<f32>(t.x - t.y, t.y - t.w, t.w - t.x);
     return sqrt(0.5 * dot(d, d) + 3.0 * t.z * t.z);

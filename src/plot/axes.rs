@@ -33,8 +33,8 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Returns an axis between two places. It shows a range of positive values, a linear one from 0. `full` is the text
-    /// value of 1: its multiples are round at the ticks of a linear axis.
+    /// Returns an axis between two places. It shows a range of positive values, a linear one from 0. `full` is the
+    /// displayed value of 1: its multiples are round at the ticks of a linear axis.
     pub(crate) fn axis(self, [low, high]: [f64; 2], full: f64, ends: [f64; 2]) -> ScaledAxis {
         let [from, to] = if self == Self::Linear { [0.0, high] } else { [low.log10(), high.log10()] };
         ScaledAxis { scale: self, from, to, full, ends }

@@ -42,9 +42,11 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
         drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));
     }
     // The scene's own load.
-    let own = axis.place(1.0);
-    drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
-    drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
+    if limits.contains(1.0) {
+        let own = axis.place(1.0);
+        drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
+        drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
+    }
     if !limits.reference.is_empty() {
         curve(&mut drawing, limits, scale, &axis);
     }
@@ -52,7 +54,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
         let y = top + ROW * row as f64;
         drawing.text([ACROSS[0] - 12.0, y + 14.0], Anchor::End, strip.name(str::to_owned));
         bars(&mut drawing, &strip.pieces(limits.range), &axis, y);
-        let end = strip.end(&loads).map_or_else(String::new, |end| end.to_string());
+        let end = strip.end(&loads, limits.range).map_or_else(String::new, |end| end.to_string());
         drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
     }
     legend(&mut drawing, bottom + 46.0, limits.duration.is_some());

@@ -213,6 +213,8 @@ impl Strip {
             (None, None) => sentence!("not known"),
         };
         let converges = match self.ends_at {
+            // Time steps shorter than the first are not tried.
+            Some(0.0) if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
             Some(0.0) => sentence!("nowhere"),
             Some(factor) => load(factor).into(),
             None => sentence!("at least %{load}", load = load(range[1])),
@@ -222,9 +224,9 @@ impl Strip {
     }
 
     /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is never within 1 %; `None` if
-    /// it is not known to be larger at any load.
+    /// it is not known to be larger at any load. `range` is that of the limits.
     #[must_use]
-    pub fn end(&self, axis: &LoadAxis) -> Option<Sentence> {
+    pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
         let Some(percent) = [GOOD, USABLE].into_iter().find(holds) else {
             return Some(sentence!("not within %{percent} %", percent = number(USABLE)));
@@ -232,6 +234,9 @@ impl Strip {
         match (self.within(percent), self.ends_at) {
             (Some(factor), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
+            }
+            (None, Some(0.0)) if self.integrator.is_some() => {
+                Some(sentence!("not at %{load}", load = load_text(axis, range[0])))
             }
             (None, Some(factor)) if self.integrator.is_some() => {
                 Some(sentence!("finishes to %{load}", load = load_text(axis, factor)))
@@ -271,6 +276,16 @@ pub struct MethodLimits {
 }
 
 impl MethodLimits {
+    /// Returns `true` if a part of the scene's loads, or of its time step, is in the range of the limits: that of a very
+    /// short time step is not.
+    #[must_use]
+    pub fn contains(&self, factor: f64) -> bool {
+        /// Relative rounding error of a factor with three digits.
+        const ROUNDING: f64 = 1e-2;
+        let [low, high] = self.range;
+        (low * (1.0 - ROUNDING)..=high * (1.0 + ROUNDING)).contains(&factor)
+    }
+
     /// Computes the limits of a scene with a probe, on the scene's cells. The reference solution is that of
     /// [`Reference`] at every load, or that of a quick study of the motion.
     ///

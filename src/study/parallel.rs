@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use crate::progress::Observer;
 
-/// Processes all items on all cores, and returns the results in order. Items are started in order. `observe` is called on the calling thread with
-/// the number of finished items, and can cancel the rest: items not started then give `None`, and the observer of
-/// running ones breaks.
+/// Processes all items on all cores, and returns the results in order. Items are started in order. `observe` is called
+/// on the calling thread with the number of finished items, and can cancel the rest: items not started then give
+/// `None`, and the observer of running ones breaks.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn map<T: Sync, R: Send>(
     items: &[T],

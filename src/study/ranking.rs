@@ -116,7 +116,7 @@ impl<'a, M: Ranked> Ranking<'a, M> {
     /// Returns for every measurement `true` if no other one is both faster and more accurate; errors below
     /// `resolution`, percent, count as equal.
     pub(super) fn pareto(self, resolution: f64) -> Vec<bool> {
-        // `f64::max` would make a number of one that is none.
+        // `f64::max` would turn NaN into `resolution`.
         let resolved = |error: f64| if error < resolution { resolution } else { error };
         let pairs: Vec<_> = self.times_and_errors().into_iter().map(|(time, error)| (time, resolved(error))).collect();
         front(&pairs)

@@ -11,7 +11,7 @@ use crate::common::scene;
 use crate::ui_interaction::{click, harness, harness_of, on_body, shapes};
 use warpbeam::app::{Lab, Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
-use warpbeam::scene::{Axis, Load, Place};
+use warpbeam::scene::{Axis, Load, MethodKind, Place};
 use warpbeam::{Field, PointValues};
 
 /// Returns all texts that are painted without a widget.
@@ -80,6 +80,26 @@ fn a_body_is_drawn_with_a_multiple_of_its_displacement() {
     article.run();
     let before = positions(article.state());
     assert_eq!(magnify(&mut article, Magnification::Automatic), before);
+}
+
+/// Colours follow the load where the automatic factor falls as the displacement grows, so that the body is drawn at the
+/// same place.
+#[test]
+fn colours_follow_the_load_of_a_magnified_body() {
+    let mut stiff = scene("cantilever").with_method(MethodKind::Linear);
+    stiff.material.young *= 1e5;
+    let mut harness = harness_of("cantilever", stiff);
+    harness.run();
+    magnify(&mut harness, Magnification::Automatic);
+    for _ in 0..4 {
+        let [_, before] = harness.state().frame().range;
+        let mut scene = harness.state().scene().clone();
+        scene.scale_loads(2.0);
+        harness.state_mut().set_scene(scene).unwrap();
+        harness.run();
+        let [_, after] = harness.state().frame().range;
+        assert!((after / before - 2.0).abs() < 1e-6, "{before} {after}");
+    }
 }
 
 /// Every field has the value of the card's point under the pointer, and its own name at the colour bar.
@@ -259,4 +279,13 @@ fn coordinates_of_a_point_are_typed() {
     harness.run();
     let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
     assert_eq!(*place, Place::At([5.0, 0.5]), "undone");
+    harness.get_by_role_and_label(Role::SpinButton, "y").click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.event(egui::Event::Text("3 kg".to_owned()));
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!(harness.query_by_label_contains("expected").is_some(), "a refused text is silent");
 }

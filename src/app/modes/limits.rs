@@ -141,7 +141,10 @@ impl LimitMap {
         for (row, strip) in limits.strips.iter().enumerate() {
             chart.strip(ui, row, strip, scene, actions);
         }
-        chart.load_line(ui, load.unwrap_or(self.factor), first_probe(shown));
+        let factor = load.unwrap_or(self.factor);
+        if limits.contains(factor) {
+            chart.load_line(ui, factor, first_probe(shown));
+        }
     }
 
     /// Shows the choice of the scale.
@@ -284,7 +287,7 @@ impl<'a> StripChart<'a> {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
         let [less, more] = [egui::Key::ArrowLeft, egui::Key::ArrowRight].map(|key| ui.input(|i| i.num_presses(key)));
         let change = STEP.powf(more as f64 - less as f64);
-        (change != 1.0).then(|| (factor * change).clamp(low, high))
+        (change != 1.0).then(|| (factor * change).clamp(low.min(factor), high.max(factor)))
     }
 
     /// Draws the length of the reference displacement over the load, and the axis of loads.
@@ -387,7 +390,8 @@ impl<'a> StripChart<'a> {
                 hatch(ui, bar, Color32::from_black_alpha(200));
             }
         }
-        let end = if strip.done < 1.0 { Some(done) } else { strip.end(self.axis).map(|end| said(&end)) };
+        let end =
+            if strip.done < 1.0 { Some(done) } else { strip.end(self.axis, self.limits.range).map(|end| said(&end)) };
         if let Some(end) = end.filter(|_| self.has_ends) {
             let at = pos2(strips.right() + 10.0, rect.center().y);
             self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);

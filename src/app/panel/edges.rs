@@ -1,5 +1,7 @@
 //! Loads and supports in the panel: the edge or point of each, and buttons that add and remove them.
 
+use std::cell::RefCell;
+
 use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Ui, WidgetInfo, vec2};
 
 use crate::app::language::{count, fill, joined, tr};
@@ -9,10 +11,13 @@ use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
-use crate::app::widgets::number_field::show_message;
+use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
 use crate::format::{editable, number};
-use crate::scene::{Axis, Load, Place, Scene, Support, limits, units};
+use crate::scene::{Axis, Load, Place, Scene, Support, limits};
+
+/// Name of the section, with which its messages are kept.
+const SECTION: &str = "Loads and supports";
 
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
@@ -101,7 +106,7 @@ fn row(
     (label, id, remove): (&'static str, usize, &str),
     (scene, present): (&Scene, &Place),
     places: impl Iterator<Item = (&'static str, Place)>,
-    view: &mut ViewOptions,
+    (view, messages): (&mut ViewOptions, &mut Messages),
     more: impl FnOnce(&mut Ui),
 ) -> Option<EdgeChange> {
     let mut change = None;
@@ -134,15 +139,17 @@ fn row(
         });
     });
     if let Place::At(at) = present {
-        let moved = coordinates(ui, (label, id), *at);
+        let moved = coordinates(ui, (label, id), *at, messages);
         change = change.or(moved.map(|at| EdgeChange::Move(at.into())));
     }
     change
 }
 
-/// Shows the coordinates of a point, m; returns the point that was typed.
-fn coordinates(ui: &mut Ui, id: (&'static str, usize), at: [f64; 2]) -> Option<[f64; 2]> {
+/// Shows the coordinates of a point, m; returns the point that was typed. The reason for which a text is refused becomes
+/// the message of the loads and supports.
+fn coordinates(ui: &mut Ui, id: (&'static str, usize), at: [f64; 2], messages: &mut Messages) -> Option<[f64; 2]> {
     let mut moved = at;
+    let refused = RefCell::new(None);
     ui.push_id(id, |ui| {
         ui.horizontal(|ui| {
             for (name, value) in ["x", "y"].into_iter().zip(&mut moved) {
@@ -152,15 +159,20 @@ fn coordinates(ui: &mut Ui, id: (&'static str, usize), at: [f64; 2]) -> Option<[
                     .speed(0.0)
                     .update_while_editing(false)
                     .custom_formatter(|v, _| editable(v, "m"))
-                    .custom_parser(|text| units::parse(text, "m").ok());
+                    .custom_parser(|text| {
+                        read(text, limits::COORDINATE).map_err(|reason| refused.replace(Some(reason))).ok()
+                    });
                 let tip = tr("Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm");
                 let response = ui.add(field).labelled_by(label.id).on_hover_text(tip);
-                if response.changed() && limits::COORDINATE.check(typed).is_ok() {
+                if response.changed() {
                     *value = typed;
                 }
             }
         });
     });
+    if let Some(reason) = refused.into_inner() {
+        messages.insert(SECTION, reason);
+    }
     (moved != at).then_some(moved)
 }
 
@@ -187,9 +199,23 @@ pub(super) fn show(
         let Some(present) = place_of(load) else { continue };
         let remove = fill!("Remove load %{n}", n = i + 1);
         let change = if load.is_moment() {
-            row(ui, ("Moment on", i, &remove), (scene, &present), edges(can_carry_moment), view, |_| {})
+            row(
+                ui,
+                ("Moment on", i, &remove),
+                (scene, &present),
+                edges(can_carry_moment),
+                (view, &mut state.messages),
+                |_| {},
+            )
         } else {
-            row(ui, ("Force on", i, &remove), (scene, &present), edges(is_free).chain(points(scene)), view, |_| {})
+            row(
+                ui,
+                ("Force on", i, &remove),
+                (scene, &present),
+                edges(is_free).chain(points(scene)),
+                (view, &mut state.messages),
+                |_| {},
+            )
         };
         let Some(change) = change else { continue };
         let mut scene = Box::new(scene.clone());
@@ -208,24 +234,25 @@ pub(super) fn show(
         let places = edges(|_, _| true).chain(points(scene));
         let mut fix = support.fix.clone();
         let remove = fill!("Remove support %{n}", n = i + 1);
-        let change = row(ui, ("Held at", i, &remove), (scene, &support.place), places, view, |ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            // The layout runs from right to left.
-            for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
-                let is_fixed = fix.contains(&axis);
-                let tip = fill!(
-                    "Fixes the displacement along %{axis}: a clamp fixes both directions, a roller one",
-                    axis = word
-                );
-                let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
-                if ui.add(button).on_hover_text(tip).clicked() {
-                    match is_fixed {
-                        true => fix.retain(|other| *other != axis),
-                        false => fix.push(axis),
+        let change =
+            row(ui, ("Held at", i, &remove), (scene, &support.place), places, (view, &mut state.messages), |ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                // The layout runs from right to left.
+                for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
+                    let is_fixed = fix.contains(&axis);
+                    let tip = fill!(
+                        "Fixes the displacement along %{axis}: a clamp fixes both directions, a roller one",
+                        axis = word
+                    );
+                    let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
+                    if ui.add(button).on_hover_text(tip).clicked() {
+                        match is_fixed {
+                            true => fix.retain(|other| *other != axis),
+                            false => fix.push(axis),
+                        }
                     }
                 }
-            }
-        });
+            });
         let is_refixed = fix != support.fix;
         if change.is_none() && !is_refixed {
             continue;
@@ -248,8 +275,8 @@ pub(super) fn show(
             }
         }
     });
-    actions.extend(edited.map(|scene| Action::Edit("Loads and supports", scene)));
-    show_message(ui, &state.messages, "Loads and supports");
+    actions.extend(edited.map(|scene| Action::Edit(SECTION, scene)));
+    show_message(ui, &state.messages, SECTION);
 }
 
 /// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are

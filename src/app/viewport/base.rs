@@ -76,7 +76,7 @@ impl Bases<'_> {
         let supports = (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.on_nodes(&s.place)?)));
         let probes = (0..).zip(probes).filter_map(|(i, probe)| match probe.place {
             Place::At(at) => Some((Object::Probe(i), self.drawn(at.into())?)),
-            // It is at the arrow of a load, as a rule.
+            // A probe on an edge usually lies at the arrow of a load, so it has no base.
             Place::Edge(_) => None,
         });
         let sections = (0..).zip(sections).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
@@ -100,18 +100,16 @@ impl Bases<'_> {
     /// that their points are nodes.
     fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
         let mesh = self.mesh();
-        let is_near = |at: Vector2<f64>| self.projection.point(at).distance(pointer) <= NEAR;
+        let distance = |at: Vector2<f64>| self.projection.point(at).distance(pointer);
         let acts_on_nodes = matches!(object, Object::Force(_) | Object::Support(_));
         let named = |name: &String| Place::from(name.as_str());
         let edges = mesh.edges().keys().filter(|_| acts_on_nodes).map(named);
-        let mut near = edges.filter_map(|place| Some((self.on_nodes(&place)?, place))).filter(|(at, _)| is_near(*at));
-        if let Some((at, place)) = near.next() {
-            return Some((place, at));
-        }
+        let edges = edges.filter_map(|place| Some((self.on_nodes(&place)?, place))).map(|(at, place)| (place, at));
         let at_node = |n: u32| Some((Place::At(mesh.node(n).into()), *self.positions.get(n as usize)?));
         let corners = mesh.edges().values().flat_map(|edge| ends(edge));
-        if let Some(found) = corners.filter_map(at_node).find(|(_, at)| is_near(*at)) {
-            return Some(found);
+        let near = edges.chain(corners.filter_map(at_node)).filter(|(_, at)| distance(*at) <= NEAR);
+        if let Some(nearest) = near.min_by(|(_, a), (_, b)| distance(*a).total_cmp(&distance(*b))) {
+            return Some(nearest);
         }
         let from_center = pointer - self.projection.rect.center();
         let world = self.projection.camera.to_world([f64::from(from_center.x), f64::from(from_center.y)]);

@@ -23,6 +23,8 @@ pub(crate) struct BodyMesh {
     pub nodes: Vec<Vector2<f64>>,
     /// Positions of the drawn points, m.
     points: Vec<Vector2<f64>>,
+    /// Factor of the displacement of nodes and points.
+    magnification: f64,
     /// Revision number of points and values.
     stamp: u64,
     /// Displayed field.
@@ -93,8 +95,8 @@ fn stamp() -> u64 {
 }
 
 impl BodyMesh {
-    /// Updates points and values to the state of a body, drawn with `magnification` times its displacement. For a motion, `played` is the playing time, s, and the colour
-    /// range covers the last seconds.
+    /// Updates points and values to the state of a body, drawn with `magnification` times its displacement. For a
+    /// motion, `played` is the playing time, s, and the colour range covers the last seconds.
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
@@ -110,9 +112,11 @@ impl BodyMesh {
         // frame.
         let is_known = self.system.as_ref().is_some_and(|system| Arc::ptr_eq(system, simulation.system()))
             && self.field.has_settings(simulation, view.field, values)
+            && self.magnification == magnification
             && self.nodes.iter().copied().eq(places.clone());
         if !is_known {
             self.system = Some(simulation.system().clone());
+            self.magnification = magnification;
             self.nodes.clear();
             self.nodes.extend(places);
             let nodes = &self.nodes;

@@ -519,8 +519,15 @@ fn legend(
     let font = FontId::proportional(SMALL);
     let text = |text: String| painter.layout_no_wrap(text, font.clone(), palette.text);
     if has_legend_on_top(rect.height()) {
-        let ends = [low, high].map(|end| text(engineering(three_digits(end / 10f64.powi(power)), "")));
-        return Some(legend_row(painter, rect, names, (text(title), ends, map), visuals));
+        let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
+        let ends = [text(low), text(format!("{high} {symbol}{unit}"))];
+        return Some(legend_row(
+            painter,
+            rect,
+            names,
+            (text(format!("{}{raw}{range}", tr(field.name()))), ends, map),
+            visuals,
+        ));
     }
     let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));

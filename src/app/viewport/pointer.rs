@@ -1,5 +1,5 @@
-//! Interaction of the pointer with the view. A drag of the tip of an arrow sets its load, a drag of the base of an object
-//! moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
+//! Interaction of the pointer with the view. A drag of the tip of an arrow sets its load, a drag of the base of an
+//! object moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
 
 use std::ops::RangeInclusive;
 
@@ -229,7 +229,10 @@ impl Pointer {
         }
         if !down || fingers.is_some() {
             interaction.grab.release = self.grabs();
-            if let (Held::Base(PressedBase { base, dragged: Some(at), .. }), None) = (self.held, fingers) {
+            // A click may also move by a few points.
+            if let (Held::Base(PressedBase { base, dragged: Some(at), .. }), None, false) =
+                (self.held, fingers, response.clicked())
+            {
                 interaction.dropped = Some((base.object, at));
             }
             self.held = Held::Nothing;

@@ -98,8 +98,8 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
         rows.push(("θ", none(one(Field::RotationAngle)), "Angle of the rotation R"));
     }
     let principal = two(Field::LargerPrincipalStress, Field::SmallerPrincipalStress);
-    let direction = principal_direction(point).filter(|_| axes == Axes::Space);
-    let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees() + 0.0));
+    let direction = principal_direction(point).filter(|_| axes == Axes::Space || point.is_linear);
+    let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees().round() + 0.0));
     rows.extend([
         ("σ_x, σ_y", none(two(x, y)), "Cauchy stress, which follows from ε"),
         ("τ_xy", none(one(xy)), "Cauchy stress, which follows from ε"),
@@ -234,8 +234,14 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     ui.horizontal(|ui| {
         if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
             let title = fill!("Point %{place}", place = place.as_str());
-            let lines =
-                std::iter::once(title).chain(rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name))));
+            let axes = match *axes {
+                _ if point.is_linear => None,
+                Axes::Space => Some("space"),
+                Axes::Material => Some("material"),
+            };
+            let axes = axes.map(|name| format!("{}\t{}", tr("Stress in the axes of"), tr(name)));
+            let rows = rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name)));
+            let lines = std::iter::once(title).chain(axes).chain(rows);
             request = Some(CardRequest::Copy(lines.map(|line| line + "\n").collect()));
         }
         let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";

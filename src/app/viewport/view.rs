@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
-use crate::app::view_options::{Mode, ViewOptions};
+use crate::app::view_options::{Magnification, Mode, ViewOptions};
 use crate::app::viewport::arrow::{ForceArrows, force_range};
 use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
@@ -129,6 +129,8 @@ pub(crate) struct BodyView {
     body: BodyMesh,
     /// Factor of the drawn displacement.
     magnification: f64,
+    /// Choice of that factor at the last update.
+    choice: Magnification,
     /// Largest displacement of a motion so far, m.
     largest_displacement: f64,
     /// `true` while the last equilibrium is drawn in place of a state that diverges.
@@ -152,6 +154,7 @@ impl BodyView {
             menu: None,
             body: BodyMesh::default(),
             magnification: 1.0,
+            choice: Magnification::None,
             largest_displacement: 0.0,
             shows_converged: false,
             swept: None,
@@ -271,6 +274,9 @@ impl BodyView {
         let simulation = self.drawn(content);
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
+        if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
+            self.swept = None;
+        }
         self.magnification = self.magnification_of(simulation, content);
         self.body.update(simulation, content.session.geometry(), content.options, self.magnification, played);
         self.body.color(visuals, content.options.field);
@@ -452,7 +458,8 @@ impl BodyView {
         let state = shown.point_state(point, content.options.point_values())?;
         let at = self.in_view(content, point)?;
         let (scene, system) = (content.session.scene(), content.simulation().system());
-        let is_kept = menu::has_probe(scene, system, state.rest);
+        // An edit of a large body would solve it again.
+        let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
         match probe::show_card(ui, painter, (self.rect, at), (&state, is_kept), &mut self.axes)? {
             CardRequest::Close => self.probe = None,
             CardRequest::Copy(text) => ui.ctx().copy_text(text),

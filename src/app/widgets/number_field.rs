@@ -207,13 +207,8 @@ impl NumberField {
 
     /// Reads a number within the limit.
     fn read(&self, text: &str) -> Result<f64, Sentence> {
-        match parse(text, self.limit.unit) {
-            Ok(number) if number.is_finite() => self.check(number).map(|()| number),
-            Ok(_) | Err(UnitError::NoNumber { .. }) => {
-                Err((&self.limit.expected(&format!("\u{201c}{}\u{201d}", text.trim()))).into())
-            }
-            Err(error) => Err((&error).into()),
-        }
+        let number = read(text, self.limit)?;
+        self.check(number).map(|()| number)
     }
 
     fn check(&self, value: f64) -> Result<(), Sentence> {
@@ -221,6 +216,17 @@ impl NumberField {
             return Err(sentence!("expected a whole number, got %{got}", got = number(value)));
         }
         self.limit.check(value).map_err(|error| (&error).into())
+    }
+}
+
+/// Reads a number within a limit; the error says what was expected.
+pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
+    match parse(text, limit.unit) {
+        Ok(number) if number.is_finite() => limit.check(number).map(|()| number).map_err(|error| (&error).into()),
+        Ok(_) | Err(UnitError::NoNumber { .. }) => {
+            Err((&limit.expected(&format!("\u{201c}{}\u{201d}", text.trim()))).into())
+        }
+        Err(error) => Err((&error).into()),
     }
 }
 

@@ -48,7 +48,11 @@ impl StepStudy {
     pub fn new(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         let reference = MotionReference::new(scene, Extent::Quick, observe)?;
         let samples = Samples::of(scene, Extent::Quick.plan())?;
-        Ok(Self { scene: scene.clone(), system: system_of(scene)?, samples, reference })
+        let mut study = Self { scene: scene.clone(), system: system_of(scene)?, samples, reference };
+        // All motions end at the same time.
+        let longest = study.steps().iter().map(|(power, _)| 1_u32 << (*power).max(0)).max().unwrap_or(1);
+        study.samples.count -= study.samples.count % longest;
+        Ok(study)
     }
 
     /// Returns the simulated time, s.
