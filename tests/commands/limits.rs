@@ -104,7 +104,10 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let strips = json["strips"].as_array().unwrap();
     let own = json["full_load"].as_f64().unwrap();
-    assert_eq!((strips.len(), &json["load"], &json["duration"]), (4, &"time step".into(), &0.5.into()));
+    assert_eq!((strips.len(), &json["load"]), (4, &"time step".into()));
+    // All motions end at the end of a step of the longest.
+    let duration = json["duration"].as_f64().unwrap();
+    assert!((0.45..=0.5).contains(&duration), "{duration}");
     let table = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     for strip in strips {
         let integrator = strip["integrator"].as_str().unwrap();
