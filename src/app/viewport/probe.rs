@@ -1,7 +1,7 @@
 //! Values at the point under the pointer, and at a pinned point.
 
 use egui::{
-    Align2, Area, CollapsingHeader, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui,
+    Align2, Area, CollapsingHeader, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui, Vec2,
     WidgetInfo, vec2,
 };
 use nalgebra::{Matrix2, Vector2};
@@ -12,8 +12,8 @@ use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 
-/// Distance from a pinned point to its card, points.
-const AWAY: f32 = 26.0;
+/// Usual size of the card of a point, points.
+const CARD: Vec2 = vec2(240.0, 300.0);
 /// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;
 
@@ -153,25 +153,47 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
-/// Shows the card of a pinned point at the window position `at`. `is_kept` is `true` if the scene has a probe there.
+/// Returns the area of a view in which cards are shown.
+fn card_area(view: Rect) -> Rect {
+    /// Room for the line key above, and for the colour bar and the status below, points.
+    const ABOVE: f32 = 44.0;
+    const BELOW: f32 = 84.0;
+    const SIDE: f32 = 14.0;
+    Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, BELOW))
+}
+
+/// Returns the corner of a view in which a card hides the fewest points of a body, whose positions are in the window.
+pub(crate) fn card_corner(view: Rect, body: impl Iterator<Item = Pos2>) -> Align2 {
+    let area = card_area(view);
+    let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
+    let mut hidden = corners.map(|corner| (0_u32, corner));
+    for at in body {
+        for (count, corner) in &mut hidden {
+            *count += u32::from(corner.anchor_size(corner.pos_in_rect(&area), CARD).contains(at));
+        }
+    }
+    hidden.into_iter().min_by_key(|(count, _)| *count).map_or(Align2::RIGHT_TOP, |(_, corner)| corner)
+}
+
+/// Shows the card of a pinned point at the window position `at`, in a corner of the view. `is_kept` is `true` if the
+/// scene has a probe there.
 pub(crate) fn show_card(
     ui: &Ui,
     painter: &Painter,
     (view, at): (Rect, Pos2),
+    pivot: Align2,
     (point, is_kept): (&PointState, bool),
     axes: &mut Axes,
 ) -> Option<CardRequest> {
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
-    let side = if at.x > view.center().x { -1.0 } else { 1.0 };
-    let pivot = if side < 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
-    let corner = at + vec2(side * AWAY, -AWAY);
-    painter.line_segment([at, corner], Stroke::new(1.2, color));
+    let (id, corner) = (egui::Id::unique("probe"), pivot.pos_in_rect(&card_area(view)));
+    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(pivot.anchor_size(corner, CARD));
+    painter.line_segment([at, card.clamp(at)], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
     paint_principal(painter, at, point, color);
-    let area =
-        Area::new(egui::Id::unique("probe")).order(Order::Middle).pivot(pivot).fixed_pos(corner).constrain_to(view);
+    let area = Area::new(id).order(Order::Middle).pivot(pivot).fixed_pos(corner).constrain_to(view);
     let card =
         area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, point, is_kept, axes)).inner);
     card.inner
@@ -207,6 +229,8 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
         });
     }
     let rows = rows_of(point, *axes);
+    // Rows of text need less height than those of controls.
+    ui.spacing_mut().interact_size.y = 18.0;
     Grid::new("probe values").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         for (name, text, tip) in &rows {
             ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));

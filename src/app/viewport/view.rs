@@ -122,6 +122,8 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
+    /// Pinned point whose card is shown, and the corner of the view where it is.
+    card: Option<(MaterialPoint, Align2)>,
     /// Axes of the stresses at the pinned point.
     axes: Axes,
     /// Material point whose menu was opened.
@@ -150,6 +152,7 @@ impl BodyView {
             rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
             probe: None,
+            card: None,
             axes: Axes::default(),
             menu: None,
             body: BodyMesh::default(),
@@ -460,7 +463,16 @@ impl BodyView {
         let (scene, system) = (content.session.scene(), content.simulation().system());
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
-        match probe::show_card(ui, painter, (self.rect, at), (&state, is_kept), &mut self.axes)? {
+        // The card stays where it is while the body moves.
+        let corner = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
+            || {
+                let projection = self.projection();
+                probe::card_corner(self.rect, self.body.points().iter().map(|point| projection.point(*point)))
+            },
+            |(_, corner)| corner,
+        );
+        self.card = Some((point, corner));
+        match probe::show_card(ui, painter, (self.rect, at), corner, (&state, is_kept), &mut self.axes)? {
             CardRequest::Close => self.probe = None,
             CardRequest::Copy(text) => ui.ctx().copy_text(text),
             CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
