@@ -10,7 +10,7 @@ use super::args::LimitsArgs;
 use super::progress::Watch;
 use super::{CliError, json, named, simulate, text};
 use crate::format::{engineering, three_digits};
-use crate::plot::{self, Scale};
+use crate::plot::{self, AxisScale};
 use crate::scene::{self, Scene};
 use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 
@@ -24,7 +24,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
-    let scale = if linear { Scale::Linear } else { Scale::Logarithmic };
+    let scale = if linear { AxisScale::Linear } else { AxisScale::Logarithmic };
     outputs.write_table(|| table(&limits, &scene))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
     text::print(&if json { as_json(&limits, &scene) } else { summary(&limits, &scene) })?;

@@ -24,7 +24,7 @@ pub(super) const MARGINS: PlotMargins =
 
 /// Scale of the axes of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scale {
+pub enum AxisScale {
     /// Equal distances are equal ratios.
     #[default]
     Logarithmic,
@@ -32,7 +32,7 @@ pub enum Scale {
     Linear,
 }
 
-impl Scale {
+impl AxisScale {
     /// Returns an axis between two places. It shows a range of positive values, a linear one from 0. `full` is the
     /// displayed value of 1: its multiples are round at the ticks of a linear axis.
     pub(crate) fn axis(self, [low, high]: [f64; 2], full: f64, ends: [f64; 2]) -> ScaledAxis {
@@ -43,7 +43,7 @@ impl Scale {
 
 /// Axis of positive values.
 pub(crate) struct ScaledAxis {
-    scale: Scale,
+    scale: AxisScale,
     /// Values at the ends, or their logarithms.
     from: f64,
     to: f64,
@@ -59,7 +59,7 @@ impl ScaledAxis {
             .map(f64::log10)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         let [from, to] = if low > high { [0.0, 1.0] } else { [low.floor(), high.ceil().max(low.floor() + 1.0)] };
-        Self { scale: Scale::Logarithmic, from, to, full: 1.0, ends }
+        Self { scale: AxisScale::Logarithmic, from, to, full: 1.0, ends }
     }
 
     /// Returns the value at a place; the inverse of [`Self::place`].
@@ -68,11 +68,11 @@ impl ScaledAxis {
         let [start, end] = self.ends;
         let fraction = if end == start { 0.0 } else { (place - start) / (end - start) };
         let at = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
-        if self.scale == Scale::Linear { at } else { 10f64.powf(at) }
+        if self.scale == AxisScale::Linear { at } else { 10f64.powf(at) }
     }
 
     pub fn place(&self, value: f64) -> f64 {
-        let at = if self.scale == Scale::Linear { value } else { value.max(f64::MIN_POSITIVE).log10() };
+        let at = if self.scale == AxisScale::Linear { value } else { value.max(f64::MIN_POSITIVE).log10() };
         let fraction = (at - self.from) / (self.to - self.from);
         let [start, end] = self.ends;
         start + (end - start) * fraction.clamp(0.0, 1.0)
@@ -83,8 +83,10 @@ impl ScaledAxis {
         /// Largest number of ticks of a linear axis.
         const TICKS: u32 = 6;
         let values: Vec<f64> = match self.scale {
-            Scale::Logarithmic => (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e)).collect(),
-            Scale::Linear => {
+            AxisScale::Logarithmic => {
+                (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e)).collect()
+            }
+            AxisScale::Linear => {
                 let texts = ticks(self.from * self.full, self.to * self.full, TICKS);
                 texts.into_iter().map(|text| text / self.full).collect()
             }

@@ -1,6 +1,6 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
-use super::axes::{Scale, ScaledAxis};
+use super::axes::{AxisScale, ScaledAxis};
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
@@ -28,7 +28,7 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
 
 /// Draws the limits of a scene over the load.
 #[must_use]
-pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
+pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing {
     let loads = load_axis(scene);
     let axis = scale.axis(limits.range, loads.full, ACROSS);
     // A motion has no load curve.
@@ -63,13 +63,13 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: Scale) -> Drawing {
 }
 
 /// Draws the length of the reference displacement over the load.
-fn curve(drawing: &mut Drawing, limits: &MethodLimits, scale: Scale, axis: &ScaledAxis) {
+fn curve(drawing: &mut Drawing, limits: &MethodLimits, scale: AxisScale, axis: &ScaledAxis) {
     let lengths = limits.reference.iter().map(|(factor, u)| (*factor, u.map(|u| u.norm()).filter(|u| *u > 0.0)));
     let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
     let (known, ends) = (lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
     let up = match scale {
-        Scale::Logarithmic => ScaledAxis::decades(known, ends),
-        Scale::Linear => scale.axis([0.0, known.fold(f64::MIN_POSITIVE, f64::max)], 1.0, ends),
+        AxisScale::Logarithmic => ScaledAxis::decades(known, ends),
+        AxisScale::Linear => scale.axis([0.0, known.fold(f64::MIN_POSITIVE, f64::max)], 1.0, ends),
     };
     for (y, length) in up.values() {
         drawing.line(vec![[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));

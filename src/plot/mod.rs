@@ -9,7 +9,7 @@ mod raster;
 mod trade;
 
 pub use atlas::{atlas, motion_atlas};
-pub use axes::Scale;
+pub use axes::AxisScale;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;

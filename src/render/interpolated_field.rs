@@ -64,6 +64,8 @@ pub(crate) struct InterpolatedField {
     kinematics: Kinematics,
     /// Components at the nodes if these are their source, else at every quadrature point.
     components: Vec<Components>,
+    /// Largest magnitude of components that are not of the rotation.
+    largest_component: f64,
     nodal: NodalStress,
     scratch: RecoveryScratch,
     of_elements: Vec<Option<f64>>,
@@ -78,6 +80,7 @@ impl Default for InterpolatedField {
             material,
             kinematics: Kinematics::Corotated,
             components: Vec::new(),
+            largest_component: 0.0,
             nodal: NodalStress::empty(material),
             scratch: RecoveryScratch::default(),
             of_elements: Vec::new(),
@@ -113,6 +116,8 @@ impl InterpolatedField {
             let components = &mut self.components;
             visit_points(problem, state, kinematics, &mut |_, local| components.push(components_of(&local)));
         }
+        let magnitudes = self.components.iter().flat_map(|own| &own[..3]).map(|c| c.abs());
+        self.largest_component = magnitudes.fold(0.0, f64::max);
     }
 
     /// Returns `true` if only the simulation's displacements can differ from those of this field.
@@ -170,7 +175,7 @@ impl InterpolatedField {
 
     /// Returns the largest magnitude of components that are not of the rotation.
     pub(crate) fn largest_component(&self) -> f64 {
-        self.components.iter().flat_map(|own| &own[..3]).map(|c| c.abs()).fold(0.0, f64::max)
+        self.largest_component
     }
 
     /// Returns the largest magnitude of the values at the nodes, or at the corners of every element if the components
@@ -180,8 +185,8 @@ impl InterpolatedField {
         /// Ratio of a component to the others that is rounding error.
         const ROUNDING: f64 = 1e-9;
         let noise = match self.field.unit() {
-            "Pa" => ROUNDING * self.material.young * self.largest_component(),
-            "" | "m" => ROUNDING * self.largest_component(),
+            "Pa" => ROUNDING * self.material.young * self.largest_component,
+            "" | "m" => ROUNDING * self.largest_component,
             _ => 0.0,
         };
         let largest = |largest: f64, value: Option<f64>| value.map_or(largest, |value| largest.max(value.abs()));

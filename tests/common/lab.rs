@@ -4,7 +4,26 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use warpbeam::Simulation;
 use warpbeam::app::Lab;
+use warpbeam::scene::{Scene, Source};
+
+/// Returns a lab with a scene of this name.
+pub fn lab_of(name: &str, scene: Scene) -> Lab {
+    let simulation = Simulation::new(&scene).unwrap();
+    Lab::new(Source { name: name.into(), assignments: Vec::new() }, scene, simulation)
+}
+
+/// Returns a window of this size, points.
+pub fn window(size: [f32; 2], lab: Lab) -> Harness<'static, Lab> {
+    Harness::builder().with_size(size).build_ui_state(
+        |ui, lab: &mut Lab| {
+            lab.advance(ui.input(|i| i.time));
+            lab.ui(ui);
+        },
+        lab,
+    )
+}
 
 /// Folds of the panel, with the labels of their controls.
 const FOLDS: [(&str, &[&str]); 6] = [

@@ -8,23 +8,15 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
+use crate::common::lab::{lab_of, window};
 use crate::common::{scene, scene_with};
-use warpbeam::Simulation;
 use warpbeam::app::Lab;
-use warpbeam::scene::{ElementKind, IntegratorKind, MethodKind, Scene, Source};
+use warpbeam::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::limits::{self, MethodLimits};
 
 fn harness(scene: Scene) -> Harness<'static, Lab> {
-    let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: "scene".into(), assignments: Vec::new() }, scene, simulation);
-    Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.advance(ui.input(|i| i.time));
-            lab.ui(ui);
-        },
-        lab,
-    )
+    window([1280.0, 800.0], lab_of("scene", scene))
 }
 
 /// Waits until every result is known.

@@ -7,30 +7,19 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use serde_json::Value;
 
-use crate::common::lab::unfold;
+use crate::common::lab::{lab_of, unfold, window};
 use crate::common::{ids_of, scene, stdout, warpbeam};
 use warpbeam::app::{Lab, parse_panes};
 use warpbeam::format::{bound_percent, count, engineering, engineering_pair, percent, three_digits, two_digits};
-use warpbeam::scene::{Analysis, Source};
+use warpbeam::scene::Analysis;
 use warpbeam::study::{Extent, Study};
-use warpbeam::{MethodKind, Scene, Simulation, Status};
+use warpbeam::{MethodKind, Scene, Status};
 
 /// Texts of the window.
 struct Shown(Vec<String>);
 
-fn lab_of(id: &str, scene: Scene) -> Lab {
-    let simulation = Simulation::new(&scene).unwrap();
-    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
-}
-
 fn harness_of(lab: Lab) -> Harness<'static, Lab> {
-    let mut harness = Harness::builder().with_size([1280.0, 2000.0]).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.advance(ui.input(|i| i.time));
-            lab.ui(ui);
-        },
-        lab,
-    );
+    let mut harness = window([1280.0, 2000.0], lab);
     harness.run_steps(3);
     harness
 }

@@ -6,9 +6,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 
-use crate::common::lab::{pick, unfold};
+use crate::common::lab::{pick, type_into, unfold};
 use crate::common::scene;
-use crate::ui_interaction::{click, harness, harness_of, on_body, shapes};
+use crate::ui_interaction::{click, drag, harness, harness_of, on_body, shapes};
 use warpbeam::app::{Lab, Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
 use warpbeam::scene::{Axis, Load, MethodKind, Place};
@@ -198,20 +198,6 @@ fn the_panel_chooses_field_and_magnification() {
     assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
 }
 
-/// Drags from one position of the window to another.
-fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2) {
-    harness.hover_at(from);
-    harness.run();
-    harness.drag_at(from);
-    harness.step();
-    for i in 1..=4 {
-        harness.hover_at(from + (to - from) * (i as f32 / 4.0));
-        harness.step();
-    }
-    harness.drop_at(to);
-    harness.run();
-}
-
 /// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. A force goes to a
 /// node, a named edge or a corner, a probe to any point. A press without a drag opens the card of the point.
 #[test]
@@ -224,7 +210,7 @@ fn bases_of_objects_are_dragged_along_the_body() {
     let seen = |harness: &Harness<'_, Lab>, at: [f64; 2]| on_body(harness.state(), at.into());
     // The middle of the right edge, where the arrow begins.
     let (foot, goal) = (seen(&harness, [9.999, 0.0]), seen(&harness, [7.0, 0.49]));
-    drag(&mut harness, foot, goal);
+    drag(&mut harness, foot, goal, Modifiers::NONE);
     let Load::Force { place: Place::At(node), .. } = harness.state().scene().loads[0] else { panic!("at a node") };
     let mesh = harness.state().simulation().system().mesh();
     let [x, y] = <[f64; 2]>::from(mesh.nodes()[mesh.nearest_node(node.into()) as usize] - Vector2::from(node));
@@ -232,7 +218,7 @@ fn bases_of_objects_are_dragged_along_the_body() {
     assert!((Vector2::from(node) - Vector2::new(7.0, 0.5)).norm() < 0.3, "{node:?}");
     let moved = harness.state().scene().clone();
     let (foot, goal) = (seen(&harness, node), seen(&harness, [9.999, 0.03]));
-    drag(&mut harness, foot, goal);
+    drag(&mut harness, foot, goal, Modifiers::NONE);
     assert_eq!(*harness.state().scene(), before, "back on the edge");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run();
@@ -241,18 +227,18 @@ fn bases_of_objects_are_dragged_along_the_body() {
     harness.run();
     assert_eq!(*harness.state().scene(), before, "undone");
     let (from, to) = (seen(&harness, [4.0, 0.2]), seen(&harness, [5.1, -0.1]));
-    drag(&mut harness, from, to);
+    drag(&mut harness, from, to, Modifiers::NONE);
     let Place::At(at) = harness.state().scene().probes.iter().find(|probe| probe.name == "p1").unwrap().place else {
         panic!("at a point")
     };
     assert!((Vector2::from(at) - Vector2::new(5.1, -0.1)).norm() < 0.05, "{at:?}");
     let (from, to) = (seen(&harness, [6.0, 0.0]), seen(&harness, [3.0, 0.1]));
-    drag(&mut harness, from, to);
+    drag(&mut harness, from, to, Modifiers::NONE);
     let line = harness.state().scene().sections[0];
     assert!((line.at - Vector2::new(3.0, 0.1)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
     // The corner at the lower right.
     let (from, to) = (seen(&harness, [2.0, -0.499]), seen(&harness, [9.99, -0.49]));
-    drag(&mut harness, from, to);
+    drag(&mut harness, from, to, Modifiers::NONE);
     assert_eq!(harness.state().scene().supports.last().unwrap().place, Place::At([10.0, -0.5]));
     let probe = seen(&harness, at);
     click(&mut harness, probe);
@@ -265,27 +251,13 @@ fn coordinates_of_a_point_are_typed() {
     let mut harness = harness_of("cantilever", scene("cantilever").force([5.0, 0.5], [0.0, -10.0]));
     harness.run();
     unfold(&mut harness, "Force on");
-    harness.get_by_role_and_label(Role::SpinButton, "x").click();
-    harness.run();
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.event(egui::Event::Text("250 cm".to_owned()));
-    harness.step();
-    harness.key_press(Key::Enter);
-    harness.run();
+    type_into(&mut harness, "x", "250 cm");
     let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
     assert_eq!(*place, Place::At([2.5, 0.5]));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run();
     let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
     assert_eq!(*place, Place::At([5.0, 0.5]), "undone");
-    harness.get_by_role_and_label(Role::SpinButton, "y").click();
-    harness.run();
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.event(egui::Event::Text("3 kg".to_owned()));
-    harness.step();
-    harness.key_press(Key::Enter);
-    harness.run();
+    type_into(&mut harness, "y", "3 kg");
     assert!(harness.query_by_label_contains("expected").is_some(), "a refused text is silent");
 }

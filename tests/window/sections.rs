@@ -6,24 +6,15 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 
+use crate::common::lab::{lab_of, window};
 use crate::common::scene;
 use crate::ui_interaction::on_body;
+use warpbeam::Status;
 use warpbeam::app::Lab;
-use warpbeam::scene::Source;
 use warpbeam::study::section_chart;
-use warpbeam::{Simulation, Status};
 
 fn harness(id: &str) -> Harness<'static, Lab> {
-    let scene = scene(id);
-    let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
-    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.advance(ui.input(|i| i.time));
-            lab.ui(ui);
-        },
-        lab,
-    );
+    let mut harness = window([1280.0, 800.0], lab_of(id, scene(id)));
     harness.run_steps(4);
     harness
 }

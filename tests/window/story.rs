@@ -2,21 +2,20 @@
 
 use std::collections::BTreeSet;
 
+use crate::common::lab::lab_of;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::Simulation;
 use warpbeam::app::{Lab, Settings};
-use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
+use warpbeam::scene::{ElementKind, Load, MethodKind, Scene};
 
 /// Time between two frames, s.
 const FRAME: f64 = 0.25;
 
 fn lab(id: &str) -> Lab {
-    let scene = crate::common::scene(id);
-    let simulation = Simulation::new(&scene).unwrap();
-    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
+    lab_of(id, crate::common::scene(id))
 }
 
 fn harness(size: [f32; 2], lab: Lab) -> Harness<'static, Lab> {

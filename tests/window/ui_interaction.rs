@@ -1,6 +1,6 @@
 //! Tests of pointer interaction with the body, its loads and its values, and of edits, without a display or a GPU.
 
-use crate::common::lab::{type_into, unfold};
+use crate::common::lab::{lab_of, type_into, unfold};
 use crate::common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui::os::OperatingSystem;
@@ -20,8 +20,7 @@ pub fn harness(id: &str) -> Harness<'static, Lab> {
 }
 
 pub fn harness_of(id: &str, scene: warpbeam::Scene) -> Harness<'static, Lab> {
-    let simulation = Simulation::new(&scene).unwrap();
-    let lab = Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation);
+    let lab = lab_of(id, scene);
     let mut harness =
         Harness::builder().with_size([1280.0, 800.0]).with_max_steps(2000).with_step_dt(STEP).build_ui_state(
             |ui, lab: &mut Lab| {
@@ -59,7 +58,7 @@ pub fn on_body(lab: &Lab, at: Vector2<f64>) -> Pos2 {
 }
 
 /// Drags from one position to another through some in between, and releases.
-fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2, modifiers: Modifiers) {
+pub fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2, modifiers: Modifiers) {
     let button = |pos, pressed| Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed, modifiers };
     harness.hover_at(from);
     harness.run();

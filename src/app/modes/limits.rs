@@ -13,7 +13,7 @@ use crate::app::session::facts::without_methods;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
-use crate::plot::{Scale, ScaledAxis, rating_color};
+use crate::plot::{AxisScale, ScaledAxis, rating_color};
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
@@ -50,12 +50,12 @@ pub(crate) struct LimitMap {
     /// Part of the base's loads, or of its time step, that the lab's scene has.
     factor: f64,
     /// Scale of loads and displacements.
-    scale: Scale,
+    scale: AxisScale,
 }
 
 impl Default for LimitMap {
     fn default() -> Self {
-        Self { base: None, placed: None, factor: 1.0, scale: Scale::default() }
+        Self { base: None, placed: None, factor: 1.0, scale: AxisScale::default() }
     }
 }
 
@@ -149,7 +149,7 @@ impl LimitMap {
 
     /// Shows the choice of the scale.
     fn scales(&mut self, ui: &mut Ui) {
-        for (scale, name) in [(Scale::Logarithmic, "logarithmic axis"), (Scale::Linear, "linear axis")] {
+        for (scale, name) in [(AxisScale::Logarithmic, "logarithmic axis"), (AxisScale::Linear, "linear axis")] {
             let text = RichText::new(tr(name)).size(SMALL);
             if ui.add(option_button(self.scale == scale, text)).clicked() {
                 self.scale = scale;
@@ -210,7 +210,7 @@ struct StripChart<'a> {
     limits: &'a MethodLimits,
     axis: &'a LoadAxis,
     across: ScaledAxis,
-    scale: Scale,
+    scale: AxisScale,
     palette: Palette,
     curve: Rect,
     strips: Rect,
@@ -224,7 +224,7 @@ struct StripChart<'a> {
 }
 
 impl<'a> StripChart<'a> {
-    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: Scale) -> Self {
+    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: AxisScale) -> Self {
         let has_ends = whole.width() >= WITH_ENDS;
         let names = if limits.duration.is_some() { INTEGRATORS } else { NAMES };
         let (left, right) = (whole.left() + names, whole.right() - if has_ends { ENDS } else { 24.0 });

@@ -17,7 +17,7 @@ use crate::format::{editable, number};
 use crate::scene::{Axis, Load, Place, Scene, Support, limits};
 
 /// Name of the section, with which its messages are kept.
-const SECTION: &str = "Loads and supports";
+pub(crate) const SECTION: &str = "Loads and supports";
 
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];

@@ -18,7 +18,7 @@ use crate::method::METHODS;
 use crate::scene::{Analysis, Scene};
 
 mod body;
-mod edges;
+pub(crate) mod edges;
 mod loads;
 mod motion;
 mod result;
@@ -98,7 +98,7 @@ pub(super) fn show(
         let summary = loads::summary(input.scene);
         fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
         let summary = edges::summary(input.scene);
-        fold(ui, "Loads and supports", &summary, false, |ui| edges::show(ui, input, state, view, actions));
+        fold(ui, edges::SECTION, &summary, false, |ui| edges::show(ui, input, state, view, actions));
         if let Some(support) = supports::chosen(ui, input) {
             let summary = supports::summary(input.scene, support);
             fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));

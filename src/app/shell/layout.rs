@@ -8,7 +8,7 @@ use crate::app::language::{self, spaced, tr};
 use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
 use crate::app::modes::explore::{load_curve, motion_plot};
 use crate::app::modes::learn::{self, Shown};
-use crate::app::panel::{self, PANEL_WIDTH};
+use crate::app::panel::{self, PANEL_WIDTH, edges};
 use crate::app::readout::Readout;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
@@ -300,7 +300,7 @@ impl Lab {
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect();
         let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
-        actions.extend(chosen.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
+        actions.extend(chosen.map(|scene| Action::Edit(edges::SECTION, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
         self.desk.session.keep_converged();
@@ -353,7 +353,7 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         let kept = viewport.show_values(ui, &painter, &content);
-        actions.extend(kept.map(|scene| Action::Edit("Loads and supports", Box::new(scene))));
+        actions.extend(kept.map(|scene| Action::Edit(edges::SECTION, Box::new(scene))));
         self.paint_story(ui, &painter, rect);
         if self.desk.view.bars && self.intro.is_none() {
             let mut free = rect;

@@ -31,8 +31,6 @@ pub(crate) struct BodyMesh {
     field: InterpolatedField,
     /// Components of the field at the drawn points.
     components: Vec<Option<Components>>,
-    /// Largest magnitude of components that are not of the rotation.
-    largest_component: f64,
     /// Largest magnitude of the field in the current state.
     largest: f64,
     /// Values of the field at both ends of the colour map.
@@ -123,7 +121,6 @@ impl BodyMesh {
             geometry.points(&|n| nodes[n as usize], &mut self.points);
             self.field.update(simulation, view.field, values);
             geometry.components(&self.field, &mut self.components);
-            self.largest_component = self.field.largest_component();
             self.largest = self.field.largest(mesh);
             self.stamp = stamp();
         }
@@ -184,7 +181,7 @@ impl BodyMesh {
             triangles: &geometry.triangles,
             field: self.field.field(),
             components: &self.components,
-            largest_component: self.largest_component,
+            largest_component: self.field.largest_component(),
             material: self.field.material(),
             kinematics: self.field.kinematics(),
             range: self.range,

@@ -293,10 +293,13 @@ impl BodyView {
         if !is_wanted || is_grabbed || content.animation.is_some() {
             return 1.0;
         }
-        // A factor that followed a motion would hide it.
-        let before = if content.session.is_motion() { self.largest_displacement } else { 0.0 };
-        self.largest_displacement = simulation.displacement().iter().map(|u| u.norm()).fold(before, f64::max);
-        content.options.magnification.factor(simulation.system().size(), self.largest_displacement)
+        let (choice, moves) = (content.options.magnification, content.session.is_motion());
+        if moves || choice == Magnification::Automatic {
+            // A factor that followed a motion would hide it.
+            let before = if moves { self.largest_displacement } else { 0.0 };
+            self.largest_displacement = simulation.displacement().iter().map(|u| u.norm()).fold(before, f64::max);
+        }
+        choice.factor(simulation.system().size(), self.largest_displacement)
     }
 
     /// Returns the drawn positions of a body's nodes, m.

@@ -17,7 +17,7 @@ use crate::study::reference::system_of;
 /// Powers of two of the shortest and the longest time step, relative to the scene's.
 const POWERS: [i32; 2] = [-4, 3];
 /// Largest number of steps of a motion; shorter time steps are not measured.
-const MOST_STEPS: f64 = 4000.0;
+const MAX_STEPS: f64 = 4000.0;
 
 /// Motions of a scene, and their reference.
 pub(in crate::study) struct StepStudy {
@@ -66,7 +66,7 @@ impl StepStudy {
         let own = ratio.log2().round() as i32;
         let fits = |power: &i32| {
             let steps = f64::from(self.samples.count) * 2f64.powi(-power);
-            (1.0..=MOST_STEPS).contains(&steps)
+            (1.0..=MAX_STEPS).contains(&steps)
         };
         // A step of the sampling interval is always measured.
         let powers = (POWERS[0] - own..=(POWERS[1] - own).max(0)).filter(fits);
