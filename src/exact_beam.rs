@@ -374,7 +374,7 @@ impl ExactBeam {
         };
         for load in &scene.loads {
             match load {
-                Load::Force { place: Place::Edge(edge), force, pulse: None } if edge == "right" => {
+                Load::Force { place: Place::Edge(edge), force, pulse: None, .. } if edge == "right" => {
                     clamped.tip_force += Vector2::from(*force);
                 }
                 Load::Gravity { acceleration, pulse: None } => {

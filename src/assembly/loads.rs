@@ -6,8 +6,9 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::edge::node_at;
-use super::{Edge, Kinematics, Matrix, System};
+use super::{Edge, Kinematics, Matrix, NodeWeights, System};
 use crate::element::UNIT;
+use crate::mesh::Mesh;
 use crate::scene::{Invalid, Load, Material, Place, Pulse};
 use crate::sentence::sentence;
 use crate::state::State;
@@ -25,6 +26,15 @@ pub struct Loads {
     moments: Vec<EdgeMoment>,
     /// All dead forces at the current time, N.
     dead: Vec<Vector2<f64>>,
+}
+
+/// Returns the weights of the nodes on which a force at a point acts, in the scene's table `key`; they sum to 1.
+fn force_weights(mesh: &Mesh, at: [f64; 2], at_point: bool, key: &str) -> Result<NodeWeights, Invalid> {
+    let point = mesh.locate(at.into()).filter(|_| at_point);
+    match point.and_then(|point| mesh.weights(point)) {
+        Some(weights) => Ok(weights),
+        None => Ok(vec![(node_at(mesh, at, key)?, 1.0)]),
+    }
 }
 
 /// A moment on a straight edge.
@@ -74,10 +84,11 @@ impl Loads {
         for (i, load) in loads.iter().enumerate() {
             let key = format!("load.{i}");
             let (forces, pulse): (NodalForces, _) = match load {
-                Load::Force { place: Place::At(at), force, pulse } => {
-                    (vec![(node_at(system.mesh(), *at, &key)?, Vector2::from(*force))], pulse)
+                Load::Force { place: Place::At(at), at_point, force, pulse } => {
+                    let weights = force_weights(system.mesh(), *at, *at_point, &key)?;
+                    (weights.into_iter().map(|(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }
-                Load::Force { place: Place::Edge(name), force, pulse } => {
+                Load::Force { place: Place::Edge(name), force, pulse, .. } => {
                     let weights = system.edge(name, &key)?.1.weights();
                     (weights.iter().map(|&(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }

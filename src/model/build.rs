@@ -194,10 +194,30 @@ impl Scene {
         self
     }
 
-    /// Adds a dead force, N.
+    /// Adds a dead force, N, on an edge or on the node nearest to a point.
     #[must_use]
     pub fn force(mut self, place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
         self.loads.push(Load::force(place, force));
+        self
+    }
+
+    /// Adds a dead force, N, at a point of the body, m, and not on its nearest node.
+    ///
+    /// ```
+    /// use warpbeam::{Load, Scene, Simulation};
+    ///
+    /// // The cells are 1 m long: there is no node at 3.4 m.
+    /// let scene = Scene::beam(10.0, 1.0).cells(10, 1).clamp("left").point_force([3.4, 0.0], [0.0, -1.0]);
+    /// assert!(matches!(scene.loads[0], Load::Force { at_point: true, .. }));
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// let moment = beam.support_reactions()[0].moment;
+    /// assert!((moment - 3.4).abs() < 1e-3);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn point_force(mut self, at: impl Into<Vector2<f64>>, force: impl Into<Vector2<f64>>) -> Self {
+        self.loads.push(Load::point_force(at, force));
         self
     }
 

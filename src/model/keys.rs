@@ -145,7 +145,9 @@ pub const KEYS: &[Key] = keys! {
     "load.edge": Text, Optional("required for a moment; edge or at for a force"), r#""right""#,
         "Edge over which the force or moment is spread. The edge of a moment is straight.";
     "load.at": Pair(limits::COORDINATE), Optional("edge or at is required for a force"), "[5.0, 0.25]",
-        "Point, at rest, for a force; it acts on the nearest node.";
+        "Point, at rest, for a force.";
+    "load.acts_on": Choice(&["node", "point"]), Default(r#""node""#), r#""point""#,
+        "Of a force with at: node puts it on the node nearest to the point; point puts it on the nodes of the element there, in proportion to their shape functions.";
     "load.force": Vector(limits::FORCE), Optional("required for a force"), r#"[0.0, "-12 kN"]"#,
         "Total force; on an edge a uniform traction.";
     "load.acceleration": Vector(limits::ACCELERATION), Optional("required for gravity"), "[0.0, -9.81]",

@@ -59,6 +59,9 @@ pub enum TableError {
     /// The keys are not those of a force.
     #[error("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")]
     Force,
+    /// The force acts on a point, and names an edge.
+    #[error("expected at = [x, y] with acts_on = \"point\", got an edge")]
+    PointOfEdge,
     /// The keys are not those of gravity.
     #[error("expected only acceleration = [ax, ay] in m/s² for a load of kind \"gravity\"")]
     Gravity,
@@ -231,10 +234,14 @@ impl SectionLine {
 #[serde(try_from = "LoadTable", into = "LoadTable")]
 #[non_exhaustive]
 pub enum Load {
-    /// Total force, N: uniform traction over an edge, or force on the nearest node.
+    /// Total force, N: uniform traction over an edge, or force at a point.
     Force {
         /// Edge or point.
         place: Place,
+        /// `true` for a force at its point itself: it acts on the nodes of the element there in proportion to their shape
+        /// functions, so that force and moment are those of the point. `false` for one on the node nearest to the
+        /// point. Without meaning on an edge, and outside the body, where the nearest node is used.
+        at_point: bool,
         /// Components, N.
         force: [f64; 2],
         /// Time dependence; `None` for a constant load.
@@ -259,10 +266,16 @@ pub enum Load {
 }
 
 impl Load {
-    /// Returns a dead force, N, at a place.
+    /// Returns a dead force, N, on an edge or on the node nearest to a point.
     #[must_use]
     pub fn force(place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
-        Self::Force { place: place.into(), force: force.into().into(), pulse: None }
+        Self::Force { place: place.into(), at_point: false, force: force.into().into(), pulse: None }
+    }
+
+    /// Returns a dead force, N, at a point of the body, m, and not on its nearest node.
+    #[must_use]
+    pub fn point_force(at: impl Into<Vector2<f64>>, force: impl Into<Vector2<f64>>) -> Self {
+        Self::Force { place: at.into().into(), at_point: true, force: force.into().into(), pulse: None }
     }
 
     /// Returns a moment, N m, on an edge.
@@ -394,6 +407,8 @@ struct LoadTable {
     edge: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "is_default", default)]
+    acts_on: ActsOn,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     force: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -412,21 +427,32 @@ enum LoadKind {
     Moment,
 }
 
+/// Nodes on which a force at a point acts: the nearest one, or those of the element there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ActsOn {
+    #[default]
+    Node,
+    Point,
+}
+
 impl TryFrom<LoadTable> for Load {
     type Error = TableError;
 
     fn try_from(table: LoadTable) -> Result<Self, TableError> {
-        let LoadTable { kind, edge, at, force, acceleration, moment, pulse } = table;
+        let LoadTable { kind, edge, at, acts_on, force, acceleration, moment, pulse } = table;
+        let at_point = acts_on == ActsOn::Point;
         match (kind, force, acceleration, moment) {
-            (LoadKind::Force, Some(force), None, None) => {
-                Ok(Self::Force { place: Place::new(edge, at)?, force, pulse })
-            }
+            (LoadKind::Force, Some(force), None, None) => match Place::new(edge, at)? {
+                Place::Edge(_) if at_point => Err(TableError::PointOfEdge),
+                place => Ok(Self::Force { place, at_point, force, pulse }),
+            },
             (LoadKind::Force, ..) => Err(TableError::Force),
-            (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() => {
+            (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() && !at_point => {
                 Ok(Self::Gravity { acceleration, pulse })
             }
             (LoadKind::Gravity, ..) => Err(TableError::Gravity),
-            (LoadKind::Moment, None, None, Some(moment)) if at.is_none() => {
+            (LoadKind::Moment, None, None, Some(moment)) if at.is_none() && !at_point => {
                 Ok(Self::Moment { edge: edge.ok_or(TableError::Moment)?, moment, pulse })
             }
             (LoadKind::Moment, ..) => Err(TableError::Moment),
@@ -437,11 +463,21 @@ impl TryFrom<LoadTable> for Load {
 impl From<Load> for LoadTable {
     fn from(load: Load) -> Self {
         let pulse = load.pulse();
-        let empty = |kind| Self { kind, edge: None, at: None, force: None, acceleration: None, moment: None, pulse };
+        let empty = |kind| Self {
+            kind,
+            edge: None,
+            at: None,
+            acts_on: ActsOn::Node,
+            force: None,
+            acceleration: None,
+            moment: None,
+            pulse,
+        };
         match load {
-            Load::Force { place, force, .. } => {
+            Load::Force { place, at_point, force, .. } => {
                 let (edge, at) = place.keys();
-                Self { edge, at, force: Some(force), ..empty(LoadKind::Force) }
+                let acts_on = if at_point && at.is_some() { ActsOn::Point } else { ActsOn::Node };
+                Self { edge, at, acts_on, force: Some(force), ..empty(LoadKind::Force) }
             }
             Load::Moment { edge, moment, .. } => {
                 Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) }

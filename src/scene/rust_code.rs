@@ -198,7 +198,10 @@ impl Code {
 
     fn load(&mut self, load: &Load) {
         match load {
-            Load::Force { place: at, force, .. } => self.call("force", &[place(at), pair(*force)]),
+            Load::Force { place: at, at_point, force, .. } => {
+                let name = if *at_point { "point_force" } else { "force" };
+                self.call(name, &[place(at), pair(*force)]);
+            }
             Load::Moment { edge, moment, .. } => self.call("moment", &[text(edge), number(*moment)]),
             Load::Gravity { acceleration, .. } => self.call("gravity", &[pair(*acceleration)]),
         }

@@ -56,8 +56,11 @@ pub(super) fn beyond_nodes(
             Load::Gravity { acceleration, pulse } => {
                 weight += Vector2::from(*acceleration) * (factor(pulse) * problem.material().area_density());
             }
-            Load::Force { place: Place::Edge(name), force, pulse } => {
+            Load::Force { place: Place::Edge(name), force, pulse, .. } => {
                 shape.add_edge_load(cut, name, Vector2::from(*force) * factor(pulse), middle, &mut sum);
+            }
+            Load::Force { place: Place::At(at), at_point: true, force, pulse } => {
+                shape.add_point_load(cut, (*at).into(), Vector2::from(*force) * factor(pulse), middle, &mut sum);
             }
             _ => {}
         }
@@ -99,6 +102,20 @@ impl PlacedMesh<'_> {
                     sum.add(self.position(weights.into_iter()) - middle, weight * (area / 3.0));
                 }
             }
+        }
+    }
+
+    /// Adds the force, N, at a point inside an element of the cut if the point is in front, minus its parts on the nodes
+    /// in front.
+    fn add_point_load(&self, cut: &Cut, at: Vector2<f64>, force: Vector2<f64>, middle: Vector2<f64>, sum: &mut Wrench) {
+        let (mesh, side) = (self.mesh, cut.side());
+        let Some(point) = mesh.locate(at).filter(|point| cut.elements.contains(&point.element)) else { return };
+        let Some(weights) = mesh.weights(point) else { return };
+        for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
+            sum.add(self.positions[node as usize] - middle, force * -weight);
+        }
+        if side.is_in_front(at) {
+            sum.add(self.position(weights.into_iter()) - middle, force);
         }
     }
 

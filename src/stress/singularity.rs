@@ -54,8 +54,15 @@ impl Singularity {
         if problem.supports().all().iter().any(|s| is_there(&s.place)) {
             return Some(Self::PointSupport);
         }
-        let acts =
-            |load: &Load| matches!(load, Load::Force { place, force, .. } if is_there(place) && *force != [0.0; 2]);
+        let acts = |load: &Load| match load {
+            Load::Force { force: [0.0, 0.0], .. } => false,
+            Load::Force { place: Place::At(at), at_point: true, .. } => {
+                let weights = mesh.locate((*at).into()).and_then(|point| mesh.weights(point)).unwrap_or_default();
+                weights.iter().any(|(own, _)| *own == node)
+            }
+            Load::Force { place, .. } => is_there(place),
+            _ => false,
+        };
         if problem.scene_loads().iter().any(acts) {
             return Some(Self::PointForce);
         }

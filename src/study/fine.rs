@@ -357,23 +357,38 @@ fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
     2 * (vertices + on_sides * elements * corners / 2)
 }
 
-/// Returns every point at which a scene has a support or a force, with the key of its table.
-fn points(scene: &Scene) -> Vec<(String, &[f64; 2])> {
-    fn of<'a>(kind: &str, i: usize, place: &'a Place) -> Option<(String, &'a [f64; 2])> {
+/// Point at which a scene has a support or a force.
+struct ScenePoint<'a> {
+    /// Key of its table.
+    key: String,
+    at: &'a [f64; 2],
+    at_point: bool,
+}
+
+impl ScenePoint<'_> {
+    /// Returns `true` if the support or force acts on the node of a mesh that is nearest to the point.
+    fn acts_on_node(&self, mesh: &Mesh) -> bool {
+        !self.at_point || mesh.locate((*self.at).into()).is_none()
+    }
+}
+
+/// Returns every point at which a scene has a support or a force.
+fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
+    fn of<'a>(kind: &str, i: usize, place: &'a Place, at_point: bool) -> Option<ScenePoint<'a>> {
         match place {
-            Place::At(at) => Some((format!("{kind}.{i}"), at)),
+            Place::At(at) => Some(ScenePoint { key: format!("{kind}.{i}"), at, at_point }),
             Place::Edge(_) => None,
         }
     }
-    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place));
+    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, false));
     let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
-        Load::Force { place, .. } => of("load", i, place),
+        Load::Force { place, at_point, .. } => of("load", i, place, *at_point),
         _ => None,
     });
     supports.chain(loads).collect()
 }
 
-/// Returns the points of a simulation's scene, of supports and loads, at which its mesh has no node.
+/// Returns the points of a simulation's scene, of supports and forces that act on nodes, at which its mesh has no node.
 #[must_use]
 pub fn moved_points(simulation: &Simulation) -> Vec<MovedPoint> {
     points_off_nodes(simulation.scene(), simulation.system().mesh())
@@ -383,7 +398,8 @@ pub fn moved_points(simulation: &Simulation) -> Vec<MovedPoint> {
 fn points_off_nodes(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();
-    let distances = points(scene).into_iter().map(|(key, at)| {
+    let on_nodes = points(scene).into_iter().filter(|point| point.acts_on_node(mesh));
+    let distances = on_nodes.map(|ScenePoint { key, at, .. }| {
         let nearest = mesh.node(mesh.nearest_node((*at).into()));
         MovedPoint { key, at: *at, distance: (nearest - Vector2::from(*at)).norm() }
     });
@@ -399,7 +415,7 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
     };
     scene.supports.iter_mut().for_each(|support| to_node(&mut support.place));
     for load in &mut scene.loads {
-        if let Load::Force { place, .. } = load {
+        if let Load::Force { place, at_point: false, .. } = load {
             to_node(place);
         }
     }
@@ -411,7 +427,7 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
 fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let size = [beam.length, beam.height];
     let probes = scene.probes.iter().filter_map(|p| if let Place::At(at) = &p.place { Some(at) } else { None });
-    let points = points(scene).into_iter().map(|(_, at)| at).chain(probes);
+    let points = points(scene).into_iter().map(|point| point.at).chain(probes);
     let points = points.map(|at| straightened(beam, (*at).into())).map(|[along, across]| [along * size[0], across]);
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);

@@ -24,6 +24,7 @@ mod meshes;
 mod moments;
 #[cfg(target_os = "linux")]
 mod path_from_rest;
+mod point_forces;
 mod point_values;
 mod precision;
 mod pulses;

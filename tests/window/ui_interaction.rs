@@ -1370,7 +1370,8 @@ fn open_menu(harness: &mut Harness<'_, Lab>, pos: Pos2) {
 fn the_menu_of_a_point_adds_and_removes_objects() {
     let mut harness = harness("cantilever");
     let before = harness.state().scene().clone();
-    let at = Vector2::new(5.0, 0.0);
+    // Nearer to the top than to the other edges.
+    let at = Vector2::new(5.0, 0.1);
     let count = |lab: &Lab| {
         let scene = lab.scene();
         [scene.loads.len(), scene.supports.len(), scene.probes.len()]
@@ -1378,6 +1379,7 @@ fn the_menu_of_a_point_adds_and_removes_objects() {
     let start = count(harness.state());
     for (number, add, remove) in [
         (0, "Add a force here", "Remove this force"),
+        (0, "Add a moment on top", "Remove the moment on top"),
         (1, "Hold this point", "Remove this support"),
         (2, "Add a probe here", "Remove the probe p1"),
     ] {
@@ -1389,7 +1391,7 @@ fn the_menu_of_a_point_adds_and_removes_objects() {
         more[number] += 1;
         assert_eq!(count(harness.state()), more, "{add}");
         assert_eq!(*harness.state().simulation().status(), Status::Converged, "{add}");
-        assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "it is put on a node");
+        assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "it acts at its point");
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         harness.run();
         assert_eq!(*harness.state().scene(), before, "{add}: undone");

@@ -8,6 +8,7 @@ use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::viewport::arrow::force_range;
+use crate::app::viewport::menu::{acts_at_point, can_carry_moment, force_by_hand, is_free};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
@@ -21,16 +22,6 @@ pub(crate) const SECTION: &str = "Loads and supports";
 
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
-
-/// Returns `true` if a load on this edge can move the body: supports do not fix the whole edge.
-fn is_free(system: &System, edge: &Edge) -> bool {
-    edge.weights().iter().any(|&(node, _)| system.pattern().fixed(node) != [true, true])
-}
-
-/// Returns `true` if the edge can carry a moment and rotate under it.
-fn can_carry_moment(system: &System, edge: &Edge) -> bool {
-    edge.is_straight() && is_free(system, edge)
-}
 
 /// Returns the edge for a new load: the edge of the scene's first force, or else the first edge that can carry the
 /// load.
@@ -224,7 +215,9 @@ pub(super) fn show(
                 scene.loads.remove(i);
                 state.discard_force(i);
             }
-            (EdgeChange::Move(to), Load::Force { place, .. }) => *place = to,
+            (EdgeChange::Move(to), Load::Force { place, at_point: kind, .. }) => {
+                (*kind, *place) = (acts_at_point(system.mesh(), &to), to);
+            }
             (EdgeChange::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
             _ => {}
         }
@@ -316,7 +309,7 @@ fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
     let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
     if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
         let [usual, _] = force_range(OpeningLoads::of(input.original), &scene.material, input.simulation.system());
-        scene.loads.push(Load::force(place, [0.0, -usual]));
+        scene.loads.push(force_by_hand(input.simulation.system().mesh(), place, [0.0, -usual]));
     }
     scene
 }

@@ -3,6 +3,7 @@
 use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
+use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::boxed_text;
@@ -107,8 +108,19 @@ pub(crate) fn force_range(opening: OpeningLoads, material: &Material, system: &S
     [usual, largest_force(material, system).max(MIN_SPAN * usual)]
 }
 
-/// Returns the point of application of a load: the middle of its edge, or its node; `None` if the edge does not exist.
-pub(crate) fn load_point(mesh: &Mesh, positions: &[Vector2<f64>], place: &Place) -> Option<Vector2<f64>> {
+/// Returns the point of application of a load or a support: the middle of its edge, its node, or its point of the body;
+/// `None` if the edge does not exist.
+pub(crate) fn point_of_application(
+    mesh: &Mesh,
+    positions: &[Vector2<f64>],
+    place: &Place,
+    at_point: bool,
+) -> Option<Vector2<f64>> {
+    if let (Place::At(at), true) = (place, at_point)
+        && let Some(point) = mesh.locate((*at).into())
+    {
+        return probe::place(mesh, positions, point);
+    }
     let nodes = match place {
         Place::Edge(name) => mesh.edge_nodes(name)?,
         Place::At(at) => vec![mesh.nearest_node((*at).into())],
@@ -158,8 +170,8 @@ impl ForceArrows<'_> {
         let scale = scale(usual, projection.rect.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
-            let Load::Force { place, force, .. } = of else { return None };
-            let from = projection.point(load_point(mesh, self.positions, place)?);
+            let Load::Force { place, at_point, force, .. } = of else { return None };
+            let from = projection.point(point_of_application(mesh, self.positions, place, *at_point)?);
             let (magnitude, degrees) = polar_form(*force);
             let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
             let direction = vec2(x as f32, -y as f32);

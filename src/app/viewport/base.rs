@@ -5,8 +5,8 @@ use egui::{Color32, Painter, Pos2, Stroke};
 use nalgebra::Vector2;
 
 use crate::app::language::tr;
-use crate::app::viewport::arrow::load_point;
-use crate::app::viewport::menu::rounded;
+use crate::app::viewport::arrow::point_of_application;
+use crate::app::viewport::menu::{acts_at_point, rounded};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
@@ -70,10 +70,11 @@ impl Bases<'_> {
     pub(crate) fn all(&self) -> Vec<Base> {
         let Scene { loads, supports, probes, sections, .. } = self.scene;
         let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
-            Load::Force { place, .. } => Some((Object::Force(i), self.on_nodes(place)?)),
+            Load::Force { place, at_point, .. } => Some((Object::Force(i), self.applied(place, *at_point)?)),
             _ => None,
         });
-        let supports = (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.on_nodes(&s.place)?)));
+        let supports =
+            (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.applied(&s.place, false)?)));
         let probes = (0..).zip(probes).filter_map(|(i, probe)| match probe.place {
             Place::At(at) => Some((Object::Probe(i), self.drawn(at.into())?)),
             // A probe on an edge usually lies at the arrow of a load, so it has no base.
@@ -85,9 +86,9 @@ impl Bases<'_> {
         all.map(|(object, at)| Base { object, at: self.projection.point(at) }).collect()
     }
 
-    /// Returns the drawn position of a force or a support, m, which acts on nodes.
-    fn on_nodes(&self, place: &Place) -> Option<Vector2<f64>> {
-        load_point(self.mesh(), self.positions, place)
+    /// Returns the drawn point of application of a force or a support, m.
+    fn applied(&self, place: &Place, at_point: bool) -> Option<Vector2<f64>> {
+        point_of_application(self.mesh(), self.positions, place, at_point)
     }
 
     /// Returns the drawn position of a material point, m.
@@ -96,15 +97,15 @@ impl Bases<'_> {
     }
 
     /// Returns the place to which the pointer moves an object, and its drawn position, m: a named edge or a corner near
-    /// the pointer, else the point of the body there; `None` far from the body. Forces and supports act on nodes, so
-    /// that their points are nodes.
+    /// the pointer, else the point of the body there; `None` far from the body. Supports hold nodes, so that their points
+    /// are nodes.
     fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
         let mesh = self.mesh();
         let distance = |at: Vector2<f64>| self.projection.point(at).distance(pointer);
-        let acts_on_nodes = matches!(object, Object::Force(_) | Object::Support(_));
+        let can_be_on_edge = matches!(object, Object::Force(_) | Object::Support(_));
         let named = |name: &String| Place::from(name.as_str());
-        let edges = mesh.edges().keys().filter(|_| acts_on_nodes).map(named);
-        let edges = edges.filter_map(|place| Some((self.on_nodes(&place)?, place))).map(|(at, place)| (place, at));
+        let edges = mesh.edges().keys().filter(|_| can_be_on_edge).map(named);
+        let edges = edges.filter_map(|place| self.applied(&place, false).map(|at| (place, at)));
         let at_node = |n: u32| Some((Place::At(mesh.node(n).into()), *self.positions.get(n as usize)?));
         let corners = mesh.edges().values().flat_map(|edge| ends(edge));
         let near = edges.chain(corners.filter_map(at_node)).filter(|(_, at)| distance(*at) <= NEAR);
@@ -115,7 +116,7 @@ impl Bases<'_> {
         let world = self.projection.camera.to_world([f64::from(from_center.x), f64::from(from_center.y)]);
         let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
-        if acts_on_nodes {
+        if matches!(object, Object::Support(_)) {
             return at_node(mesh.nearest_node(rest));
         }
         let rest = rounded(self.system, rest);
@@ -128,7 +129,9 @@ impl Bases<'_> {
         let mut scene = self.scene.clone();
         match object {
             Object::Force(i) => match scene.loads.get_mut(i)? {
-                Load::Force { place: own, .. } => *own = place,
+                Load::Force { place: own, at_point: kind, .. } => {
+                    (*kind, *own) = (acts_at_point(self.mesh(), &place), place);
+                }
                 _ => return None,
             },
             Object::Support(i) => scene.supports.get_mut(i)?.place = place,

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Painter, Pos2, Vec2};
 
-use crate::app::viewport::arrow::{Arrow, ForceArrows, NEAR, is_seen, load_point};
+use crate::app::viewport::arrow::{Arrow, ForceArrows, NEAR, is_seen, point_of_application};
 use crate::app::viewport::moment_arrow::{MomentArrow, moment_range};
 use crate::app::viewport::projection::Projection;
 use crate::scene::{Load, Place};
@@ -140,7 +140,9 @@ impl ForceArrows<'_> {
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let moment_arrows = shown.filter_map(|(load, of)| {
             let Load::Moment { edge, moment, .. } = of else { return None };
-            let center = projection.point(load_point(mesh, self.positions, &Place::from(edge.as_str()))?);
+            let edge = Place::from(edge.as_str());
+            let center = point_of_application(mesh, self.positions, &edge, false)?;
+            let center = projection.point(center);
             center.is_finite().then(|| MomentArrow::new(load, center, *moment, usual))
         });
         moment_arrows.collect()

@@ -4,24 +4,33 @@ use egui::{Response, Ui};
 use nalgebra::Vector2;
 
 use crate::app::language::{fill, tr};
-use crate::assembly::System;
-use crate::mesh::{axis_angle, straightened};
+use crate::assembly::{Edge, System};
+use crate::mesh::{Mesh, Segment, axis_angle, straightened};
 use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
 
 /// Entry of the menu: its text, and the scene that it leads to.
 type MenuEntry = (String, Scene);
 
+/// Magnitudes of new loads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct UsualLoads {
+    /// Force, N.
+    pub force: f64,
+    /// Moment, N m.
+    pub moment: f64,
+}
+
 /// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the scene that
-/// was chosen. Objects within `near`, m, can be removed; a new force has the magnitude `usual`, N.
+/// was chosen. Objects within `near`, m, can be removed.
 pub(crate) fn show(
     response: &Response,
     (scene, system): (&Scene, &System),
     (at, near): (Vector2<f64>, f64),
-    usual: f64,
+    usual: UsualLoads,
 ) -> Option<Scene> {
     let mut chosen = None;
     response.context_menu(|ui: &mut Ui| {
-        let entries = additions(scene, system, at, usual).into_iter().chain(removals(scene, at, near));
+        let entries = additions(scene, system, at, usual).into_iter().chain(removals(scene, system, at, near));
         for (text, edited) in entries {
             if ui.button(text).clicked() {
                 chosen = Some(edited);
@@ -39,17 +48,60 @@ fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
     scene
 }
 
-/// Returns the entries that add an object. Forces and supports act on nodes, so they are put on the nearest one.
-fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: f64) -> [MenuEntry; 4] {
+/// Returns `true` if a force that is put at a place by hand acts at a point without a node.
+pub(crate) fn acts_at_point(mesh: &Mesh, place: &Place) -> bool {
+    matches!(place, Place::At(at) if mesh.node(mesh.nearest_node((*at).into())) != Vector2::from(*at))
+}
+
+/// Returns a force, N, that is put at a place by hand.
+pub(crate) fn force_by_hand(mesh: &Mesh, place: Place, force: [f64; 2]) -> Load {
+    Load::Force { at_point: acts_at_point(mesh, &place), place, force, pulse: None }
+}
+
+/// Returns `true` if a load on this edge can move the body: supports do not fix the whole edge.
+pub(crate) fn is_free(system: &System, edge: &Edge) -> bool {
+    edge.weights().iter().any(|&(node, _)| system.pattern().fixed(node) != [true, true])
+}
+
+/// Returns `true` if the edge can carry a moment and rotate under it.
+pub(crate) fn can_carry_moment(system: &System, edge: &Edge) -> bool {
+    edge.is_straight() && is_free(system, edge)
+}
+
+/// Returns the name of the edge nearest to a point, m, that can carry a moment.
+fn nearest_edge_for_moment(system: &System, at: Vector2<f64>) -> Option<&str> {
+    let mesh = system.mesh();
+    let distance = |segment: &Segment| {
+        let [a, b] = segment.ends().map(|node| mesh.node(node));
+        let along = ((at - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+        (a + (b - a) * along - at).norm()
+    };
+    let edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
+    let distances = edges.filter_map(|name| {
+        let nearest = mesh.edges().get(name)?.iter().map(distance).fold(f64::INFINITY, f64::min);
+        Some((name, nearest))
+    });
+    distances.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(name, _)| name)
+}
+
+/// Returns the entries that add an object. A support holds nodes, so it is put on the nearest one.
+fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: UsualLoads) -> Vec<MenuEntry> {
     let mesh = system.mesh();
     let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
-    [
-        ("Add a force here", edited(scene, |scene| scene.loads.push(Load::force(node, [0.0, -usual])))),
+    let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual.force]);
+    let mut entries = [
+        ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
         ("Add a probe here", with_probe(scene, system, at)),
         ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, at))))),
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
+    .to_vec();
+    if let Some(edge) = nearest_edge_for_moment(system, at) {
+        let text = fill!("Add a moment on %{edge}", edge = tr(edge));
+        entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual.moment)))));
+    }
+    entries
 }
 
 /// Returns the scene with a probe at a point.
@@ -83,7 +135,7 @@ pub(crate) fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// Returns the entries that remove an object at a point near `at`.
-fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
+fn removals(scene: &Scene, system: &System, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
     let is_near = |place: &Place| match place {
         Place::At(point) => (Vector2::from(*point) - at).norm() <= near,
         Place::Edge(_) => false,
@@ -96,6 +148,14 @@ fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
     let forces = scene.loads.iter().enumerate().filter(|(_, load)| is_near_force(load));
     let forces =
         forces.map(|(i, _)| (tr("Remove this force").to_owned(), edited(scene, |scene| _ = scene.loads.remove(i))));
+    let edge = nearest_edge_for_moment(system, at);
+    let moments = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
+        Load::Moment { edge: own, .. } if edge == Some(own) => {
+            let text = fill!("Remove the moment on %{edge}", edge = tr(own));
+            Some((text, edited(scene, |scene| _ = scene.loads.remove(i))))
+        }
+        _ => None,
+    });
     let supports = scene.supports.iter().enumerate().filter(|(_, support)| is_near(&support.place));
     let supports = supports
         .map(|(i, _)| (tr("Remove this support").to_owned(), edited(scene, |scene| _ = scene.supports.remove(i))));
@@ -103,5 +163,5 @@ fn removals(scene: &Scene, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
     let sections = scene.sections.iter().enumerate().filter(|(_, line)| is_on_line(line));
     let sections = sections
         .map(|(i, _)| (tr("Remove this section").to_owned(), edited(scene, |scene| _ = scene.sections.remove(i))));
-    probes.chain(forces).chain(supports).chain(sections).collect()
+    probes.chain(forces).chain(moments).chain(supports).chain(sections).collect()
 }

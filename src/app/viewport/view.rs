@@ -13,6 +13,8 @@ use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
+use crate::app::viewport::menu::UsualLoads;
+use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{Axes, CardRequest};
@@ -412,7 +414,9 @@ impl BodyView {
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
         let opening = OpeningLoads::of(&content.session.document().original);
-        let [usual, _] = force_range(opening, &scene.material, system);
+        let [force, _] = force_range(opening, &scene.material, system);
+        let [moment, _] = moment_range(opening, &scene.material, system);
+        let usual = UsualLoads { force, moment };
         menu::show(response, (scene, system), (at, NEAR / self.camera().scale), usual)
     }
 
