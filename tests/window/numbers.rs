@@ -283,7 +283,7 @@ fn settings_have_the_errors_of_study() {
         assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));
         let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
         let bound: f64 = row[column("at_most_percent")].parse().unwrap();
-        (format!("{time:>8} {:>8}  {}", bound_percent(bound), m.setting), bound)
+        (format!("{time:>7} {:>7}  {}", bound_percent(bound), m.setting), bound)
     });
     let texts: Vec<(String, f64)> = texts.collect();
     let mut lab = lab_of("article", scene.clone());
@@ -294,7 +294,7 @@ fn settings_have_the_errors_of_study() {
     let listed: Vec<&String> = buttons.0.iter().filter(|text| text.contains(" %  ")).collect();
     assert!(listed.len() > 3, "{listed:?}");
     for label in listed {
-        assert!(texts.iter().any(|(text, bound)| text == label && *bound <= 1.0), "{label}: {texts:?}");
+        assert!(texts.iter().any(|(text, bound)| text == label && *bound <= 1.0), "{label} is not in the table");
     }
     // The table of Learn.
     let mut lab = harness.into_state();

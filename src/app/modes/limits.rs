@@ -416,7 +416,11 @@ impl<'a> StripChart<'a> {
         ui.painter().line_segment([pos2(x, self.curve.top()), pos2(x, self.strips.bottom())], Stroke::new(2.0, color));
         let half = 60.0_f32.min(0.5 * self.strips.width());
         let at = x.clamp(self.strips.left() + half - self.names, self.strips.right() - half + 24.0);
-        self.text(ui, pos2(at, self.curve.top() - 1.0), Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
+        // In a low window the strips take the room of the text.
+        if self.strips.top() >= self.curve.top() {
+            let at = pos2(at, self.curve.top() - 1.0);
+            self.text(ui, at, Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
+        }
         if let (Some(up), Some(u)) = (self.up(), displacement.filter(|u| *u > 0.0)) {
             ui.painter().circle_stroke(pos2(x, up.place(u) as f32), 5.0, Stroke::new(2.0, color));
         }

@@ -31,6 +31,10 @@ const DRAWER_SHARE: f32 = 0.45;
 
 /// Height of the status under a low view, points.
 const STATUS_LINE: f32 = 34.0;
+/// In a view narrower than this, points, the status is not beside the body.
+const STATUS_WIDTH: f32 = 640.0;
+/// Height of a view under a card of Learn, points, below which the card shows a good status.
+const LESSON_VIEW: f32 = 300.0;
 
 impl Lab {
     /// Shows the user interface and performs the user's actions. The body itself is drawn by another pass, under the
@@ -291,8 +295,12 @@ impl Lab {
 
     /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
-        let has_line =
-            self.desk.view.bars && self.lesson.is_none() && ui.available_height() < STATUS_VIEW + STATUS_LINE;
+        let (width, height) = (ui.available_width(), ui.available_height());
+        let is_small = match self.lesson {
+            None => height < STATUS_VIEW + STATUS_LINE,
+            Some(_) => width < STATUS_WIDTH && height >= LESSON_VIEW,
+        };
+        let has_line = self.desk.view.bars && is_small;
         if has_line {
             self.status_line(ui, actions);
         }
@@ -415,10 +423,10 @@ impl Lab {
         const WIDEST_NARROW: f32 = 250.0;
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
-        let narrow = rect.width() < 640.0;
+        let narrow = rect.width() < STATUS_WIDTH;
         let (text, bad) = diagnosis::summary(&input);
         // A card that leaves the body little room shows a good status itself.
-        let is_tight = self.lesson.is_some() && rect.height() < 300.0;
+        let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
         let shows_reasons = self.desk.view.why;
         let is_good = !(bad || diagnosis::is_stale(&input));
         if !shows_reasons && (has_line || is_tight && is_good) {

@@ -45,9 +45,6 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
             Some(motion) => of_motion(&palette, input, motion).into(),
             None => of_solve(&palette, input, errors),
         };
-        for entry in entries {
-            number(ui, &palette, entry, wide);
-        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let has_sections = !input.scene.sections.is_empty() && Drawer::Section.suits(input.scene);
             for drawer in std::iter::once(Drawer::of(input.scene)).chain(has_sections.then_some(Drawer::Section)) {
@@ -59,9 +56,16 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
                     actions.push(Action::Toggle(Toggle::Drawer(drawer)));
                 }
             }
-            if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
-                sparkline(ui, &palette, input);
-            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                for entry in entries {
+                    number(ui, &palette, entry, wide);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
+                        sparkline(ui, &palette, input);
+                    }
+                });
+            });
         });
     });
 }

@@ -1,5 +1,6 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::app::viewport::probe;
@@ -27,6 +28,7 @@ use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
 use crate::section::{Section, SectionForces};
 use crate::simulation::SupportReaction;
+use crate::study::Reference;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
@@ -592,6 +594,16 @@ pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
         mesh.add_colored_rect(strip, Color32::from_rgb(r, g, b));
     }
     painter.add(mesh);
+}
+
+/// Returns the outline of a reference solution that is drawn with a multiple of its displacement, m.
+pub(crate) fn magnified_outline(reference: &Reference, factor: f64) -> Cow<'_, [Vec<Vector2<f64>>]> {
+    if factor == 1.0 {
+        return Cow::Borrowed(&reference.outline);
+    }
+    let point = |(rest, place): (&Vector2<f64>, &Vector2<f64>)| rest + (place - rest) * factor;
+    let lines = reference.rest_outline.iter().zip(&reference.outline);
+    lines.map(|(rest, line)| rest.iter().zip(line).map(point).collect()).collect()
 }
 
 /// Returns the label of a body that is drawn with a multiple of its displacement.

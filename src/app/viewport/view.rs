@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
-use crate::app::view_options::{Magnification, Mode, ViewOptions};
+use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::arrow::{ForceArrows, force_range};
 use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
@@ -38,6 +38,8 @@ pub(crate) const STATUS_VIEW: f32 = 526.0;
 const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
 /// Margins above a card in a low view: room for the arrow of the largest load of its slider.
 const LOW_CARD_MARGINS: Margins = Margins { top: 50.0, bottom: 80.0, ..LOW_MARGINS };
+/// Width of a low view from which line key and colour bar share a row, points.
+const ONE_ROW: f64 = 560.0;
 /// Margins under the rows at the top of a low view.
 const LOW_MARGINS: Margins = Margins { sides: 60.0, top: TOP_ROWS_HEIGHT as f64, bottom: 30.0 };
 
@@ -287,12 +289,11 @@ impl BodyView {
         self.body.color(visuals, content.options.field);
     }
 
-    /// Returns the factor of the drawn displacement: 1 outside the mode Explore, in animations and while the body is
+    /// Returns the factor of the drawn displacement: 1 under a card of Learn, in animations and while the body is
     /// grabbed.
     fn magnification_of(&mut self, simulation: &Simulation, content: &Content<'_>) -> f64 {
         let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        let is_wanted = content.options.mode == Mode::Explore && content.card.is_none();
-        if !is_wanted || is_grabbed || content.animation.is_some() {
+        if content.card.is_some() || is_grabbed || content.animation.is_some() {
             return 1.0;
         }
         let (choice, moves) = (content.options.magnification, content.session.is_motion());
@@ -338,13 +339,8 @@ impl BodyView {
 
     /// Returns the drawn outline of the reference solution, m; empty while the drawn body has another load.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
-        let Some(reference) = content.exact().filter(|_| !self.shows_converged) else { return Cow::Borrowed(&[]) };
-        if self.magnification == 1.0 {
-            return Cow::Borrowed(&reference.outline);
-        }
-        let point = |(rest, place): (&Vector2<f64>, &Vector2<f64>)| rest + (place - rest) * self.magnification;
-        let lines = reference.rest_outline.iter().zip(&reference.outline);
-        lines.map(|(rest, line)| rest.iter().zip(line).map(point).collect()).collect()
+        let reference = content.exact().filter(|_| !self.shows_converged);
+        reference.map(|reference| overlay::magnified_outline(reference, self.magnification)).unwrap_or_default()
     }
 
     /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
@@ -716,6 +712,8 @@ impl BodyView {
 /// Returns the margins around a box that do not depend on the loads.
 fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
     match (content.card.is_some(), overlay::has_legend_on_top(view[1] as f32)) {
+        // The first view is a point, because nothing has been laid out.
+        (true, true) if view[0] > 1.0 && view[0] < ONE_ROW => Margins { top: LOW_MARGINS.top, ..LOW_CARD_MARGINS },
         (true, true) => LOW_CARD_MARGINS,
         (true, false) => CARD_MARGINS,
         (false, true) => LOW_MARGINS,

@@ -84,7 +84,7 @@ impl NumberField {
                             }
                             self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
                         });
-                    let size = egui::vec2(VALUE_WIDTH, ui.spacing().interact_size.y);
+                    let size = egui::vec2(VALUE_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
                     if response.changed() {
                         edited = Some(if response.dragged() { three_digits(typed) } else { typed });

@@ -5,7 +5,7 @@ pub(crate) mod study_task;
 
 use crate::app::session::facts::without_settings;
 use crate::app::widgets::plot::{X_AXIS, marker, segments};
-use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui};
+use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui, vec2};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, Polygon, Text,
     VLine,
@@ -161,10 +161,20 @@ impl Budget {
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
         let width = ui.available_width();
+        if width < SIDE_BY_SIDE {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                settings(ui, &budget, limits, messages, actions);
+                list(ui, &budget, LOW_LIST, actions);
+                legend(ui, moves);
+                ui.allocate_ui(vec2(ui.available_width(), LOW_PLOT), |ui| plot(ui, &budget));
+            });
+            return;
+        }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 ui.set_width(LIST_WIDTH.min(LIST_SHARE * width));
                 settings(ui, &budget, limits, messages, actions);
+                list(ui, &budget, f32::INFINITY, actions);
             });
             ui.vertical(|ui| {
                 legend(ui, moves);
@@ -196,6 +206,11 @@ struct BudgetView<'a> {
 /// Width of the list, points, and its largest fraction of the width shared with the plot.
 const LIST_WIDTH: f32 = 384.0;
 const LIST_SHARE: f32 = 0.5;
+/// Smallest width of the list beside the plot, points; in a narrower window the plot is under the list.
+const SIDE_BY_SIDE: f32 = 560.0;
+/// Heights of the list and of the plot under it, points.
+const LOW_LIST: f32 = 84.0;
+const LOW_PLOT: f32 = 200.0;
 
 fn settings(
     ui: &mut Ui,
@@ -279,17 +294,17 @@ fn settings(
             None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
         });
     });
-    list(ui, budget, actions);
 }
 
-/// Shows the settings that meet the demand, fastest first; a click applies one.
-fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
+/// Shows the settings that meet the demand, fastest first, in a list of at most `height`, points; a click applies one.
+fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Action>) {
     let meeting = &budget.meeting;
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let row_height = ui.spacing().interact_size.y;
-    ScrollArea::vertical().auto_shrink([false, false]).show_rows(ui, row_height, meeting.len(), |ui, rows| {
+    let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
+    area.show_rows(ui, row_height, meeting.len(), |ui, rows| {
         for m in meeting.get(rows).unwrap_or_default() {
-            let text = format!("{:>8} {:>8}  {}", milliseconds(m), bound_percent(error(m)), m.text());
+            let text = format!("{:>7} {:>7}  {}", milliseconds(m), bound_percent(error(m)), m.text());
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
@@ -307,10 +322,11 @@ fn milliseconds(m: &Choice) -> String {
     engineering(two_digits(1e-3 * m.milliseconds()), "s")
 }
 
-/// Returns a tick at every power of ten.
-fn decades(input: GridInput) -> Vec<GridMark> {
+/// Returns a tick at every `step`th power of ten.
+fn decades(input: GridInput, step: usize) -> Vec<GridMark> {
     let (low, high) = input.bounds;
-    (low.ceil() as i64..=high.floor() as i64).map(|e| GridMark { value: e as f64, step_size: 1.0 }).collect()
+    let marks = (low.ceil() as i64..=high.floor() as i64).step_by(step);
+    marks.map(|e| GridMark { value: e as f64, step_size: step as f64 }).collect()
 }
 
 fn decade_text(mark: GridMark) -> String {
@@ -345,6 +361,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     const BUDGET_Y_AXIS: f32 = 62.0;
     /// Space beyond the outermost points, in decades.
     const EDGE: f64 = 0.2;
+    /// Width of a tick label of the axis of times, points.
+    const LABEL: f32 = 40.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
@@ -362,6 +380,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         Analysis::Static => "time of a solve, ms",
         Analysis::Dynamic => "time of a frame at 60 Hz, ms",
     };
+    let room = (ui.available_width() - BUDGET_Y_AXIS).max(LABEL);
+    let step = ((x[1] - x[0]) as f32 * LABEL / room).ceil().max(1.0) as usize;
     Plot::new("budget")
         .custom_x_axes(vec![
             AxisHints::new_x()
@@ -373,8 +393,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         ])
         .y_axis_label(tr("error, %"))
         .y_axis_min_width(BUDGET_Y_AXIS)
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
+        .x_grid_spacer(move |input| decades(input, step))
+        .y_grid_spacer(|input| decades(input, 1))
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)

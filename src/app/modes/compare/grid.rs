@@ -21,6 +21,12 @@ const HEADER: f32 = 60.0;
 const KEY: f32 = 26.0;
 /// Smallest width of a pane in a row of three, points.
 const NARROWEST: f32 = 290.0;
+/// Smallest width of a pane beside another, points: its pickers are legible.
+const MIN_WIDTH: f32 = 260.0;
+/// Smallest height of a body above another or beside it, points.
+const MIN_HEIGHT: f32 = 120.0;
+/// Height of the row of tabs, points.
+const TABS: f32 = 34.0;
 
 /// Named settings of all panes.
 pub(super) struct Preset<S> {
@@ -66,18 +72,29 @@ pub(super) fn close_button(ui: &mut Ui, number: usize) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), close).inner
 }
 
-/// Areas of the panes and of the key.
+/// Areas of the visible panes and of the key.
 pub(super) struct Grid {
-    pub cells: Vec<Rect>,
+    /// Number and area of every visible pane.
+    pub cells: Vec<(usize, Rect)>,
+    /// Area of the tabs, of which one pane is visible; `None` if all are.
+    pub tabs: Option<Rect>,
     /// Area of the key under the panes.
     pub key: Rect,
 }
 
 impl Grid {
-    /// Divides a rectangle among `panes` panes, side by side or in two rows.
-    pub(super) fn new(whole: Rect, panes: usize) -> Self {
+    /// Divides a rectangle among `panes` panes, side by side or in two rows; or, where these would be too small, into
+    /// a row of tabs and the pane `front`.
+    pub(super) fn new(whole: Rect, panes: usize, front: usize) -> Self {
         let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
-        Self { cells: cells(Rect::from_min_max(whole.min, key.right_top()), panes), key }
+        let rest = Rect::from_min_max(whole.min, key.right_top());
+        let cells = cells(rest, panes);
+        let is_small = |cell: &Rect| cell.width() < MIN_WIDTH || body_place(*cell).height() < MIN_HEIGHT;
+        if !cells.iter().any(is_small) {
+            return Self { cells: (0..).zip(cells).collect(), tabs: None, key };
+        }
+        let (tabs, cell) = rest.split_top_bottom_at_y((rest.top() + TABS).min(rest.bottom()));
+        Self { cells: vec![(front, cell)], tabs: Some(tabs), key }
     }
 }
 

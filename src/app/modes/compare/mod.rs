@@ -14,8 +14,9 @@ use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
 use crate::app::task::thread::POLL;
-use crate::app::view_options::ViewOptions;
+use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::{Icon, icon_button};
@@ -27,6 +28,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Place, Scene};
 use crate::sentence::Sentence;
+use crate::simulation::Simulation;
 use crate::study::{Reference, Setting};
 
 mod grid;
@@ -265,9 +267,10 @@ impl Compare {
     /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &CompareInput<'_>) -> Interaction {
         self.advance(ui.ctx(), input);
+        self.magnify(input);
         let mut known = self.equations(&input.common.own);
         for pane in &mut self.panes.list {
-            pane.update_display(input.common.view, ui.visuals(), &known);
+            pane.update_display(input.common.view, self.panes.magnification, ui.visuals(), &known);
             known.extend(pane.equations());
         }
         let range = self.share_colors(input.common.view);
@@ -275,14 +278,26 @@ impl Compare {
         let grid = self.panes.lay_out(ui);
         self.fit_camera(ui, input);
         let reference = input.reference.filter(|_| input.common.view.exact);
-        let exact: &[_] = reference.map_or(&[], |reference| &reference.outline);
-        let interaction = self
-            .panes
-            .show(ui, &grid.cells, (&input.common, exact), |panes, ui, number| header(panes, ui, number, input));
+        let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
+        let exact = exact.unwrap_or_default();
+        let interaction =
+            self.panes.show(ui, &grid, (&input.common, &exact), |panes, ui, number| header(panes, ui, number, input));
         self.show_values(ui, input.common.view);
-        key(ui, grid.key, input.common.view, range);
+        key(ui, grid.key, input.common.view, (range, self.panes.magnification));
         ui.advance_cursor_after_rect(whole);
         interaction
+    }
+
+    /// Sets the common factor of the drawn displacement; the largest displacement of the results counts.
+    fn magnify(&mut self, input: &CompareInput<'_>) {
+        let (choice, size) = (input.common.view.magnification, input.common.own.system().size());
+        let largest = || {
+            let sound = self.panes.list.iter().filter(|pane| pane.solve.is_sound());
+            let results = sound.filter_map(|pane| pane.solve.displayed());
+            results.flat_map(Simulation::displacement).map(|u| u.norm()).fold(0.0, f64::max)
+        };
+        self.panes.magnification =
+            choice.factor(size, if choice == Magnification::Automatic { largest() } else { 0.0 });
     }
 
     /// Shows the values at the point of the body under the pointer, in every pane.
@@ -317,7 +332,8 @@ impl Compare {
         let controller = self.panes.controller.get_or_insert_with(|| CameraController::new(rest));
         if !holds {
             let reference = input.reference.filter(|_| input.common.view.exact);
-            let mut bounds = reference.into_iter().flat_map(|reference| &reference.outline).flatten().fold(rest, grow);
+            let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
+            let mut bounds = exact.iter().flat_map(|lines| lines.iter()).flatten().fold(rest, grow);
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.list.iter().filter(|pane| pane.solve.is_sound()).partition(|pane| is_linear(pane));
@@ -357,7 +373,7 @@ impl Compare {
 fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<'_>) -> PaneChange {
     let (pane, scene) = (panes.list.get(number)?, input.common.scene);
     let palette = Palette::new(ui.visuals());
-    let color = pane.setting.of(scene).method.map_or(palette.text, |method| palette.method(method));
+    let color = pane.color(scene, &palette);
     let widths = ([0.38, 0.25, 0.37], 120.0);
     let change = panes.show_pickers(ui, (number, color), &input.common, widths, |ui, name, widths, setting| {
         let entries = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
@@ -438,24 +454,27 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     response.on_hover_text(format!("{text}\n{error_tip}\n{}", tr("Time and iterations: of a solve from rest")));
 }
 
-/// Paints the key of lines and colours for all panes.
-fn key(ui: &Ui, rect: Rect, view: &ViewOptions, range: [f64; 2]) {
+/// Paints the key of lines and colours for all panes, with their factor of the displacement.
+fn key(ui: &Ui, rect: Rect, view: &ViewOptions, (range, magnification): ([f64; 2], f64)) {
     let palette = Palette::new(ui.visuals());
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(SMALL);
     let middle = rect.center().y;
     let mut x = rect.left() + 12.0;
-    let mut entry = |text: &str, mark: LegendMark, color: Color32| {
-        mark.paint(&painter, pos2(x, middle), color);
-        let at = pos2(x + LegendMark::WIDTH + 6.0, middle);
-        let place = painter.text(at, Align2::LEFT_CENTER, tr(text), font.clone(), palette.secondary);
+    let mut entry = |text: &str, mark: Option<LegendMark>, color: Color32| {
+        mark.inspect(|mark| mark.paint(&painter, pos2(x, middle), color));
+        let at = pos2(if mark.is_some() { x + LegendMark::WIDTH + 6.0 } else { x }, middle);
+        let place = painter.text(at, Align2::LEFT_CENTER, text, font.clone(), palette.secondary);
         x = place.right() + 16.0;
     };
+    if magnification != 1.0 {
+        entry(&overlay::magnified(magnification), None, palette.text);
+    }
     if view.exact {
-        entry("reference", LegendMark::Dashes, palette.exact);
+        entry(tr("reference"), Some(LegendMark::Dashes), palette.exact);
     }
     if view.rest_outline {
-        entry("rest", LegendMark::Outline, palette.rest);
+        entry(tr("rest"), Some(LegendMark::Outline), palette.rest);
     }
     grid::color_key(ui, rect, x, view, range);
 }

@@ -1,7 +1,7 @@
 //! Comparison of two to four integrators, elements or meshes in motion side by side: one load, one clock, one camera,
 //! one colour range.
 
-use egui::{Panel, Rect, RichText, Role, Ui, WidgetInfo};
+use egui::{Color32, Panel, Rect, RichText, Role, Ui, WidgetInfo};
 use nalgebra::Vector2;
 
 use super::grid::{self, Preset, grow};
@@ -55,6 +55,10 @@ impl ComparedPane for MotionPane {
 
     fn own_setting(&self) -> PaneSetting {
         self.setting
+    }
+
+    fn color(&self, scene: &Scene, palette: &Palette) -> Color32 {
+        palette.integrator(self.setting.integrator.unwrap_or(scene.dynamics.integrator))
     }
 
     fn change_setting(&mut self, setting: PaneSetting) {
@@ -223,7 +227,7 @@ impl MotionCompare {
         for MotionPane { motion, display, .. } in &mut self.panes.list {
             known.extend(motion.equations());
             if let Some(simulation) = motion.simulation() {
-                display.update(simulation, input.view, Some(self.played), &known);
+                display.update(simulation, input.view, 1.0, Some(self.played), &known);
                 known.extend(display.equations(simulation.scene()));
             }
             display.body_mesh.color(ui.visuals(), input.view.field);
@@ -233,7 +237,7 @@ impl MotionCompare {
         let layout = self.panes.lay_out(ui);
         self.fit_camera(ui, input);
         let interaction =
-            self.panes.show(ui, &layout.cells, (input, &[]), |panes, ui, number| header(panes, ui, number, input));
+            self.panes.show(ui, &layout, (input, &[]), |panes, ui, number| header(panes, ui, number, input));
         grid::color_key(ui, layout.key, layout.key.left(), input.view, range);
         ui.advance_cursor_after_rect(whole);
         interaction
@@ -261,7 +265,7 @@ impl MotionCompare {
 fn header(panes: &Panes<MotionPane>, ui: &mut Ui, number: usize, input: &PaneInput<'_>) -> PaneChange {
     let (pane, scene) = (panes.list.get(number)?, input.scene);
     let palette = Palette::new(ui.visuals());
-    let color = palette.integrator(pane.setting.integrator.unwrap_or(scene.dynamics.integrator));
+    let color = pane.color(scene, &palette);
     let widths = ([0.4, 0.18, 0.26], 150.0);
     let change = panes.show_pickers(ui, (number, color), input, widths, |ui, name, widths, setting| {
         let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));

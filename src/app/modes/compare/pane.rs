@@ -1,6 +1,6 @@
 //! Pane of the comparison of equilibria: a solve of the scene with settings of its own, and its display.
 
-use egui::{Pos2, Rect, Stroke, Ui};
+use egui::{Color32, Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::panes::{ComparedPane, Condition, PaneDisplay};
@@ -11,6 +11,7 @@ use crate::app::task::keyed::Keyed;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
+use crate::app::widgets::palette::Palette;
 use crate::render::Camera;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -135,9 +136,15 @@ impl Pane {
     }
 
     /// Updates the displayed mesh.
-    pub(super) fn update_display(&mut self, view: &ViewOptions, visuals: &egui::Visuals, known: &[Equations]) {
+    pub(super) fn update_display(
+        &mut self,
+        view: &ViewOptions,
+        magnification: f64,
+        visuals: &egui::Visuals,
+        known: &[Equations],
+    ) {
         if let Some(simulation) = self.solve.displayed() {
-            self.display.update(simulation, view, None, known);
+            self.display.update(simulation, view, magnification, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
     }
@@ -157,6 +164,10 @@ impl ComparedPane for Pane {
 
     fn own_setting(&self) -> PaneSetting {
         self.setting
+    }
+
+    fn color(&self, scene: &Scene, palette: &Palette) -> Color32 {
+        self.setting.of(scene).method.map_or(palette.text, |method| palette.method(method))
     }
 
     fn change_setting(&mut self, setting: PaneSetting) {
