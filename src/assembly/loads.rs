@@ -30,11 +30,8 @@ pub struct Loads {
 
 /// Returns the weights of the nodes on which a force at a point acts, in the scene's table `key`; they sum to 1.
 fn force_weights(mesh: &Mesh, at: [f64; 2], at_point: bool, key: &str) -> Result<NodeWeights, Invalid> {
-    let point = mesh.locate(at.into()).filter(|_| at_point);
-    match point.and_then(|point| mesh.weights(point)) {
-        Some(weights) => Ok(weights),
-        None => Ok(vec![(node_at(mesh, at, key)?, 1.0)]),
-    }
+    let weights = if at_point { mesh.weights_at(at.into()) } else { None };
+    weights.map_or_else(|| Ok(vec![(node_at(mesh, at, key)?, 1.0)]), Ok)
 }
 
 /// A moment on a straight edge.

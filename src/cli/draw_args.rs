@@ -54,7 +54,7 @@ pub(super) struct ShotArgs {
     #[arg(long, value_name = "FIELD", default_value = Field::default().id(), value_parser = parse_field)]
     pub field: Field,
     /// Draw the body with a multiple of its displacement: a factor, or `auto` for about a twentieth of the body's size.
-    #[arg(long, value_name = "FACTOR", value_parser = parse_magnification, conflicts_with_all = ["learn", "motion"])]
+    #[arg(long, value_name = "FACTOR", value_parser = parse_magnification, conflicts_with = "learn")]
     pub magnify: Option<app::Magnification>,
     /// Add the load–deflection curve.
     #[arg(long)]

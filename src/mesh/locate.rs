@@ -84,6 +84,11 @@ impl Mesh {
         Some(nodes.iter().copied().zip((self.entry().shape)(point.at)).collect())
     }
 
+    /// Returns the nodes of the element at a rest position, m, as [`Self::weights`] does; `None` outside the body.
+    pub(crate) fn weights_at(&self, at: Vector2<f64>) -> Option<Vec<(u32, f64)>> {
+        self.weights(self.locate(at)?)
+    }
+
     /// Returns the reference coordinates of a rest position, m, in an element; `None` if there are none.
     pub(crate) fn place_in(&self, element: usize, at: Vector2<f64>) -> Option<[f64; 2]> {
         self.invert(self.elements().nth(element)?, &self.nodes, at)

@@ -207,7 +207,7 @@ impl Scene {
     /// use warpbeam::{Load, Scene, Simulation};
     ///
     /// // The cells are 1 m long: there is no node at 3.4 m.
-    /// let scene = Scene::beam(10.0, 1.0).cells(10, 1).clamp("left").point_force([3.4, 0.0], [0.0, -1.0]);
+    /// let scene = Scene::beam(10.0, 1.0).with_cells(10, 1).clamp("left").point_force([3.4, 0.0], [0.0, -1.0]);
     /// assert!(matches!(scene.loads[0], Load::Force { at_point: true, .. }));
     /// let mut beam = Simulation::new(&scene)?;
     /// beam.solve();

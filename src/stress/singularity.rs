@@ -57,8 +57,7 @@ impl Singularity {
         let acts = |load: &Load| match load {
             Load::Force { force: [0.0, 0.0], .. } => false,
             Load::Force { place: Place::At(at), at_point: true, .. } => {
-                let weights = mesh.locate((*at).into()).and_then(|point| mesh.weights(point)).unwrap_or_default();
-                weights.iter().any(|(own, _)| *own == node)
+                mesh.weights_at((*at).into()).is_some_and(|weights| weights.iter().any(|(own, _)| *own == node))
             }
             Load::Force { place, .. } => is_there(place),
             _ => false,

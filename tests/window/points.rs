@@ -199,7 +199,8 @@ fn the_panel_chooses_field_and_magnification() {
 }
 
 /// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. A force or
-/// a probe goes to any point, a force also to a named edge or a corner, a support to a node. A press without a drag opens the card of the point.
+/// a probe goes to any point, a force also to a named edge or a corner, a support to a node. A press without a drag
+/// opens the card of the point.
 #[test]
 fn bases_of_objects_are_dragged_along_the_body() {
     let mut scene = scene("cantilever");

@@ -4,6 +4,9 @@ use egui::{Response, Ui};
 use nalgebra::Vector2;
 
 use crate::app::language::{fill, tr};
+use crate::app::viewport::arrow::force_range;
+use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::{Edge, System};
 use crate::mesh::{Mesh, Segment, axis_angle, straightened};
 use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
@@ -11,26 +14,20 @@ use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
 /// Entry of the menu: its text, and the scene that it leads to.
 type MenuEntry = (String, Scene);
 
-/// Magnitudes of new loads.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct UsualLoads {
-    /// Force, N.
-    pub force: f64,
-    /// Moment, N m.
-    pub moment: f64,
-}
-
 /// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the scene that
-/// was chosen. Objects within `near`, m, can be removed.
+/// was chosen. Objects within `near`, m, can be removed; new loads have the usual magnitude of a scene with the loads
+/// `opening`.
 pub(crate) fn show(
     response: &Response,
     (scene, system): (&Scene, &System),
     (at, near): (Vector2<f64>, f64),
-    usual: UsualLoads,
+    opening: OpeningLoads,
 ) -> Option<Scene> {
     let mut chosen = None;
     response.context_menu(|ui: &mut Ui| {
-        let entries = additions(scene, system, at, usual).into_iter().chain(removals(scene, system, at, near));
+        let edge = nearest_edge_for_moment(system, at);
+        let added = additions(scene, system, (at, edge), opening);
+        let entries = added.into_iter().chain(removals(scene, (at, near), edge));
         for (text, edited) in entries {
             if ui.button(text).clicked() {
                 chosen = Some(edited);
@@ -84,11 +81,18 @@ fn nearest_edge_for_moment(system: &System, at: Vector2<f64>) -> Option<&str> {
     distances.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(name, _)| name)
 }
 
-/// Returns the entries that add an object. A support holds nodes, so it is put on the nearest one.
-fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: UsualLoads) -> Vec<MenuEntry> {
+/// Returns the entries that add an object at a point, or a moment on an edge. A support holds nodes, so it is put on the
+/// nearest one.
+fn additions(
+    scene: &Scene,
+    system: &System,
+    (at, edge): (Vector2<f64>, Option<&str>),
+    opening: OpeningLoads,
+) -> Vec<MenuEntry> {
     let mesh = system.mesh();
     let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
-    let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual.force]);
+    let [usual, _] = force_range(opening, &scene.material, system);
+    let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual]);
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
@@ -97,9 +101,10 @@ fn additions(scene: &Scene, system: &System, at: Vector2<f64>, usual: UsualLoads
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
     .to_vec();
-    if let Some(edge) = nearest_edge_for_moment(system, at) {
+    if let Some(edge) = edge {
+        let [usual, _] = moment_range(opening, &scene.material, system);
         let text = fill!("Add a moment on %{edge}", edge = tr(edge));
-        entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual.moment)))));
+        entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual)))));
     }
     entries
 }
@@ -134,8 +139,8 @@ pub(crate) fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
     if system.mesh().locate(rounded).is_some() { rounded } else { at }
 }
 
-/// Returns the entries that remove an object at a point near `at`.
-fn removals(scene: &Scene, system: &System, at: Vector2<f64>, near: f64) -> Vec<MenuEntry> {
+/// Returns the entries that remove an object at a point near `at`, or a moment on an edge.
+fn removals(scene: &Scene, (at, near): (Vector2<f64>, f64), edge: Option<&str>) -> Vec<MenuEntry> {
     let is_near = |place: &Place| match place {
         Place::At(point) => (Vector2::from(*point) - at).norm() <= near,
         Place::Edge(_) => false,
@@ -148,7 +153,6 @@ fn removals(scene: &Scene, system: &System, at: Vector2<f64>, near: f64) -> Vec<
     let forces = scene.loads.iter().enumerate().filter(|(_, load)| is_near_force(load));
     let forces =
         forces.map(|(i, _)| (tr("Remove this force").to_owned(), edited(scene, |scene| _ = scene.loads.remove(i))));
-    let edge = nearest_edge_for_moment(system, at);
     let moments = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
         Load::Moment { edge: own, .. } if edge == Some(own) => {
             let text = fill!("Remove the moment on %{edge}", edge = tr(own));

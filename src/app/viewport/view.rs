@@ -8,13 +8,11 @@ use nalgebra::Vector2;
 use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
 use crate::app::view_options::{Magnification, ViewOptions};
-use crate::app::viewport::arrow::{ForceArrows, force_range};
+use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::menu::UsualLoads;
-use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{Axes, CardRequest};
@@ -27,6 +25,7 @@ use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{MethodKind, Scene};
 use crate::section::Section;
 use crate::simulation::{Field, Simulation, Status};
+use crate::state::largest;
 use crate::study::{Reference, section_chart};
 
 /// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
@@ -300,7 +299,7 @@ impl BodyView {
         if moves || choice == Magnification::Automatic {
             // A factor that followed a motion would hide it.
             let before = if moves { self.largest_displacement } else { 0.0 };
-            self.largest_displacement = simulation.displacement().iter().map(|u| u.norm()).fold(before, f64::max);
+            self.largest_displacement = before.max(largest(simulation.displacement()));
         }
         choice.factor(simulation.system().size(), self.largest_displacement)
     }
@@ -410,10 +409,7 @@ impl BodyView {
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
         let opening = OpeningLoads::of(&content.session.document().original);
-        let [force, _] = force_range(opening, &scene.material, system);
-        let [moment, _] = moment_range(opening, &scene.material, system);
-        let usual = UsualLoads { force, moment };
-        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), usual)
+        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), opening)
     }
 
     /// Returns the loads of the last frame's arrows.

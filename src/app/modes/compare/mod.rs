@@ -28,7 +28,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Place, Scene};
 use crate::sentence::Sentence;
-use crate::simulation::Simulation;
+use crate::state::largest;
 use crate::study::{Reference, Setting};
 
 mod grid;
@@ -276,10 +276,10 @@ impl Compare {
         let range = self.share_colors(input.common.view);
         let whole = ui.available_rect_before_wrap();
         let grid = self.panes.lay_out(ui);
-        self.fit_camera(ui, input);
         let reference = input.reference.filter(|_| input.common.view.exact);
         let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
         let exact = exact.unwrap_or_default();
+        self.fit_camera(ui, input, &exact);
         let interaction =
             self.panes.show(ui, &grid, (&input.common, &exact), |panes, ui, number| header(panes, ui, number, input));
         self.show_values(ui, input.common.view);
@@ -291,13 +291,11 @@ impl Compare {
     /// Sets the common factor of the drawn displacement; the largest displacement of the results counts.
     fn magnify(&mut self, input: &CompareInput<'_>) {
         let (choice, size) = (input.common.view.magnification, input.common.own.system().size());
-        let largest = || {
-            let sound = self.panes.list.iter().filter(|pane| pane.solve.is_sound());
-            let results = sound.filter_map(|pane| pane.solve.displayed());
-            results.flat_map(Simulation::displacement).map(|u| u.norm()).fold(0.0, f64::max)
-        };
-        self.panes.magnification =
-            choice.factor(size, if choice == Magnification::Automatic { largest() } else { 0.0 });
+        let counts = choice == Magnification::Automatic;
+        let sound = self.panes.list.iter().filter(|pane| counts && pane.solve.is_sound());
+        let results = sound.filter_map(|pane| pane.solve.displayed());
+        let longest = results.map(|body| largest(body.displacement())).fold(0.0, f64::max);
+        self.panes.magnification = choice.factor(size, longest);
     }
 
     /// Shows the values at the point of the body under the pointer, in every pane.
@@ -320,9 +318,9 @@ impl Compare {
         self.panes.share_colors(view, counts)
     }
 
-    /// Fits the camera to all bodies and the reference solution, unless the user has moved it. Panes that have not
-    /// converged are ignored.
-    fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>) {
+    /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user
+    /// has moved it. Panes that have not converged are ignored.
+    fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
         let Some(size) = self.panes.common_size() else { return };
         let (low, high) = input.common.own.system().mesh().bounds();
         let rest = [low, high];
@@ -331,9 +329,7 @@ impl Compare {
         let holds = self.panes.holds();
         let controller = self.panes.controller.get_or_insert_with(|| CameraController::new(rest));
         if !holds {
-            let reference = input.reference.filter(|_| input.common.view.exact);
-            let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
-            let mut bounds = exact.iter().flat_map(|lines| lines.iter()).flatten().fold(rest, grow);
+            let mut bounds = exact.iter().flatten().fold(rest, grow);
             let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
             let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
                 self.panes.list.iter().filter(|pane| pane.solve.is_sound()).partition(|pane| is_linear(pane));
@@ -342,7 +338,8 @@ impl Compare {
             const LARGEST: f64 = 1.5;
             let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
             let with = linear.iter().flat_map(|pane| pane.display.body_mesh.points()).fold(bounds, grow);
-            let known = !others.is_empty() || reference.is_some();
+            let has_reference = input.reference.is_some() && input.common.view.exact;
+            let known = !others.is_empty() || has_reference;
             if !known || size_of(with) < LARGEST * size_of(bounds) {
                 bounds = with;
             }

@@ -57,8 +57,7 @@ pub(super) struct PaneDisplay {
 
 impl PaneDisplay {
     /// Displays the state of a simulation with `magnification` times its displacement; `played` is the playing time of a
-    /// motion, s. The display geometry is taken
-    /// from `known` if it is there.
+    /// motion, s. The display geometry is taken from `known` if it is there.
     pub(super) fn update(
         &mut self,
         simulation: &Simulation,
@@ -321,7 +320,8 @@ impl<P: ComparedPane> Panes<P> {
         if is_closed { Some(None) } else { (setting != before).then_some(Some(setting)) }
     }
 
-    /// Shows the overlays of a pane's body, and the scale bar in the first visible one. Moving the view moves it in all panes.
+    /// Shows the overlays of a pane's body, and the scale bar in the first visible one. Moving the view moves it in all
+    /// panes.
     fn show_body(
         &mut self,
         ui: &Ui,
