@@ -154,7 +154,7 @@ impl ViewUniform {
             Field::MeshError | Field::DisplacementX | Field::StrainX => (0, unit),
             Field::DisplacementY | Field::StrainY => (1, unit),
             Field::ShearStrain => (2, unit),
-            Field::Displacement => (3, unit),
+            Field::Displacement | Field::ReferenceDistance => (3, unit),
             Field::RotationAngle => (4, 1.0),
             Field::LargestStrain => (5, unit),
             Field::LargerPrincipalStrain => (6, unit),

@@ -1,6 +1,6 @@
 //! Field of a state in the form in which it is displayed: components that are interpolated over every element.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 
 use crate::assembly::Kinematics;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -90,15 +90,23 @@ impl Default for InterpolatedField {
 
 impl InterpolatedField {
     /// Computes the field of a simulation's current state.
+    #[cfg(test)]
     pub(crate) fn new(simulation: &Simulation, field: Field, values: PointValues) -> Self {
         let mut new = Self::default();
-        new.update(simulation, field, values);
+        new.update(simulation, field, values, &[]);
         new
     }
 
     /// Computes the field of another state, without allocating if the mesh is the same. A field of elements is never
-    /// recovered at the nodes.
-    pub(crate) fn update(&mut self, simulation: &Simulation, field: Field, values: PointValues) {
+    /// recovered at the nodes. `reference` are the displacements of the reference solution at the nodes, m; without
+    /// them the distance to it has no values.
+    pub(crate) fn update(
+        &mut self,
+        simulation: &Simulation,
+        field: Field,
+        values: PointValues,
+        reference: &[Option<Vector2<f64>>],
+    ) {
         let (problem, state, kinematics) = (simulation.problem(), simulation.state(), simulation.kinematics());
         self.values = field.source(values);
         (self.field, self.material, self.kinematics) = (field, *problem.material(), kinematics);
@@ -107,6 +115,12 @@ impl InterpolatedField {
             simulation.field(field, &mut self.of_elements);
             self.components
                 .extend(self.of_elements.iter().map(|value| [value.unwrap_or(f64::NAN), 0.0, 0.0, 0.0, 0.0]));
+        } else if field == Field::ReferenceDistance {
+            let own = reference.iter().copied().chain(std::iter::repeat(None));
+            self.components.extend(state.displacement().iter().zip(own).map(|(u, own)| {
+                let [x, y] = own.map_or([f64::NAN; 2], |own| (u - own).into());
+                [x, y, 0.0, 0.0, 0.0]
+            }));
         } else if field.is_of_displacement() {
             self.components.extend(state.displacement().iter().map(|u| [u.x, u.y, 0.0, 0.0, 0.0]));
         } else if values == PointValues::Recovered {

@@ -55,6 +55,9 @@ pub enum Field {
     DisplacementX,
     /// Displacement u_y, m.
     DisplacementY,
+    /// Distance of a point from its place in the reference solution, m. A simulation does not know its reference, so
+    /// that this field has no value in it; the window and pictures show it.
+    ReferenceDistance,
     /// Angle of the polar rotation, degrees.
     RotationAngle,
     /// Strain energy density, J/m³.
@@ -65,7 +68,7 @@ pub enum Field {
 
 impl Field {
     /// All fields; those of one kind follow each other.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::VonMises,
         Self::StressX,
         Self::StressY,
@@ -84,6 +87,7 @@ impl Field {
         Self::Displacement,
         Self::DisplacementX,
         Self::DisplacementY,
+        Self::ReferenceDistance,
         Self::RotationAngle,
         Self::EnergyDensity,
         Self::MeshError,
@@ -110,6 +114,7 @@ impl Field {
             Self::Displacement => ("displacement", "displacement", "m"),
             Self::DisplacementX => ("displacement-x", "displacement u_x", "m"),
             Self::DisplacementY => ("displacement-y", "displacement u_y", "m"),
+            Self::ReferenceDistance => ("reference-distance", "distance to the reference", "m"),
             Self::RotationAngle => ("rotation", "rotation angle", "°"),
             Self::EnergyDensity => ("energy-density", "strain energy density", "J/m³"),
             Self::MeshError => ("mesh-error", "mesh error, estimated", "%"),
@@ -139,7 +144,12 @@ impl Field {
     pub fn has_sign(self) -> bool {
         !matches!(
             self,
-            Self::VonMises | Self::LargestStrain | Self::Displacement | Self::EnergyDensity | Self::MeshError
+            Self::VonMises
+                | Self::LargestStrain
+                | Self::Displacement
+                | Self::ReferenceDistance
+                | Self::EnergyDensity
+                | Self::MeshError
         )
     }
 
@@ -152,7 +162,7 @@ impl Field {
     /// Returns `true` if the field follows from the displacement at a point alone.
     #[must_use]
     pub fn is_of_displacement(self) -> bool {
-        matches!(self, Self::Displacement | Self::DisplacementX | Self::DisplacementY)
+        matches!(self, Self::Displacement | Self::DisplacementX | Self::DisplacementY | Self::ReferenceDistance)
     }
 
     /// Computes the field at every quadrature point of a state: element by element in the mesh's order, the points of
@@ -173,6 +183,10 @@ impl Field {
             let points = (0..mesh.element_count()).flat_map(|element| {
                 mesh.entry().points.iter().map(move |point| MaterialPoint { element, at: point.at })
             });
+            if self == Self::ReferenceDistance {
+                values.extend(points.map(|_| None));
+                return;
+            }
             let at = |(node, weight): &(u32, f64)| state.displacement.get(*node as usize).map(|u| u * *weight);
             values.extend(points.map(|point| self.of_vector(mesh.weights(point)?.iter().map(at).sum::<Option<_>>()?)));
             return;
@@ -189,10 +203,10 @@ impl Field {
         values.extend(nodal.nodes().iter().map(|local| self.of(local, material, kinematics)));
     }
 
-    /// Returns the value for a displacement, m; `None` for other fields.
+    /// Returns the value for a displacement, m, or for its distance from that of the reference; `None` for other fields.
     pub(crate) fn of_vector(self, u: Vector2<f64>) -> Option<f64> {
         let value = match self {
-            Self::Displacement => u.x.hypot(u.y),
+            Self::Displacement | Self::ReferenceDistance => u.x.hypot(u.y),
             Self::DisplacementX => u.x,
             Self::DisplacementY => u.y,
             _ => return None,
@@ -224,7 +238,11 @@ impl Field {
             Self::SmallerPrincipalStrain => principal(strain)[1],
             Self::EnergyDensity => material.lame().energy_density(strain),
             Self::RotationAngle => local.rotation.angle().to_degrees(),
-            Self::Displacement | Self::DisplacementX | Self::DisplacementY | Self::MeshError => return None,
+            Self::Displacement
+            | Self::DisplacementX
+            | Self::DisplacementY
+            | Self::ReferenceDistance
+            | Self::MeshError => return None,
         };
         value.is_finite().then_some(value)
     }

@@ -55,7 +55,8 @@ impl PointState {
     #[must_use]
     pub fn field(&self, field: Field) -> Option<f64> {
         let kinematics = if self.is_linear { Kinematics::Linear } else { Kinematics::Corotated };
-        field.of_vector(self.displacement).or_else(|| field.of(&self.local, &self.material, kinematics))
+        let u = Some(self.displacement).filter(|_| field != Field::ReferenceDistance);
+        u.and_then(|u| field.of_vector(u)).or_else(|| field.of(&self.local, &self.material, kinematics))
     }
 }
 

@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::convergence::remaining_error;
+use super::displacement_map::DisplacementMap;
 use super::progress::check;
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
@@ -95,6 +96,8 @@ pub(super) struct Fine {
     pub outline: Vec<Vec<Vector2<f64>>>,
     /// The same at rest, m.
     pub rest_outline: Vec<Vec<Vector2<f64>>>,
+    /// Displacement of every point.
+    pub displacements: DisplacementMap,
     /// Displacement of the first probe by linear theory on the same mesh, m.
     pub linear: Option<Vector2<f64>>,
     /// Points that are not at the places given in the scene.
@@ -203,6 +206,7 @@ pub(super) fn fine(
         errors,
         outline,
         rest_outline,
+        displacements: DisplacementMap::of(&simulation),
         linear: first,
         moved,
         is_polygon: scene.beam.is_none() && has_straight_sides(simulation.system().mesh()),

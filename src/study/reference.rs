@@ -8,6 +8,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::StudyError;
+use super::displacement_map::DisplacementMap;
 use super::fine::{Effort, Fine, MovedPoint, fine};
 use super::progress::check;
 use crate::assembly::System;
@@ -115,6 +116,8 @@ pub struct Reference {
     pub outline: Vec<Vec<Vector2<f64>>>,
     /// The same lines at rest, point by point, m.
     pub(crate) rest_outline: Vec<Vec<Vector2<f64>>>,
+    /// Displacement of every point, which the outlines are of.
+    displacements: DisplacementMap,
     /// Displacement of the first probe by linear theory on a fine mesh, m: its distance from the reference is the error
     /// of linear theory.
     pub linear: Option<Vector2<f64>>,
@@ -239,6 +242,7 @@ impl Reference {
             beam_off_by_percent: None,
             outline: if is_known { fine.outline } else { Vec::new() },
             rest_outline: if is_known { fine.rest_outline } else { Vec::new() },
+            displacements: if is_known { fine.displacements } else { DisplacementMap::default() },
             linear: fine.linear,
             moved: fine.moved,
             is_polygon: fine.is_polygon,
@@ -262,11 +266,12 @@ impl Reference {
                 // Without a bound the error of the fine solution is taken as its distance from the beam.
                 let error = off + own[i].unwrap_or(off);
                 reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
-                if i == 0
-                    && let Some([rest, line]) =
-                        beam.zip(scene.beam.as_ref()).and_then(|(b, beam)| b.outline(beam.height))
-                {
+                let beam = beam.zip(scene.beam.as_ref()).filter(|_| i == 0);
+                if let Some([rest, line]) = beam.and_then(|(b, beam)| b.outline(beam.height)) {
                     (reference.rest_outline, reference.outline) = (vec![rest], vec![line]);
+                }
+                if let Some(displacements) = beam.and_then(|(b, beam)| DisplacementMap::of_beam(&b, beam.height)) {
+                    reference.displacements = displacements;
                 }
             } else if i == 0 {
                 reference.beam_off_by_percent = error_percent(tip, ends[i]);
@@ -286,6 +291,7 @@ impl Reference {
         if !at_tip || ratio > STUBBY {
             return None;
         }
+        let displacements = DisplacementMap::of_beam(&beam?, rectangle.height).unwrap_or_default();
         let [rest, line] =
             beam?.outline(rectangle.height).map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
         Some(Self {
@@ -293,11 +299,18 @@ impl Reference {
             beam_off_by_percent: None,
             outline: line,
             rest_outline: rest,
+            displacements,
             linear: None,
             moved: Vec::new(),
             is_polygon: false,
             unknowns: 0,
         })
+    }
+
+    /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and
+    /// everywhere if there is no outline.
+    pub(crate) fn displacements_at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
+        self.displacements.at(points)
     }
 
     /// Returns the references of the probes, in the scene's order; `None` if a probe does not move, or no bound of its

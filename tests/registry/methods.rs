@@ -105,7 +105,7 @@ fn extremes_stay_finite(method: MethodKind) {
             assert!(numbers.iter().all(|v| v.is_finite()), "{id} {set:?}: {s:?}");
             assert!(simulation.state().is_finite(), "{id} {set:?}");
             let mut values = Vec::new();
-            for field in Field::ALL {
+            for field in Field::ALL.into_iter().filter(|field| *field != Field::ReferenceDistance) {
                 simulation.field(field, &mut values);
                 // An element that is inverted, or compressed to nothing by its strain, has no Cauchy stress.
                 let is_whole = s.deformation.inverted_elements == 0 && s.deformation.max_strain < 1.0;

@@ -9,7 +9,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use warpbeam::app::{Lab, Pane, PaneSetting, parse_panes, picture};
+use warpbeam::app::{Lab, Magnification, Pane, PaneSetting, parse_panes, picture};
 use warpbeam::format::{count, percent};
 use warpbeam::render::Gpu;
 use warpbeam::scene::{ElementKind, Load, MethodKind, Scene, Source};
@@ -261,6 +261,48 @@ fn a_press_in_the_load_curve_sets_the_load() {
     assert_eq!(traced.len(), 4, "{traced:?}");
 }
 
+/// Asserts that the body of every pane is drawn with this multiple of its displacement.
+fn bodies_are_drawn(harness: &mut Harness<'_, Lab>, magnification: f64) {
+    let Ok(gpu) = Gpu::headless() else { return };
+    let drawn = picture(&gpu, harness.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
+    let lab = harness.state();
+    let background = lab.frame().background;
+    for pane in lab.panes() {
+        let place = pane.place().unwrap();
+        let simulation = pane.simulation().unwrap();
+        let mesh = simulation.system().mesh();
+        let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
+        let mut seen = 0;
+        for nodes in mesh.elements() {
+            let middle = (at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0;
+            let [x, y] = lab.camera().to_view(middle);
+            let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
+            seen += u32::from(distance(pixel, background) > 8);
+        }
+        assert_eq!(seen as usize, mesh.element_count(), "{}: the body is elsewhere", pane.setting());
+    }
+}
+
+/// All panes magnify the displacement alike, and say so; the automatic factor is common.
+#[test]
+fn panes_magnify_the_displacement() {
+    let mut stiff = scene("cantilever");
+    stiff.material.young *= 1e4;
+    let mut harness = harness_of("cantilever", stiff);
+    harness.state_mut().show_comparison(&parse_panes("linear,warped,newton:t6").unwrap());
+    wait(&mut harness, "the panes", are_judged);
+    let factor = |text: &str| text.trim_start_matches("displacement × ").parse::<f64>().unwrap();
+    for (magnification, wanted) in [(Magnification::Factor(400.0), Some(400.0)), (Magnification::Automatic, None)] {
+        harness.state_mut().magnify(magnification);
+        harness.run();
+        let texts = painted(&harness, "displacement × ");
+        let [(_, text)] = texts.as_slice() else { panic!("{texts:?}") };
+        assert!(wanted.is_none_or(|wanted| factor(text) == wanted) && factor(text) > 10.0, "{text}");
+        let factor = factor(text);
+        bodies_are_drawn(&mut harness, factor);
+    }
+}
+
 /// All panes share one camera: a pan in one moves the body in all of them, to where it is drawn.
 #[test]
 fn panning_one_pane_pans_all() {
@@ -281,24 +323,7 @@ fn panning_one_pane_pans_all() {
     assert!((moved.x + 15.0).abs() < 0.1 && (moved.y + 9.0).abs() < 0.1, "{before:?} {after:?}");
     assert_eq!(after.scale, before.scale);
 
-    let Ok(gpu) = Gpu::headless() else { return };
-    let drawn = picture(&gpu, harness.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
-    let lab = harness.state();
-    let background = lab.frame().background;
-    for pane in lab.panes() {
-        let place = pane.place().unwrap();
-        let simulation = pane.simulation().unwrap();
-        let mesh = simulation.system().mesh();
-        let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize];
-        let mut seen = 0;
-        for nodes in mesh.elements() {
-            let middle = (at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0;
-            let [x, y] = lab.camera().to_view(middle);
-            let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
-            seen += u32::from(distance(pixel, background) > 8);
-        }
-        assert_eq!(seen as usize, mesh.element_count(), "{}: the body is elsewhere", pane.setting());
-    }
+    bodies_are_drawn(&mut harness, 1.0);
     harness.key_press(Key::F);
     harness.run();
     assert_eq!(harness.state().camera(), before);

@@ -6,12 +6,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 
-use crate::common::lab::{pick, type_into, unfold};
-use crate::common::scene;
+use crate::common::lab::{lab_of, pick, type_into, unfold, window};
+use crate::common::{scene, solved};
 use crate::ui_interaction::{click, drag, harness, harness_of, on_body, shapes};
 use warpbeam::app::{Lab, Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
-use warpbeam::scene::{Axis, Load, MethodKind, Place};
+use warpbeam::scene::{Axis, ElementKind, Load, MethodKind, Place};
 use warpbeam::{Field, PointValues};
 
 /// Returns all texts that are painted without a widget.
@@ -261,4 +261,40 @@ fn coordinates_of_a_point_are_typed() {
     assert_eq!(*place, Place::At([5.0, 0.5]), "undone");
     type_into(&mut harness, "y", "3 kg");
     assert!(harness.query_by_label_contains("expected").is_some(), "a refused text is silent");
+}
+
+/// The distance to the reference is that of a solution on a fine mesh of our own, has no value while the reference is not
+/// known, and says so.
+#[test]
+fn the_distance_to_the_reference_colours_the_body() {
+    let corner = [5.0, 0.5];
+    let scene = scene("article").probe("corner", corner);
+    let mut fine = scene.clone().with_cells(40, 8).with_element(ElementKind::T6).with_method(MethodKind::Newton);
+    fine.solver.tolerance = 1e-10;
+    let fine = solved(&fine).probe("corner").unwrap();
+    let mut lab = lab_of("article", scene.clone());
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
+    harness.state_mut().color_with(Field::ReferenceDistance);
+    harness.run();
+    let name = Field::ReferenceDistance.name();
+    let own = harness.state().simulation().probe("corner").unwrap();
+    let largest = harness.state().frame().range[1];
+    assert!(largest >= 0.99 * (own - fine).norm(), "{largest} m");
+    let pos = on_body(harness.state(), Vector2::from(corner) - Vector2::new(1e-3, 1e-3));
+    harness.hover_at(pos);
+    harness.run();
+    let shown = painted(&harness);
+    let value = shown.iter().find_map(|text| text.strip_prefix(&format!("{name}: "))).unwrap();
+    let seen: f64 = value.split(' ').next().unwrap().parse().unwrap();
+    let wanted = (own - fine).norm();
+    assert!((seen - wanted).abs() < 0.01 * wanted, "{value} instead of {wanted} m");
+    // Without a probe there is no reference.
+    let mut unknown = scene;
+    unknown.probes.clear();
+    let mut harness = harness_of("article", unknown);
+    harness.state_mut().color_with(Field::ReferenceDistance);
+    harness.run();
+    let title = format!("{name}, m, not known");
+    assert!(painted(&harness).iter().any(|text| text.starts_with(&title)), "{:?}", painted(&harness));
 }

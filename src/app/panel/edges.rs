@@ -23,27 +23,17 @@ pub(crate) const SECTION: &str = "Loads and supports";
 /// Edges that are tried first for a new load.
 const USUAL: [&str; 4] = ["right", "left", "top", "bottom"];
 
-/// Returns the edge for a new load: the edge of the scene's first force, or else the first edge that can carry the
-/// load.
-fn edge_for(scene: &Scene, system: &System, can_carry: fn(&System, &Edge) -> bool) -> Option<String> {
+/// Returns the edge for the first moment: that of the scene's first force, or else the first edge that is straight and
+/// can rotate; `None` if there is none.
+pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> {
     let of_force = scene.loads.iter().find_map(|load| match load {
         Load::Force { place: Place::Edge(name), .. } => Some(name.as_str()),
         _ => None,
     });
     let others = system.edges().iter().map(Edge::name);
     let mut names = of_force.into_iter().chain(USUAL).chain(others);
-    let found = names.find(|name| system.edges().iter().any(|e| e.name() == *name && can_carry(system, e)));
+    let found = names.find(|name| system.edges().iter().any(|e| e.name() == *name && can_carry_moment(system, e)));
     found.map(str::to_owned)
-}
-
-/// Returns the edge for the first force; `None` if every edge is fixed.
-pub(super) fn edge_for_force(scene: &Scene, system: &System) -> Option<String> {
-    edge_for(scene, system, is_free)
-}
-
-/// Returns the edge for the first moment; `None` if no edge is straight and can rotate.
-pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> {
-    edge_for(scene, system, can_carry_moment)
 }
 
 /// Common points of loads and supports on a beam: the name of each, and its coordinates along and across the beam.

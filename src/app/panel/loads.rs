@@ -53,13 +53,13 @@ pub(super) fn summary(scene: &Scene) -> String {
     if both.is_empty() { tr("none").to_owned() } else { joined(both) }
 }
 
-/// Shows the magnitude and the direction of the force.
+/// Shows the magnitude and the direction of the force; nothing if the scene has none.
 pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
     let scene = input.scene;
+    let Some((chosen, force)) = chosen_force(scene, state) else { return };
     choose(ui, scene, state);
-    let chosen = chosen_force(scene, state);
-    let (magnitude, direction) = polar_form(chosen.map_or([0.0; 2], |(_, force)| force));
-    let as_opened = chosen.and_then(|(i, _)| forces(input.original).find(|(j, ..)| *j == i));
+    let (magnitude, direction) = polar_form(force);
+    let as_opened = forces(input.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(state.force_direction());
     let opening = OpeningLoads::of(input.original);
@@ -74,7 +74,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     };
     if let Some(new) = field.show_with_original(ui, &mut state.messages, magnitude, Some(original)) {
         state.keep_force_direction(direction);
-        actions.push(Action::Edit("Force", with_force(input, state, vector(new, direction))));
+        actions.push(Action::Edit("Force", with_force(input, chosen, vector(new, direction))));
     }
     let field = NumberField {
         label: "Direction",
@@ -87,7 +87,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     let original = original_direction.map(shown_degrees);
     if let Some(new) = field.show_with_original(ui, &mut state.messages, shown_degrees(direction), original) {
         state.keep_force_direction(new);
-        actions.push(Action::Edit("Direction", with_force(input, state, vector(magnitude, new))));
+        actions.push(Action::Edit("Direction", with_force(input, chosen, vector(magnitude, new))));
     }
 }
 
@@ -149,16 +149,11 @@ fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// Returns the scene with the chosen force replaced, or with a first force on an edge that can carry it.
-fn with_force(input: &Readout<'_>, state: &PanelState, new: [f64; 2]) -> Box<Scene> {
+/// Returns the scene with a force replaced.
+fn with_force(input: &Readout<'_>, load: usize, new: [f64; 2]) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
-    let chosen = chosen_force(&scene, state).map(|(i, _)| i);
-    match chosen.and_then(|i| scene.loads.get_mut(i)) {
-        Some(Load::Force { force, .. }) => *force = new,
-        _ => {
-            let edge = edges::edge_for_force(&scene, input.simulation.system()).unwrap_or_else(|| "right".to_owned());
-            scene.loads.push(Load::force(edge.as_str(), new));
-        }
+    if let Some(Load::Force { force, .. }) = scene.loads.get_mut(load) {
+        *force = new;
     }
     scene
 }

@@ -15,6 +15,7 @@ use crate::render::colormap::ColorMap;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::render::interpolated_field::{Components, InterpolatedField};
 use crate::simulation::{Field, Simulation};
+use crate::study::{ProbeReference, Reference};
 
 /// Displayed mesh of a body in its current state.
 #[derive(Debug, Default)]
@@ -29,6 +30,8 @@ pub(crate) struct BodyMesh {
     stamp: u64,
     /// Displayed field.
     field: InterpolatedField,
+    /// Reference of the first probe in the solution that the field is the distance from; `None` for other fields.
+    reference: Option<ProbeReference>,
     /// Components of the field at the drawn points.
     components: Vec<Option<Components>>,
     /// Largest magnitude of the field in the current state.
@@ -93,13 +96,14 @@ fn stamp() -> u64 {
 }
 
 impl BodyMesh {
-    /// Updates points and values to the state of a body, drawn with `magnification` times its displacement. For a
-    /// motion, `played` is the playing time, s, and the colour range covers the last seconds.
+    /// Updates points and values to the state of a body, drawn with `magnification` times its displacement, whose
+    /// reference solution is `reference`. For a motion, `played` is the playing time, s, and the colour range covers the
+    /// last seconds.
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
         geometry: &DisplayGeometry,
-        view: &ViewOptions,
+        (view, reference): (&ViewOptions, Option<&Reference>),
         magnification: f64,
         played: Option<f64>,
     ) {
@@ -108,18 +112,22 @@ impl BodyMesh {
         let (mesh, values) = (simulation.system().mesh(), view.point_values());
         // Computing the values of a large body is expensive, and the state has usually not changed since the last
         // frame.
+        let reference = reference.filter(|_| view.field == Field::ReferenceDistance);
+        let probe = reference.and_then(Reference::first);
         let is_known = self.system.as_ref().is_some_and(|system| Arc::ptr_eq(system, simulation.system()))
             && self.field.has_settings(simulation, view.field, values)
             && self.magnification == magnification
+            && self.reference == probe
             && self.nodes.iter().copied().eq(places.clone());
         if !is_known {
             self.system = Some(simulation.system().clone());
-            self.magnification = magnification;
+            (self.magnification, self.reference) = (magnification, probe);
             self.nodes.clear();
             self.nodes.extend(places);
             let nodes = &self.nodes;
             geometry.points(&|n| nodes[n as usize], &mut self.points);
-            self.field.update(simulation, view.field, values);
+            let reference = reference.map_or_else(Vec::new, |reference| reference.displacements_at(mesh.nodes()));
+            self.field.update(simulation, view.field, values, &reference);
             geometry.components(&self.field, &mut self.components);
             self.largest = self.field.largest(mesh);
             self.stamp = stamp();
@@ -161,6 +169,11 @@ impl BodyMesh {
         self.absent_color = opaque(palette.absent);
         self.line_color = palette.wire;
         self.map = palette.map(field);
+    }
+
+    /// Returns `true` if the field has a value at a drawn point.
+    pub(crate) fn has_values(&self) -> bool {
+        self.components.iter().any(Option::is_some)
     }
 
     /// Returns the values of the field at the drawn points.

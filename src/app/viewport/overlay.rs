@@ -70,6 +70,8 @@ pub(crate) struct Overlay<'a> {
     pub reactions: &'a [SupportReaction],
     /// Values of the field at both ends of the colour map.
     pub color_range: [f64; 2],
+    /// `true` if the field has a value at a point of the body.
+    pub has_values: bool,
     /// Note about the state, and its colour.
     pub note: Option<(&'a str, Color32)>,
 }
@@ -511,7 +513,11 @@ fn legend(
     let (power, symbol) = prefix(&[low, high], unit);
     let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
     let raw = if raw { tr(", raw") } else { "" };
-    let range = if overlay.options.fixed_range.is_some() { tr(", fixed range") } else { "" };
+    let range = match (overlay.has_values, overlay.options.fixed_range) {
+        (false, _) => tr(", not known"),
+        (true, Some(_)) => tr(", fixed range"),
+        (true, None) => "",
+    };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
     let map = palette.map(field);
     let ticks = ticks(low, high, MAX_TICKS).into_iter().map(|value| {

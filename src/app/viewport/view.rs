@@ -82,14 +82,16 @@ impl<'a> Content<'a> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
+    /// Returns the reference solution if it is known for the displayed state.
+    fn reference(&self) -> Option<&'a Reference> {
+        let session = self.session;
+        let is_at_rest = !session.is_motion() && !session.iterates() && session.simulation().mouse_spring().is_none();
+        session.reference().and_then(Result::ok).filter(|_| is_at_rest && self.animation.is_none())
+    }
+
     /// Returns the reference solution if it is known for the displayed state and its outline is not hidden.
     fn exact(&self) -> Option<&'a Reference> {
-        let session = self.session;
-        let is_shown = self.options.exact
-            && !session.is_motion()
-            && !session.iterates()
-            && session.simulation().mouse_spring().is_none();
-        session.reference().and_then(Result::ok).filter(|_| is_shown)
+        self.reference().filter(|_| self.options.exact)
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -284,7 +286,8 @@ impl BodyView {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        self.body.update(simulation, content.session.geometry(), content.options, self.magnification, played);
+        let shown = (content.options, content.reference().filter(|_| !self.shows_converged));
+        self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
 
@@ -642,6 +645,7 @@ impl BodyView {
             sections: &sections,
             reactions: &reactions,
             color_range: self.body.range,
+            has_values: self.body.has_values(),
             note,
         };
         overlay::paint(painter, self.rect, &overlay, visuals);

@@ -270,7 +270,7 @@ impl Compare {
         self.magnify(input);
         let mut known = self.equations(&input.common.own);
         for pane in &mut self.panes.list {
-            pane.update_display(input.common.view, self.panes.magnification, ui.visuals(), &known);
+            pane.update_display((input.common.view, input.reference), self.panes.magnification, ui.visuals(), &known);
             known.extend(pane.equations());
         }
         let range = self.share_colors(input.common.view);

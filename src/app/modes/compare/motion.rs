@@ -227,7 +227,7 @@ impl MotionCompare {
         for MotionPane { motion, display, .. } in &mut self.panes.list {
             known.extend(motion.equations());
             if let Some(simulation) = motion.simulation() {
-                display.update(simulation, input.view, 1.0, Some(self.played), &known);
+                display.update(simulation, (input.view, None), 1.0, Some(self.played), &known);
                 known.extend(display.equations(simulation.scene()));
             }
             display.body_mesh.color(ui.visuals(), input.view.field);

@@ -138,13 +138,14 @@ impl Pane {
     /// Updates the displayed mesh.
     pub(super) fn update_display(
         &mut self,
-        view: &ViewOptions,
+        (view, reference): (&ViewOptions, Option<&Reference>),
         magnification: f64,
         visuals: &egui::Visuals,
         known: &[Equations],
     ) {
+        let is_sound = self.solve.is_sound();
         if let Some(simulation) = self.solve.displayed() {
-            self.display.update(simulation, view, magnification, None, known);
+            self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
     }

@@ -26,6 +26,7 @@ use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, View};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::study::Reference;
 
 /// Common input of the comparisons of equilibria and of motions.
 pub(crate) struct PaneInput<'a> {
@@ -56,12 +57,12 @@ pub(super) struct PaneDisplay {
 }
 
 impl PaneDisplay {
-    /// Displays the state of a simulation with `magnification` times its displacement; `played` is the playing time of a
-    /// motion, s. The display geometry is taken from `known` if it is there.
+    /// Displays the state of a simulation, whose reference solution may be known, with `magnification` times its
+    /// displacement; `played` is the playing time of a motion, s. The display geometry is taken from `known` if it is there.
     pub(super) fn update(
         &mut self,
         simulation: &Simulation,
-        view: &ViewOptions,
+        shown: (&ViewOptions, Option<&Reference>),
         magnification: f64,
         played: Option<f64>,
         known: &[Equations],
@@ -73,7 +74,7 @@ impl PaneDisplay {
             (self.body_mesh, self.range) = (BodyMesh::default(), None);
             self.system = Some(system.clone());
         }
-        self.body_mesh.update(simulation, &self.geometry, view, magnification, played);
+        self.body_mesh.update(simulation, &self.geometry, shown, magnification, played);
         self.range = Some(self.body_mesh.range);
     }
 
@@ -383,6 +384,7 @@ impl<P: ComparedPane> Panes<P> {
                 reactions: &[],
                 playback: &self.still,
                 color_range: display.body_mesh.range,
+                has_values: display.body_mesh.has_values(),
                 note: None,
             };
             overlay::body(&painter, place, &overlay, ui.visuals());

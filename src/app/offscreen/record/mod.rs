@@ -337,7 +337,7 @@ impl Preview {
         let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
         let (mut field, mut largest_value) = (InterpolatedField::default(), 0.0_f64);
         let mut largest_of = |simulation: &Simulation| {
-            field.update(simulation, Field::default(), PointValues::Recovered);
+            field.update(simulation, Field::default(), PointValues::Recovered, &[]);
             field.largest(simulation.system().mesh())
         };
         let mut range = Vec::new();

@@ -61,7 +61,7 @@ impl Thumbnail {
         let (geometry, view) = (DisplayGeometry::new(mesh), ViewOptions::default());
         let (mut rest, mut body_mesh) = (Vec::new(), BodyMesh::default());
         geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
-        body_mesh.update(&simulation, &geometry, &view, 1.0, None);
+        body_mesh.update(&simulation, &geometry, (&view, None), 1.0, None);
         let moved = body_mesh.points().to_vec();
         let (values, range) = (body_mesh.values(), body_mesh.range);
         let DisplayGeometry { outline, triangles, .. } = geometry;

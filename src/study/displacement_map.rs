@@ -1,0 +1,173 @@
+//! Displacement of a reference solution at every point of the body.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::exact_beam::ExactBeam;
+use crate::mesh::Mesh;
+use crate::simulation::Simulation;
+
+/// Displacement that is linear over triangles.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct DisplacementMap {
+    /// Rest positions of the corners, m.
+    rest: Vec<Vector2<f64>>,
+    /// Displacements of the corners, m.
+    displacements: Vec<Vector2<f64>>,
+    /// Corners of every triangle.
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Triangles by the cells of a grid that their bounding boxes meet, so that a point is compared with few of them.
+struct Grid {
+    low: Vector2<f64>,
+    /// Size of a cell, m.
+    cell: Vector2<f64>,
+    counts: [usize; 2],
+    triangles: Vec<Vec<u32>>,
+}
+
+impl DisplacementMap {
+    /// Returns the displacement of a simulation, from node to node.
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        let mesh = simulation.system().mesh();
+        let triangles = mesh.elements().flat_map(|nodes| triangles(mesh, nodes)).collect();
+        Self { rest: mesh.nodes().to_vec(), displacements: simulation.displacement().to_vec(), triangles }
+    }
+
+    /// Returns the displacement of an exact beam of this height, m, whose sections stay plane; `None` as for
+    /// [`ExactBeam::outline`].
+    pub(crate) fn of_beam(beam: &ExactBeam, height: f64) -> Option<Self> {
+        let [rest, moved] = beam.outline(height)?;
+        let displacements = rest.iter().zip(&moved).map(|(x, now)| now - x).collect();
+        // The outline runs along the lower side, back along the upper side, and ends where it begins.
+        let stations = (rest.len().saturating_sub(1) / 2) as u32;
+        let quads = (1..stations).map(|i| [i - 1, i, 2 * stations - 1 - i, 2 * stations - i]);
+        let triangles = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Some(Self { rest, displacements, triangles })
+    }
+
+    /// Returns the displacement at every point, m; `None` outside the body. Points that are outside by a little, as on a
+    /// curved side, have the displacement of the nearest triangle, continued.
+    pub(crate) fn at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
+        /// Largest distance outside a triangle, relative to its height.
+        const OUTSIDE: f64 = 0.5;
+        let grid = Grid::new(self);
+        let value = |at: &Vector2<f64>| {
+            let candidates = grid.triangles.get(grid.cell_at(at)?)?.iter();
+            let inside = candidates.filter_map(|&t| {
+                let triangle = self.triangles.get(t as usize)?;
+                let weights = self.weights(triangle, at)?;
+                Some((weights.into_iter().fold(f64::INFINITY, f64::min), triangle, weights))
+            });
+            let (depth, triangle, weights) = inside.max_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
+            let corners = triangle.iter().map(|&corner| self.displacements.get(corner as usize));
+            let sum = corners.zip(weights).map(|(u, weight)| Some(u? * weight)).sum::<Option<Vector2<f64>>>();
+            sum.filter(|_| depth >= -OUTSIDE)
+        };
+        points.iter().map(value).collect()
+    }
+
+    /// Returns the barycentric coordinates of a point in a triangle; `None` for a triangle without area.
+    fn weights(&self, triangle: &[u32; 3], at: &Vector2<f64>) -> Option<[f64; 3]> {
+        let [a, b, c] = triangle.map(|corner| self.rest.get(corner as usize));
+        let (a, b, c) = (a?, b?, c?);
+        let part = Matrix2::from_columns(&[b - a, c - a]).try_inverse()? * (at - a);
+        Some([1.0 - part.x - part.y, part.x, part.y])
+    }
+}
+
+impl Grid {
+    fn new(map: &DisplacementMap) -> Self {
+        let infinity = Vector2::repeat(f64::INFINITY);
+        let bounds = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
+            points.fold([infinity, -infinity], |[low, high], x| [low.inf(x), high.sup(x)])
+        };
+        let [low, high] = bounds(&mut map.rest.iter());
+        // Cells are about as many as triangles, and about square.
+        let size = (high - low).map(|v| if v > 0.0 { v } else { 1.0 });
+        let side = (size.x * size.y / map.triangles.len().max(1) as f64).sqrt();
+        let counts = [size.x, size.y].map(|v| (v / side).ceil().clamp(1.0, 2000.0) as usize);
+        let cell = Vector2::new(size.x / counts[0] as f64, size.y / counts[1] as f64);
+        let mut grid = Self { low, cell, counts, triangles: vec![Vec::new(); counts[0] * counts[1]] };
+        for (number, triangle) in (0..).zip(&map.triangles) {
+            let [first, last] = bounds(&mut triangle.iter().filter_map(|&corner| map.rest.get(corner as usize)));
+            // A point outside the body finds the triangles of the neighbouring cell.
+            let (Some(first), Some(last)) = (grid.place(&(first - cell * 0.5)), grid.place(&(last + cell * 0.5)))
+            else {
+                continue;
+            };
+            for row in first[1]..=last[1] {
+                for column in first[0]..=last[0] {
+                    grid.triangles[row * counts[0] + column].push(number);
+                }
+            }
+        }
+        grid
+    }
+
+    /// Returns column and row of the cell at a point, or of the nearest one; `None` if the point is not finite.
+    fn place(&self, at: &Vector2<f64>) -> Option<[usize; 2]> {
+        let place = (at - self.low).component_div(&self.cell);
+        let index = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
+        Some([index(place.x, self.counts[0])?, index(place.y, self.counts[1])?])
+    }
+
+    fn cell_at(&self, at: &Vector2<f64>) -> Option<usize> {
+        let [column, row] = self.place(at)?;
+        Some(row * self.counts[0] + column)
+    }
+}
+
+/// Divides an element into triangles between its nodes.
+fn triangles(mesh: &Mesh, nodes: &[u32]) -> Vec<[u32; 3]> {
+    let around = mesh.sides(nodes).flat_map(|side| {
+        // The last node of a side is the first of the next.
+        let (_, own) = side.nodes().split_last().unwrap_or((&0, &[]));
+        own.to_vec()
+    });
+    match around.collect::<Vec<u32>>()[..] {
+        [a, b, c] => vec![[a, b, c]],
+        [a, b, c, d] => vec![[a, b, c], [a, c, d]],
+        [a, ab, b, bc, c, ca] => vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
+        _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{ElementKind, Scene};
+
+    /// The map has the displacement of every node, also on a curved outline, of the nodes of another mesh of the same
+    /// body, and none far outside; that of an exact beam has the displacement of its tip.
+    #[test]
+    fn the_map_has_the_displacement_of_every_point() {
+        let scene = |element, cells: [u32; 2]| {
+            let scene = Scene::beam(10.0, 1.0).with_cells(cells[0], cells[1]).with_element(element).clamp("left");
+            let mut scene = scene.force("right", [0.0, -3e3]).probe("tip", "right");
+            scene.beam.as_mut().unwrap().rise = 0.4;
+            scene
+        };
+        for element in [ElementKind::T3, ElementKind::T6, ElementKind::Q4] {
+            let solved = |scene: &Scene| {
+                let mut simulation = Simulation::new(scene).unwrap();
+                simulation.solve();
+                simulation
+            };
+            let (fine, coarse) = (solved(&scene(element, [40, 4])), solved(&scene(element, [7, 1])));
+            let map = DisplacementMap::of(&fine);
+            let largest = fine.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+            for (own, u) in map.at(fine.mesh().nodes()).into_iter().zip(fine.displacement()) {
+                assert!((own.unwrap() - u).norm() < 1e-9 * largest, "{element:?}");
+            }
+            assert!(map.at(coarse.mesh().nodes()).iter().all(Option::is_some), "{element:?}");
+            assert_eq!(map.at(&[Vector2::new(20.0, 5.0), Vector2::repeat(f64::NAN)]), [None, None]);
+        }
+        let straight = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -3e3]).probe("tip", "right");
+        let beam = ExactBeam::of(&straight).unwrap();
+        let map = DisplacementMap::of_beam(&beam, 1.0).unwrap();
+        let tip = map.at(&[Vector2::new(10.0, 0.0)])[0].unwrap();
+        let exact = beam.tip_displacement().unwrap();
+        assert!((tip - exact).norm() < 1e-6 * exact.norm(), "{tip} {exact}");
+    }
+}
