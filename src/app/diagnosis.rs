@@ -21,6 +21,8 @@ pub(crate) enum ErrorSource {
     Mesh,
     Iteration,
     Theory,
+    /// Mesh or iteration, of a result that was accepted before it converged.
+    MeshOrIteration,
 }
 
 impl ErrorSource {
@@ -29,6 +31,7 @@ impl ErrorSource {
             Self::Mesh => "mesh",
             Self::Iteration => "iteration",
             Self::Theory => "theory",
+            Self::MeshOrIteration => "mesh or iteration",
         }
     }
 }
@@ -37,6 +40,8 @@ impl ErrorSource {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Errors {
     pub own: Option<f64>,
+    /// The error with the largest error of the reference added.
+    pub bound: Option<f64>,
     pub linear: Option<f64>,
     pub source: Option<ErrorSource>,
 }
@@ -63,19 +68,24 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
             theory.map_or([0.0, 1.0], |fine| [(fine - first.displacement).norm(), (u - fine).norm()]);
-        if of_theory > of_mesh { ErrorSource::Theory } else { ErrorSource::Mesh }
+        match simulation.status() {
+            _ if of_theory > of_mesh => ErrorSource::Theory,
+            Status::Accepted => ErrorSource::MeshOrIteration,
+            _ => ErrorSource::Mesh,
+        }
     });
     let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
-    Errors { own: own.map(|(error, _)| error), linear, source }
+    let own = own.map(|(error, _)| error);
+    Errors { own, bound: own.map(|error| error + first.own_error_percent), linear, source }
 }
 
 /// Errors above this value, percent, are large: they need a remedy.
 const LARGE_ERROR: f64 = 5.0;
 
-/// Returns a reason to doubt a result whose error is small, in a few words that stand beside the error; `None` if there
-/// is none, or no small error.
+/// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
+/// if there is none, or no error.
 pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
-    errors.own.filter(|own| *own <= LARGE_ERROR && *input.simulation.status() == Status::Converged)?;
+    let own = errors.own.filter(|_| *input.simulation.status() == Status::Converged)?;
     if input.quality.is_inside_out(input.simulation) {
         return Some(tr("inverted elements").to_owned());
     }
@@ -83,16 +93,34 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
     if strain_warning(strain).is_some() {
         return Some(fill!("strain %{strain}", strain = percent(100.0 * strain)));
     }
-    let off = input.reference?.beam_off_by_percent?;
+    if is_large(own) {
+        return None;
+    }
+    let reference = input.reference?;
+    let known = reference.first()?.own_error_percent;
+    if errors.bound.is_some_and(|bound| error_level(bound) > error_level(own)) {
+        return Some(fill!("reference ± %{own}", own = percent(known)));
+    }
+    let off = reference.beam_off_by_percent?;
     Some(said(&Claim::BeamTheory { off_by_percent: off }))
+}
+
+/// Returns `true` for an error, percent, that needs a remedy.
+pub(crate) fn is_large(error: f64) -> bool {
+    error > LARGE_ERROR
+}
+
+/// Returns 0 for a small error, 1 for a larger one, 2 for one that needs a remedy.
+fn error_level(error: f64) -> u8 {
+    u8::from(error > 1.0) + u8::from(is_large(error))
 }
 
 /// Returns the colour of an error, percent.
 pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
-    match error {
-        Some(error) if error > LARGE_ERROR => palette.error,
-        Some(error) if error > 1.0 => palette.warning,
-        Some(_) => palette.good,
+    match error.map(error_level) {
+        Some(0) => palette.good,
+        Some(1) => palette.warning,
+        Some(_) => palette.error,
         None => palette.secondary,
     }
 }
@@ -156,7 +184,10 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
-    add(count(simulation.iterations(), "iteration"));
+    // Without a load, or after a step back in the history, none was needed.
+    if simulation.iterations() > 0 {
+        add(count(simulation.iterations(), "iteration"));
+    }
     moved_points(simulation).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         path.claims().for_each(|claim| add(said(&claim)));
@@ -222,6 +253,15 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         return lines;
     }
     lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
+    if *simulation.status() == Status::Accepted {
+        lines.push(fill!(
+            "Accepted after %{iterations}, as the scene asks: the relative residual is %{residual}, the tolerance is \
+             %{asked}.",
+            iterations = count(simulation.iterations(), "iteration"),
+            residual = number(two_digits(simulation.residual())),
+            asked = number(input.scene.solver.tolerance)
+        ));
+    }
     if !simulation.status().is_success() {
         lines.push(fill!(
             "The forces do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
@@ -272,7 +312,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
         return Some(Remedy { text, offer, action: Action::Reset });
     }
-    let off = errors.own.filter(|&error| error > LARGE_ERROR)?;
+    let off = errors.own.filter(|&error| is_large(error))?;
     let off = percent(off);
     if errors.source == Some(ErrorSource::Theory) {
         return Some(with_newton(fill!("%{error} error: linear theory holds for small rotations only.", error = off)));

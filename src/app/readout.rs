@@ -46,6 +46,8 @@ pub(crate) struct Readout<'a> {
     /// Spectral radius ρ of the warped iteration at the equilibrium; `None` if it has not been computed. It does not
     /// depend on the current state of the body.
     pub equilibrium_rho: Option<f64>,
+    /// `true` while it is being computed.
+    pub is_computing_rho: bool,
     /// Fraction of the reference solution's computation that is done; `None` if none is in progress.
     pub reference_progress: Option<f64>,
     /// `true` if the last equilibrium is drawn in place of a state that diverges.

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::{ContextKind, ContextValue};
 
 use self::args::{Cli, Command};
 use crate::assembly::SystemError;
@@ -103,11 +104,23 @@ impl CliError {
 /// and those of adapters that cannot draw are printed only if no adapter can.
 const LOG_FILTER: &str = "error,wgpu_hal=off,wgpu::backend=off";
 
+/// Adds a hint to the error of a scene that was given instead of a command.
+fn with_hint(mut error: clap::Error) -> clap::Error {
+    if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
+        && (scene::registry::find(name).is_some() || Path::new(name).exists())
+    {
+        let solves = format!("this is a scene: `warpbeam solve {name}` solves it");
+        let hint = if cfg!(feature = "app") { format!("{solves}, `warpbeam run {name}` opens it") } else { solves };
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint.into()]));
+    }
+    error
+}
+
 /// Runs the command given by the process arguments.
 #[must_use]
 pub fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
-    let command = Cli::parse().command;
+    let command = Cli::try_parse().unwrap_or_else(|error| with_hint(error).exit()).command;
     #[cfg(feature = "app")]
     if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_) | Command::Gpu(_))) {
         driver::silence();

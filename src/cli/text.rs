@@ -127,11 +127,11 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     for (i, probe) in solution.probes.iter().enumerate() {
         let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), moved_by(probe.u));
         if let Some(at_probe) = stress.probes.get(i) {
-            let [ex, ey, _, exy] =
-                at_probe.strain.components().map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
+            let [x, y, _, xy] = at_probe.strain.components();
+            let [x, y, shear] = [x, y, 2.0 * xy].map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
             let _ = writeln!(
                 text,
-                "  rotation {}, strain {ex}, {ey}, shear {exy}",
+                "  rotation {}, strain {x}, {y}, shear γ {shear}",
                 within.rotation.engineering(at_probe.rotation_deg, "°")
             );
             if let Some(cauchy) = &at_probe.cauchy {

@@ -198,6 +198,15 @@ impl Section {
         (self.line.angle - axis_angle(beam, along)).sin().abs() < TOLERANCE.sin()
     }
 
+    /// Returns the normal and shear stress of beam theory, Pa, at a distance from the middle of the cut, m.
+    pub(crate) fn beam_stress(&self, thickness: f64, along: f64) -> [f64; 2] {
+        let height = (self.ends[1] - self.ends[0]).norm();
+        let (area, eta) = (height * thickness, 2.0 * along / height);
+        let SectionForces { normal, shear, moment } = self.forces;
+        let bending = 12.0 * moment * along / (area * height * height);
+        [normal / area - bending, 1.5 * shear / area * (1.0 - eta * eta)]
+    }
+
     fn components(&self, Wrench { force, moment }: Wrench) -> SectionForces {
         SectionForces { normal: force.dot(&self.normal()), shear: force.dot(&self.tangent()), moment }
     }
@@ -212,9 +221,6 @@ impl Section {
     ) {
         let (middle, tangent, normal) = (self.middle(), self.tangent(), self.normal());
         let (material, mesh) = (problem.material(), problem.system().mesh());
-        let height = (self.ends[1] - self.ends[0]).norm();
-        let area = height * material.thickness;
-        let SectionForces { normal: force, shear, moment } = self.forces;
         let is_normal = problem.system().beam().is_none_or(|beam| self.is_normal_to_axis(beam));
         let mut sum = Wrench::default();
         // Arm and traction per length, stress times thickness, at the point before; `None` after an undefined stress.
@@ -224,17 +230,11 @@ impl Section {
             let along = tangent.dot(&(at - middle));
             let local = nodal.mean(&point.weights);
             let stress = local.cauchy(material, nodal.kinematics()).map(|stress| stress.plane);
-            let eta = 2.0 * along / height;
             self.points.push(SectionPoint {
                 rest: point.weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum(),
                 along,
                 stress: stress.map(|stress| [normal, tangent].map(|axis| axis.dot(&(stress * normal)))),
-                beam: is_normal.then(|| {
-                    [
-                        force / area - 12.0 * moment * along / (area * height * height),
-                        1.5 * shear / area * (1.0 - eta * eta),
-                    ]
-                }),
+                beam: is_normal.then(|| self.beam_stress(material.thickness, along)),
             });
             let thickness = match (material.plane, nodal.kinematics()) {
                 (Plane::Stress, Kinematics::Corotated) => material.thickness * (1.0 + local.strain(material).zz),

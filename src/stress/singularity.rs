@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use crate::assembly::Problem;
 use crate::mesh::{Mesh, Segment};
 use crate::scene::{Load, Material, Place, Plane};
+use crate::sentence::{Sentence, displayed, sentence};
 
 /// Cause of an unbounded stress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +21,17 @@ pub enum Singularity {
     ReentrantCorner,
 }
 
-impl std::fmt::Display for Singularity {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let place = match self {
-            Self::PointForce => "at a point force",
-            Self::PointSupport => "at a point support",
-            Self::SupportEnd => "at the end of a support",
-            Self::ReentrantCorner => "at a re-entrant corner",
+displayed!(Singularity);
+
+impl From<&Singularity> for Sentence {
+    fn from(singularity: &Singularity) -> Self {
+        let place = match singularity {
+            Singularity::PointForce => sentence!("at a point force"),
+            Singularity::PointSupport => sentence!("at a point support"),
+            Singularity::SupportEnd => sentence!("at the end of a support"),
+            Singularity::ReentrantCorner => sentence!("at a re-entrant corner"),
         };
-        write!(f, "the largest stress is {place}, where it grows without limit as the mesh is refined")
+        sentence!("the largest stress is %{place}, where it grows without limit as the mesh is refined", place = place)
     }
 }
 

@@ -166,7 +166,7 @@ impl Figure {
     }
 
     /// Returns the lower left and upper right corner of the picture, around the origin and all points. Points that may
-    /// leave it extend it by at most 35 % of the extent of the others.
+    /// leave it extend it by at most 35 % of the extent of the others, of the larger one where both axes have one scale.
     #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 2] {
         const LEAVES: f64 = 0.35;
@@ -190,7 +190,13 @@ impl Figure {
         if whole[0] == whole[1] {
             whole = places(true).fold(whole, around);
         } else {
-            let [low, high] = grown(whole, LEAVES);
+            let mut most = grown(whole, LEAVES);
+            if self.has_one_scale() {
+                // The longer axis decides the scale, so the shorter one has room.
+                let longest = (0..2).map(|i| whole[1][i] - whole[0][i]).fold(0.0, f64::max);
+                most = [whole[0].map(|low| low - LEAVES * longest), whole[1].map(|high| high + LEAVES * longest)];
+            }
+            let [low, high] = most;
             let clamped = places(true).map(|p| [0, 1].map(|i| p[i].clamp(low[i], high[i])));
             whole = clamped.fold(whole, around);
         }

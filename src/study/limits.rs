@@ -62,6 +62,18 @@ impl Rating {
     }
 }
 
+impl Rating {
+    /// Returns the rating of an error, percent.
+    fn of(error: Option<f64>) -> Self {
+        match error {
+            None => Self::Unknown,
+            Some(error) if error <= GOOD => Self::Good,
+            Some(error) if error <= USABLE => Self::Usable,
+            Some(_) => Self::Beyond,
+        }
+    }
+}
+
 /// Part of a strip with one rating.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
@@ -99,12 +111,7 @@ impl LimitPoint {
     /// Returns the rating of the error.
     #[must_use]
     pub fn rating(&self) -> Rating {
-        match self.error_percent {
-            None => Rating::Unknown,
-            Some(error) if error <= GOOD => Rating::Good,
-            Some(error) if error <= USABLE => Rating::Usable,
-            Some(_) => Rating::Beyond,
-        }
+        Rating::of(self.error_percent)
     }
 }
 
@@ -155,10 +162,7 @@ impl Strip {
         let mut before: Option<(f64, f64)> = None;
         for (factor, error) in known {
             if error > percent {
-                let Some((from, small)) = before else { return Some(0.0) };
-                // Errors are powers of the load in between.
-                let t = if small > 0.0 { (percent / small).ln() / (error / small).ln() } else { 0.5 };
-                return Some(from * (factor / from).powf(t.clamp(0.0, 1.0)));
+                return Some(before.map_or(0.0, |before| crossing(before, (factor, error), percent)));
             }
             before = Some((factor, error));
         }
@@ -174,31 +178,77 @@ impl Strip {
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
     #[must_use]
     pub fn law_ends_at(&self) -> Option<f64> {
-        self.points.iter().find(|point| point.is_beyond_law()).map(|point| point.factor)
+        let first = self.points.iter().position(LimitPoint::is_beyond_law)?;
+        let before = first.checked_sub(1).and_then(|before| self.points.get(before));
+        let first = self.points.get(first)?;
+        Some(before.map_or(first.factor, |before| law_crossing(before, first)))
     }
 
-    /// Returns the strip in pieces: each result stands for the loads up to half way, in their logarithm, to the next. The
-    /// pieces of a strip that is not complete end at its last result. `range` is that of the limits.
+    /// Returns the strip in pieces, whose ends are those of [`Self::within`] and [`Self::law_ends_at`]. The pieces of a
+    /// strip that is not complete end at its last result. `range` is that of the limits.
     #[must_use]
     pub fn pieces(&self, range: [f64; 2]) -> Vec<Piece> {
-        let between = |i: usize| match (i.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(i))
-        {
-            (Some(a), Some(b)) => (a.factor * b.factor).sqrt(),
-            (None, _) => range[0],
-            (Some(last), None) if self.done < 1.0 => last.factor,
-            (_, None) => self.ends_at.unwrap_or(range[1]),
+        let end = if self.done < 1.0 { None } else { Some(self.ends_at.unwrap_or(range[1])) };
+        let mut results: Vec<Piece> = Vec::new();
+        let mut add = |piece: Piece| match results.last_mut() {
+            Some(last) if (last.rating, last.is_beyond_law) == (piece.rating, piece.is_beyond_law) => {
+                last.range[1] = piece.range[1];
+            }
+            _ if piece.range[1] > piece.range[0] => results.push(piece),
+            _ => {}
         };
-        let results = self.points.iter().enumerate().map(|(i, point)| Piece {
-            range: [between(i), between(i + 1)],
+        let of = |range: [f64; 2], point: &LimitPoint| Piece {
+            range,
             rating: point.rating(),
             is_beyond_law: point.is_beyond_law(),
-        });
+        };
+        if let Some(first) = self.points.first() {
+            add(of([range[0], first.factor], first));
+        }
+        for pair in self.points.windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            let mut ends = vec![a.factor, b.factor];
+            match (a.error_percent, b.error_percent) {
+                (Some(from), Some(to)) => ends.extend([GOOD, USABLE].iter().filter_map(|&percent| {
+                    let crosses = (from > percent) != (to > percent);
+                    crosses.then(|| crossing((a.factor, from), (b.factor, to), percent))
+                })),
+                (None, None) => {}
+                // The error is known at one of them.
+                _ => ends.push((a.factor * b.factor).sqrt()),
+            }
+            if a.is_beyond_law() != b.is_beyond_law() {
+                ends.push(law_crossing(a, b));
+            }
+            ends.sort_by(f64::total_cmp);
+            for ends in ends.windows(2) {
+                let middle = (ends[0] * ends[1]).sqrt();
+                let part = |crossing: f64| if middle < crossing { a } else { b };
+                let rating = match (a.error_percent, b.error_percent) {
+                    (Some(from), Some(to)) => {
+                        let t = (middle / a.factor).ln() / (b.factor / a.factor).ln();
+                        let least = f64::MIN_POSITIVE;
+                        Rating::of(Some(from.max(least).powf(1.0 - t) * to.max(least).powf(t)))
+                    }
+                    _ => part((a.factor * b.factor).sqrt()).rating(),
+                };
+                add(Piece {
+                    range: [ends[0], ends[1]],
+                    rating,
+                    is_beyond_law: part(law_crossing(a, b)).is_beyond_law(),
+                });
+            }
+        }
+        if let (Some(last), Some(end)) = (self.points.last(), end) {
+            add(of([last.factor, end], last));
+        }
         let failed = self.ends_at.map(|end| Piece {
             range: [end.max(range[0]), range[1]],
             rating: Rating::NotConverged,
             is_beyond_law: false,
         });
-        results.chain(failed).collect()
+        results.extend(failed);
+        results
     }
 
     /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
@@ -223,18 +273,17 @@ impl Strip {
         [within(GOOD), within(USABLE), converges, law]
     }
 
-    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is never within 1 %; `None` if
-    /// it is not known to be larger at any load. `range` is that of the limits.
+    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is never within 1 %, or else the
+    /// one up to which the method converges; `None` if there is no such load. `range` is that of the limits.
     #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
-        let Some(percent) = [GOOD, USABLE].into_iter().find(holds) else {
-            return Some(sentence!("not within %{percent} %", percent = number(USABLE)));
-        };
-        match (self.within(percent), self.ends_at) {
-            (Some(factor), _) => {
+        let percent = [GOOD, USABLE].into_iter().find(holds);
+        match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at) {
+            (Some((percent, factor)), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
             }
+            (None, None) if percent.is_none() => Some(sentence!("not within %{percent} %", percent = number(USABLE))),
             (None, Some(0.0)) if self.integrator.is_some() => {
                 Some(sentence!("not at %{load}", load = load_text(axis, range[0])))
             }
@@ -459,6 +508,22 @@ impl<'a> SoFar<'a> {
     }
 }
 
+/// Returns the load between two loads with values at which the value is `level`: values are powers of the load in
+/// between.
+fn crossing((from, a): (f64, f64), (to, b): (f64, f64), level: f64) -> f64 {
+    let t = if a > 0.0 && b > 0.0 { (level / a).ln() / (b / a).ln() } else { 0.5 };
+    from * (to / from).powf(t.clamp(0.0, 1.0))
+}
+
+/// Returns the load between two results, of which one is beyond the linear law, at which strains reach its end; the load
+/// of the result that has inverted elements, if its strains do not.
+fn law_crossing(a: &LimitPoint, b: &LimitPoint) -> f64 {
+    if (a.max_strain > LAW_HOLDS) == (b.max_strain > LAW_HOLDS) {
+        return if a.inverted_elements > 0 { a.factor } else { b.factor };
+    }
+    crossing((a.factor, a.max_strain), (b.factor, b.max_strain), LAW_HOLDS)
+}
+
 /// Returns the parts of the load, evenly spaced in their logarithm.
 fn factors() -> Vec<f64> {
     let decades = (RANGE[1] / RANGE[0]).log10();
@@ -508,4 +573,52 @@ fn end_between(
         *(if converges(middle)? { &mut reached } else { &mut failed }) = middle;
     }
     Ok(reached)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(factor: f64, error_percent: Option<f64>, max_strain: f64) -> LimitPoint {
+        LimitPoint { factor, displacement: Vector2::zeros(), error_percent, max_strain, inverted_elements: 0 }
+    }
+
+    /// The colours of a strip end where its words say.
+    #[test]
+    fn pieces_end_where_the_words_say() {
+        let scene = Scene::beam(10.0, 1.0);
+        let points = vec![
+            point(0.1, Some(0.2), 1e-3),
+            point(1.0, Some(0.8), 2e-2),
+            point(2.0, Some(20.0), 0.3),
+            point(4.0, None, 0.4),
+        ];
+        let strip = Strip { points, ends_at: Some(5.0), done: 1.0, ..Strip::new(&scene) };
+        let pieces = strip.pieces([0.1, 10.0]);
+        let end = |rating| pieces.iter().rev().find(|piece| piece.rating == rating).map(|piece| piece.range[1]);
+        assert_eq!([Rating::Good, Rating::Usable].map(end), [GOOD, USABLE].map(|percent| strip.within(percent)));
+        assert_eq!(end(Rating::Unknown), strip.ends_at);
+        let law = pieces.iter().find(|piece| piece.is_beyond_law).map(|piece| piece.range[0]);
+        assert_eq!(law, strip.law_ends_at());
+        // 1 % is reached after ln(1/0.8)/ln(20/0.8) of an octave.
+        let good = 2f64.powf((1.0_f64 / 0.8).ln() / 25f64.ln());
+        assert!((end(Rating::Good).unwrap() - good).abs() < 1e-12, "{pieces:?}");
+        assert!(pieces.windows(2).all(|pair| pair[0].range[1] == pair[1].range[0]), "{pieces:?}");
+        assert_eq!([pieces[0].range[0], pieces[pieces.len() - 1].range[1]], [0.1, 10.0]);
+    }
+
+    /// A strip that is never within 5 % ends with the load up to which the method converges.
+    #[test]
+    fn an_inaccurate_strip_names_its_last_load() {
+        let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]);
+        let strip = Strip {
+            points: vec![point(0.1, Some(30.0), 1e-3), point(1.0, Some(40.0), 1e-2)],
+            ends_at: Some(1.5),
+            done: 1.0,
+            ..Strip::new(&scene)
+        };
+        let end = |strip: &Strip| strip.end(&axis(&scene), [0.1, 10.0]).map(|end| end.to_string());
+        assert_eq!(end(&strip).as_deref(), Some("converges to 1.5 kN"));
+        assert_eq!(end(&Strip { ends_at: None, ..strip }).as_deref(), Some("not within 5 %"));
+    }
 }

@@ -151,8 +151,10 @@ impl From<&Reference> for Sentence {
 const LARGEST_OWN_ERROR: f64 = 20.0;
 /// Largest distance between the exact beam and a fine solution with which the beam is used, percent.
 const CONFIRMED: f64 = 0.25;
-/// Largest ratio of this distance to the fine solution's own error with which the beam is also used.
+/// Largest ratio of this distance to the fine solution's own error with which the beam is also used, unless the beam's
+/// error is then larger than the following bound, percent: a fine solution that is itself inaccurate confirms nothing.
 const MARGIN: f64 = 1.5;
+const MAX_CONFIRMED_ERROR: f64 = 1.0;
 
 impl Reference {
     /// Computes the reference solution of a scene at bounded cost.
@@ -261,7 +263,8 @@ impl Reference {
                 continue;
             }
             let off = (ends[i] - tip).norm();
-            let confirmed = off <= 0.01 * CONFIRMED * tip.norm() || own[i].is_some_and(|own| off <= MARGIN * own);
+            let within = |own: f64| off <= MARGIN * own && off + own <= 0.01 * MAX_CONFIRMED_ERROR * tip.norm();
+            let confirmed = off <= 0.01 * CONFIRMED * tip.norm() || own[i].is_some_and(within);
             if confirmed {
                 // Without a bound the error of the fine solution is taken as its distance from the beam.
                 let error = off + own[i].unwrap_or(off);
@@ -309,7 +312,8 @@ impl Reference {
 
     /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and
     /// everywhere if there is no outline.
-    pub(crate) fn displacements_at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
+    #[must_use]
+    pub fn displacements_at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
         self.displacements.at(points)
     }
 

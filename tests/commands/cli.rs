@@ -634,6 +634,7 @@ fn unreadable_files_and_wrong_usage_get_one_clear_message() {
         (&["solve", "article", "--set", "beam.cells=[1000000000,1]"], "expected 1 to 100000"),
         (&["solve"], "SCENE"),
         (&["melt"], "melt"),
+        (&["article"], "`warpbeam solve article` solves it"),
         (&["shot", "article", "-o", "x.png", "--size", "10x10"], "64 to 8192"),
         (&["shot", "article", "-o", "x.png", "--size", "big"], "WIDTHxHEIGHT"),
         (&["shot", "article", "-o", "x.png", "--compare", "warped"], "expected 2 to 4 panes"),

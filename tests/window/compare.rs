@@ -444,3 +444,21 @@ fn motions_have_panes_of_their_own() {
     assert!(harness.state().panes().iter().all(|pane| pane.place().is_none()));
     assert!(harness.state().motion_panes().iter().all(|pane| pane.place().is_some()));
 }
+
+/// The key of the load curve shows and hides that of the panes, and stays in Compare.
+#[test]
+fn the_key_of_the_load_curve_belongs_to_the_panes() {
+    let mut harness = harness_of("article", scene("article"));
+    harness.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());
+    harness.run();
+    let shown = |harness: &Harness<'_, Lab>| {
+        assert!(harness.query_by_role_and_label(Role::Button, "+ Pane").is_some(), "Compare is open");
+        harness.query_by_label("u_x").is_some()
+    };
+    let before = shown(&harness);
+    for expected in [!before, before] {
+        harness.key_press(Key::L);
+        harness.run();
+        assert_eq!(shown(&harness), expected);
+    }
+}

@@ -160,8 +160,8 @@ fn the_area_grows_under_linear_theory() {
     let before = growth(harness.state());
     assert!(before > 50.0, "{before}");
     assert_eq!(text(&harness, "area, linear"), format!("area, linear: +{}", percent(before)));
-    let exact = text(&harness, "area, exact");
-    let number: f64 = exact.trim_start_matches("area, exact: +").trim_end_matches(" %").parse().unwrap();
+    let exact = text(&harness, "area, reference");
+    let number: f64 = exact.trim_start_matches("area, reference: +").trim_end_matches(" %").parse().unwrap();
     assert!(number < 2.0, "{exact}");
     let slider = harness.get_by_role_and_label(Role::Slider, "Tip force").rect();
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);

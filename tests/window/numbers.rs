@@ -71,6 +71,10 @@ impl Shown {
     }
 }
 
+fn rho_text(rho: f64) -> String {
+    engineering(two_digits(rho), "")
+}
+
 fn number(value: &Value) -> Option<f64> {
     value.as_f64()
 }
@@ -85,7 +89,7 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     match number(&probe["error_percent"]) {
         Some(error) => {
             assert!(bar.starts_with(&format!("ERROR {}", percent(error))), "{what}: {bar}, {error}");
-            assert!(shown.row("Error").starts_with(&format!("{} of", percent(error))), "{what}: {error}");
+            assert!(shown.row("Error").starts_with(&format!("{} ± ", percent(error))), "{what}: {error}");
         }
         None => {
             assert!(!bar.contains('%') && shown.row("Error") == "\u{2013}", "{what}: {bar}, {}", shown.row("Error"))
@@ -98,10 +102,19 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     assert!(stable == "\u{2013}" || summary.contains(&format!("· {stable} ·")), "{what}: {summary}");
     let name = probe["name"].as_str().unwrap();
     let u = [0, 1].map(|i| number(&probe["u"][i]).unwrap());
-    assert_eq!(shown.row(&format!("{name} x, y")), engineering_pair(u, "m"), "{what}");
+    assert_eq!(shown.row(&format!("{name} Δx, Δy")), engineering_pair(u, "m"), "{what}");
     let mesh_error = format!("{} (estimate)", percent(number(&json["mesh_error_percent"]).unwrap()));
     assert_eq!(shown.row("Mesh error"), mesh_error, "{what}");
     let strain = engineering(three_digits(100.0 * number(&json["max_strain"]).unwrap()), "%");
+    let stress = &json["max_von_mises"];
+    let stress = match number(&stress["value"]) {
+        Some(value) => {
+            let at = [0, 1].map(|i| number(&stress["at"][i]).unwrap());
+            format!("{} at {}", engineering(three_digits(value), "Pa"), engineering_pair(at, "m"))
+        }
+        None => "\u{2013}".to_owned(),
+    };
+    assert!(shown.row("Stress").starts_with(&stress), "{what}: {stress}, {}", shown.row("Stress"));
     assert!(
         [strain.clone(), format!("{strain}: too large")].contains(&shown.row("Strain").to_owned()),
         "{what}: {strain}"
@@ -109,7 +122,7 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     assert_eq!(shown.row("Energy"), engineering(number(&json["energy"]["elastic"]).unwrap(), "J"), "{what}");
     if json["method"] == "warped" {
         let rho = number(&json["fixed_point_rho"]);
-        let bar = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} per iteration", two_digits(rho)));
+        let bar = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} per iteration", rho_text(rho)));
         assert_eq!(shown.starting_with("ρ "), Some(bar.as_str()), "{what}");
         let claims = json["claims"].as_array().unwrap();
         let words =
@@ -146,18 +159,19 @@ fn numbers_are_those_of_solve() {
             let name = if scene.mesh.is_some() { id } else { path.to_str().unwrap() };
             let what = format!("{id} at {factor}");
             let json: Value = serde_json::from_slice(&warpbeam(&["solve", name, "--json"]).stdout).unwrap();
-            let shown = Shown::of(id, scene);
+            let shown = Shown::of(id, scene.clone());
             if json["status"] == "converged" {
                 compare(&what, &shown, &json);
                 results += 1;
             } else {
                 let bar = shown.starting_with("ERROR ").unwrap();
                 assert!(!bar.contains('%'), "{what}: {bar}");
-                assert_eq!(
-                    (shown.starting_with("ρ "), shown.row("Mesh error")),
-                    (Some("ρ \u{2013}"), "\u{2013}"),
-                    "{what}"
-                );
+                // ρ is that of the equilibrium that Newton's method finds.
+                let newton = solve(&scene.with_method(MethodKind::Newton));
+                let rho = newton["fixed_point_rho"].as_f64().filter(|_| newton["status"] == "converged");
+                let rho = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} per", rho_text(rho)));
+                let seen = shown.starting_with("ρ ").unwrap();
+                assert!(seen.starts_with(&rho) && shown.row("Mesh error") == "\u{2013}", "{what}: {seen}, {rho}");
                 assert!(shown.starting_with("Converged").is_none(), "{what}: {:?}", shown.0);
                 diverged += 1;
             }

@@ -385,7 +385,7 @@ fn remedies_are_one_click_away() {
     wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     let error = solve_json(&["article"])["probes"][0]["error_percent"].as_f64().unwrap();
-    let shown = format!("ERROR {} mesh", percent(error));
+    let shown = format!("ERROR {} mesh · strain 56 %", percent(error));
     assert!(harness.query_by_label(&shown).is_some(), "{shown}: {:?}", texts(&harness));
     let words = format!("{} error: three-node triangles lock in bending.", percent(error));
     assert!(harness.query_by_label(&words).is_some(), "{words}");
@@ -680,7 +680,7 @@ fn results_are_certified_and_compared_with_the_reference() {
     wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
     let error = json["probes"][0]["error_percent"].as_f64().unwrap();
-    let shown = format!("{} of ", percent(error));
+    let shown = format!("{} ± ", percent(error));
     assert!(harness.query_by_label_contains(&shown).is_some(), "{shown}");
     let before = harness.state().view_rect();
     harness.key_press(Key::L);

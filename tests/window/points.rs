@@ -105,7 +105,10 @@ fn colours_follow_the_load_of_a_magnified_body() {
 /// Every field has the value of the card's point under the pointer, and its own name at the colour bar.
 #[test]
 fn every_field_colours_the_body() {
-    let mut harness = harness("article");
+    // The view has room for the outline of the reference once that is known.
+    let mut lab = lab_of("article", scene("article"));
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
     harness.run();
     let at = Vector2::new(1.1, 0.3);
     let pos = on_body(harness.state(), at);
@@ -160,7 +163,7 @@ fn a_point_is_copied_and_kept_as_a_probe() {
     let line = format!("σ_x, σ_y\t{}\n", pair(Field::StressX, Field::StressY));
     assert!(copied.contains(&line), "{copied}");
     harness.run();
-    harness.get_by_label("material").click();
+    harness.get_by_label("material X, Y").click();
     harness.run();
     let own = pair(Field::MaterialStressX, Field::MaterialStressY);
     assert!(harness.query_by_label(&own).is_some() && !copied.contains(&own), "{own}");

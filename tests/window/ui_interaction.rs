@@ -1,6 +1,6 @@
 //! Tests of pointer interaction with the body, its loads and its values, and of edits, without a display or a GPU.
 
-use crate::common::lab::{lab_of, type_into, unfold};
+use crate::common::lab::{lab_of, type_into, unfold, window};
 use crate::common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui::os::OperatingSystem;
@@ -8,7 +8,8 @@ use egui::{Event, Key, Modifiers, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
-use warpbeam::app::Lab;
+use warpbeam::app::{FOCUS_KEYS, Lab, MOUSE};
+use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, Load, LoadId, MethodKind, Source};
 use warpbeam::{Field, PointValues, Simulation, Status};
 
@@ -212,7 +213,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
             let at = values.iter().position(|value| value == name).unwrap_or_else(|| panic!("{name} in {values:?}"));
             values[at + 1].clone()
         };
-        [after("tip x, y"), after("Energy"), after("Equilibrium")]
+        [after("tip Δx, Δy"), after("Energy"), after("Equilibrium")]
     };
     let before = details(&harness);
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");
@@ -222,7 +223,10 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     assert_eq!(details(&harness), before);
     harness.get_by_label_contains("ERROR \u{2013}");
     harness.get_by_label_contains("TIME \u{2013}");
-    harness.get_by_label_contains("ρ \u{2013}");
+    // ρ at the equilibrium that is not reached.
+    harness.state_mut().solve();
+    harness.run();
+    harness.get_by_label_contains("per iteration");
     harness.get_by_label("Use newton").click();
     harness.run();
     assert!(harness.query_by_label_contains("not reached").is_none());
@@ -241,13 +245,32 @@ fn a_scene_that_opens_with_too_large_a_load_shows_the_body_at_rest() {
     harness.get_by_label("equilibrium at 0 N; 176 kN not reached");
     let values: Vec<String> =
         harness.get_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect();
-    let at = values.iter().position(|value| value == "tip x, y").unwrap_or_else(|| panic!("{values:?}"));
+    let at = values.iter().position(|value| value == "tip Δx, Δy").unwrap_or_else(|| panic!("{values:?}"));
     assert_eq!(values[at + 1], "(0, 0) m");
     harness.get_by_label_contains("ERROR \u{2013}");
     harness.get_by_label("Use newton").click();
     harness.run();
     assert!(harness.query_by_label_contains("not reached").is_none());
     assert_eq!(*harness.state().simulation().status(), Status::Converged);
+}
+
+/// A result that was accepted early has an error, whose source may be the early stop, and an explanation; it is not said
+/// to be another equilibrium.
+#[test]
+fn an_accepted_result_has_an_error_and_an_explanation() {
+    let mut early = scene("article");
+    early.solver.accept_after = 3;
+    let error = solve_json(&["article", "--set", "solver.accept_after=3"])["probes"][0]["error_percent"].as_f64();
+    let mut lab = lab_of("article", early);
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
+    harness.run();
+    harness.get_by_label(&format!("ERROR {} mesh or iteration", percent(error.unwrap())));
+    harness.get_by_label("Accepted · 3 iterations");
+    assert!(harness.query_by_label_contains("another equilibrium").is_none());
+    harness.get_by_label("explain").click();
+    harness.run();
+    harness.get_by_label_contains("Accepted after 3 iterations, as the scene asks: the relative residual is 0.02");
 }
 
 /// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.
@@ -674,6 +697,24 @@ fn shortcuts_have_the_names_of_the_system() {
         for key in ["O", "Shift+S"] {
             harness.get_by_label(&format!("{command}+{key}"));
             assert!(harness.query_by_label(&format!("{other}+{key}")).is_none(), "{system:?}: {other}+{key}");
+        }
+    }
+}
+
+/// The list of keys is not wider than a small window.
+#[test]
+fn the_list_of_keys_fits_a_narrow_window() {
+    for size in [[480.0, 640.0], [640.0, 480.0]] {
+        let mut harness = window(size, lab_of("article", scene("article")));
+        // The scene's opening is animated.
+        harness.run_steps(40);
+        harness.key_press(Key::F1);
+        harness.run_steps(10);
+        for (gesture, does) in FOCUS_KEYS.iter().chain(MOUSE) {
+            for text in [gesture, does] {
+                let rect = harness.get_all_by_label(text).last().unwrap().rect();
+                assert!(rect.left() >= 0.0 && rect.right() <= size[0], "{size:?}: {text} at {rect}");
+            }
         }
     }
 }
@@ -1126,7 +1167,7 @@ fn the_scene_is_copied_as_a_rust_program() {
 
 /// Rows of the card of a point.
 const CARD: &[&str] =
-    &["u", "θ", "σ_x, σ_y", "τ_xy", "σ_1, σ_2", "von Mises", "ε_x, ε_y", "γ_xy", "ε_1, ε_2", "ψ", "F", "R", "S"];
+    &["u", "θ", "σ_x, σ_y", "τ_xy", "σ_1, σ_2", "von Mises", "ε_X, ε_Y", "γ_XY", "ε_1, ε_2", "ψ", "F", "R", "S"];
 
 /// Returns the values on the card of a point by the names of the rows.
 fn card(harness: &Harness<'_, Lab>) -> std::collections::BTreeMap<String, String> {

@@ -396,7 +396,8 @@ impl<'a> StripChart<'a> {
             let at = pos2(strips.right() + 10.0, rect.center().y);
             self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
         }
-        if response.on_hover_text(text).clicked() && !is_used {
+        let tip = if is_used { text } else { format!("{text}\n{}", tr("Click to use it")) };
+        if response.on_hover_text(tip).clicked() && !is_used {
             let mut own = scene.clone();
             let label = if let Some(integrator) = strip.integrator {
                 own.dynamics.integrator = integrator;

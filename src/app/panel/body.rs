@@ -87,8 +87,10 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
 
 /// Returns a summary of the material, such as `rubber, 1 MPa`.
 pub(super) fn material_summary(scene: &Scene) -> String {
-    let young = scene.material.young;
-    let name = PRESETS.iter().find(|preset| preset.range.contains(&young)).map(|p| tr(p.name).to_lowercase());
+    let Material { young, density, .. } = scene.material;
+    let is_like =
+        |preset: &&MaterialPreset| preset.range.contains(&young) && (0.5..=2.0).contains(&(density / preset.density));
+    let name = PRESETS.iter().find(is_like).map(|preset| tr(preset.name).to_lowercase());
     joined(name.into_iter().chain([engineering(young, "Pa")]))
 }
 

@@ -281,7 +281,7 @@ const ADDITIONS: [Addition; 3] = [
     ("Moment", "Add a moment on an edge without one", with_another_moment),
     (
         "Support",
-        "Add a support at a place without one; x and y select the directions that it fixes",
+        "Add a support at a place that is not held; x and y select the directions that it fixes",
         with_another_support,
     ),
 ];
@@ -319,8 +319,12 @@ fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
 
 fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
-    let is_taken = |place: &Place| scene.supports.iter().any(|support| support.place == *place);
-    let edges = input.simulation.system().edges().iter().map(|edge| Place::from(edge.name()));
+    let system = input.simulation.system();
+    let is_taken = |place: &Place| match place {
+        Place::Edge(name) => system.edges().iter().any(|edge| edge.name() == name && !is_free(system, edge)),
+        Place::At(at) => system.pattern().fixed(system.mesh().nearest_node((*at).into())) == [true, true],
+    };
+    let edges = system.edges().iter().map(|edge| Place::from(edge.name()));
     // A beam that is held at one end gets a roller under the other end.
     if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
         scene.supports.push(Support::new(place, &[Axis::Y]));

@@ -64,7 +64,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         || UNKNOWN.to_owned(),
         |(error, reference)| {
             let whole = engineering(reference.displacement.norm(), "m");
-            fill!("%{error} of %{whole}", error = percent(error), whole = whole)
+            let own = percent(reference.own_error_percent);
+            fill!("%{error} ± %{own} of %{whole}", error = percent(error), own = own, whole = whole)
         },
     );
     row("Error", text, &error_tip(input.reference, input.reference_failure));
@@ -116,11 +117,11 @@ fn probe_row(row: &mut ResultRow<'_>, simulation: &Simulation) {
     const MAX_PROBES: usize = 8;
     for probe in simulation.problem().probes().iter().take(MAX_PROBES) {
         let u = probe.mean(simulation.displacement());
-        row(&format!("{} x, y", tr(&probe.name)), engineering_pair(u.into(), "m"), "Displacement of the probe");
+        row(&format!("{} Δx, Δy", tr(&probe.name)), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
 }
 
-/// Shows the estimated mesh error and the largest strain.
+/// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let known = *input.simulation.status() == Status::Converged;
     let quality = input.quality;
@@ -129,6 +130,19 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
                the nodes";
     row("Mesh error", text, tip);
+    let text = match quality.largest_stress.filter(|_| known) {
+        Some((stress, at)) => {
+            let (stress, at) = (engineering(three_digits(stress), "Pa"), engineering_pair(at.into(), "m"));
+            match quality.singularity {
+                Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress = stress, place = at),
+                None => fill!("%{stress} at %{place}", stress = stress, place = at),
+            }
+        }
+        None => UNKNOWN.to_owned(),
+    };
+    let tip = tr("Largest von Mises stress (Cauchy), and its point at rest").to_owned();
+    let tip = std::iter::once(tip).chain(quality.singularity.as_ref().map(said)).collect::<Vec<_>>().join("; ");
+    row("Stress", text, &tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
     let warnings: Vec<String> = quality.warnings().filter(|_| known).map(|warning| said(&warning)).collect();
     let text = match (known, warnings.is_empty()) {

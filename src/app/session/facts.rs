@@ -10,11 +10,11 @@ use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::format::number;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, DynamicsSettings, Scene, SolverSettings};
+use crate::scene::{Analysis, DynamicsSettings, MethodKind, Scene, SolverSettings};
 use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
-use crate::study::{Effort, LoadCurve, LoadPath, PathFromRest, Reference, StudyError, time_from_rest};
+use crate::study::{Effort, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, StudyError, time_from_rest};
 use crate::timings::Timings;
 
 /// Load–displacement curve of a scene.
@@ -38,6 +38,8 @@ facts! {
         in parts |scene, observe, partial| {
             found(MethodLimits::with_partial(scene, observe, &|limits| partial(limits.clone())))
         };
+    /// Spectral radius ρ of the warped iteration at the equilibrium.
+    RhoFact by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
     /// Time of a solve from rest.
     TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.
@@ -67,6 +69,8 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
 pub(crate) struct ShownFacts<'a> {
     /// `true` if the load–displacement curve is shown.
     pub curve: bool,
+    /// `true` if ρ at the equilibrium is shown.
+    pub rho: bool,
     /// Scene whose limits are shown.
     pub limits_of: Option<&'a Scene>,
 }
@@ -81,6 +85,8 @@ pub(crate) struct Facts {
     pub path: Keyed<PathFact>,
     /// Limits of every method and element.
     pub limits: Keyed<LimitsFact>,
+    /// Spectral radius ρ of the warped iteration at the equilibrium.
+    pub rho: Keyed<RhoFact>,
     /// Time of a solve from rest.
     pub time: Keyed<TimeFact>,
     /// Lowest natural frequency, Hz.
@@ -94,6 +100,7 @@ impl Facts {
         self.reference.turn_to(scene);
         self.curve.turn_to(scene);
         self.path.turn_to(scene);
+        self.rho.turn_to(scene);
         self.time.turn_to(scene);
     }
 
@@ -102,9 +109,10 @@ impl Facts {
         let reference = self.reference.request(scene);
         let path = self.path.request(scene);
         let curve = shown.curve && self.curve.request(scene);
+        let rho = shown.rho && self.rho.request(scene);
         let limits = shown.limits_of.is_some_and(|scene| self.limits.request(scene));
         // Solves are timed after the other computations, which would slow them down.
-        reference || path || curve || limits || self.time.request(scene)
+        reference || path || curve || rho || limits || self.time.request(scene)
     }
 
     /// Computes the results of a scene at rest, and waits for them.
@@ -113,6 +121,9 @@ impl Facts {
         self.path.wait(scene);
         if shown.curve {
             self.curve.wait(scene);
+        }
+        if shown.rho {
+            self.rho.wait(scene);
         }
         if let Some(scene) = shown.limits_of {
             self.limits.wait(scene);
@@ -135,6 +146,11 @@ pub(crate) fn without_settings(scene: &Scene) -> Scene {
     let dynamics = &mut scene.dynamics;
     (dynamics.integrator, dynamics.time_step, dynamics.iterations) = (any.integrator, any.time_step, any.iterations);
     scene
+}
+
+/// Returns the scene with the default solver, on which its equilibrium does not depend.
+pub(crate) fn without_solver(scene: &Scene) -> Scene {
+    Scene { solver: SolverSettings::default(), ..scene.clone() }
 }
 
 /// Returns the scene with default values of all settings that its limits do not depend on: they are those of every
@@ -160,6 +176,19 @@ fn find_reference(scene: &Scene, observe: Observer<'_>) -> Computed<Reference> {
 
 fn found<V>(found: Result<V, StudyError>) -> Computed<V> {
     found.map(Some).map_err(|error| (&error).into())
+}
+
+/// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
+/// warped iteration may diverge; `None` of a larger body than results are certified of.
+fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
+    if scene.analysis != Analysis::Static || scene.unknowns() > MAX_CERTIFIED as u64 {
+        return None;
+    }
+    let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).ok()?;
+    if simulation.solve_watched(&mut |_| observe(Progress::at(0.0))).is_break() {
+        return None;
+    }
+    simulation.certify().fixed_point_rho.filter(|_| simulation.status().is_success())
 }
 
 /// Returns the lowest natural frequency of a scene's body about rest, Hz. It asks before it meshes, and before it

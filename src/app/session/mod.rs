@@ -35,7 +35,7 @@ use crate::app::task::solve::{SolveStart, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{IntegratorKind, Load, Scene, SceneError, Source};
+use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
@@ -686,6 +686,17 @@ impl Session {
     /// Computes the reference solution, and waits for it.
     pub(crate) fn wait_for_reference(&mut self) {
         self.facts.reference.wait(&self.scene);
+    }
+
+    /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
+    pub(crate) fn lacks_rho(&self) -> bool {
+        let is_warped = self.scene.solver.method == MethodKind::Warped && !self.is_motion();
+        is_warped && self.has_ended() && !self.simulation.status().is_success()
+    }
+
+    /// Computes ρ at the equilibrium, and waits for it.
+    pub(crate) fn wait_for_rho(&mut self) {
+        self.facts.rho.wait(&self.scene);
     }
 
     /// Stores a copy of an equilibrium, to be displayed when a later state diverges. If the first state diverges, the

@@ -290,6 +290,7 @@ impl Lab {
         let limits = view.mode == Mode::Limits && limits.base().is_none_or(|base| facts.limits.is_pending(base));
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
+        let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
         session.is_working() || session.is_certifying() || plots || limits || learns || at_rest
     }

@@ -13,7 +13,7 @@ use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
-use crate::scene::{LoadId, Source};
+use crate::scene::{Load, LoadId, Source};
 use crate::study::Extent;
 
 impl Lab {
@@ -89,6 +89,12 @@ impl Lab {
             Action::Escape if self.desk.session.is_working() => self.cancel(),
             Action::Escape => self.desk.viewport.clear_probe(),
             Action::Edit(label, scene) => {
+                let added = match scene.loads.last() {
+                    Some(Load::Force { .. }) if scene.loads.len() > self.scene().loads.len() => {
+                        Some(scene.loads.len() - 1)
+                    }
+                    _ => None,
+                };
                 let applied = self.desk.session.apply(Edit::Scene(label, scene));
                 let messages = &mut self.desk.panel.messages;
                 match applied {
@@ -96,6 +102,10 @@ impl Lab {
                     Err(error) => messages.insert(label, (&error).into()),
                 };
                 self.apply_session_changes();
+                // The sliders set a new force.
+                if let Some(added) = added.filter(|added| *added < self.scene().loads.len()) {
+                    self.desk.panel.choose_force(added);
+                }
             }
             Action::Apply(scene, iterations) => {
                 self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MAX_ITERATIONS)));
@@ -142,6 +152,11 @@ impl Lab {
             }
             // The drawer of the other kind of scene does not exist here.
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
+            // Compare has a load curve of its own.
+            Action::Toggle(Toggle::Drawer(Drawer::Curve)) if self.desk.view.mode == Mode::Compare => {
+                self.desk.compare.toggle_trace();
+                ctx.request_repaint();
+            }
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();

@@ -27,9 +27,14 @@ pub const MOUSE: &[(&str, &str)] = &[
 
 /// Shows the list over everything; sets `open` to `false` when it is closed.
 pub(crate) fn show(ctx: &Context, open: &mut bool) {
+    /// Width of the window, points, below which an entry has its keys above its text.
+    const TWO_COLUMNS: f32 = 900.0;
+    /// Space left and right of the list in a narrow window, points.
+    const SIDE: f32 = 40.0;
     if !*open {
         return;
     }
+    let width = ctx.content_rect().width();
     egui::Window::new(tr("Keys and mouse"))
         .id(egui::Id::unique("help"))
         .open(open)
@@ -40,15 +45,21 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .max_height(ctx.content_rect().height() - 80.0)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
-            egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
-                for shortcut in shortcuts() {
-                    ui.strong(with_keys(ctx, &shortcut.text()));
-                    ui.label(tr(shortcut.does));
-                    ui.end_row();
+            let of_shortcuts = shortcuts().map(|shortcut| (with_keys(ctx, &shortcut.text()), tr(shortcut.does)));
+            let of_gestures = FOCUS_KEYS.iter().chain(MOUSE);
+            let rows = of_shortcuts.chain(of_gestures.map(|(gesture, does)| (tr(gesture).to_owned(), tr(does))));
+            if width < TWO_COLUMNS {
+                ui.set_max_width(width - 2.0 * SIDE);
+                for (keys, does) in rows {
+                    ui.add(egui::Label::new(egui::RichText::new(keys).strong()).wrap());
+                    ui.indent(does, |ui| ui.add(egui::Label::new(does).wrap()));
                 }
-                for (gesture, does) in FOCUS_KEYS.iter().chain(MOUSE) {
-                    ui.strong(tr(gesture));
-                    ui.label(tr(does));
+                return;
+            }
+            egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
+                for (keys, does) in rows {
+                    ui.strong(keys);
+                    ui.label(does);
                     ui.end_row();
                 }
             });

@@ -67,8 +67,9 @@ impl Desk {
         }
     }
 
-    /// Turns Limits to the scene while it is shown, and returns the results that only some views show.
-    pub(super) fn shown_facts(&mut self) -> (&mut Session, ShownFacts<'_>) {
+    /// Turns Limits to the scene while it is shown, and returns the results that only some views show; `learns_rho` is
+    /// `true` if a card of Learn shows ρ.
+    pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
         let Self { session, view, limits, .. } = self;
         let shows_limits = view.mode == Mode::Limits;
         if shows_limits {
@@ -76,7 +77,9 @@ impl Desk {
         }
         let limits_of = limits.base().filter(|_| shows_limits);
         session.turn_limits_to(limits_of);
-        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), limits_of })
+        // A result of the warped iteration has its own ρ.
+        let rho = learns_rho || session.lacks_rho();
+        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), rho, limits_of })
     }
 
     /// Returns the common input of the panes of Compare.
@@ -117,8 +120,6 @@ pub(super) struct Story {
     pub is_still: bool,
     /// `true` if the body is compared with the reference solution: under the scene's load.
     pub compares: bool,
-    /// ρ of the warped iteration at the equilibrium that it does not reach.
-    pub rho: Option<f64>,
     /// View options before the story.
     pub view: ViewOptions,
     /// State of Learn, if the story was started there.
@@ -270,8 +271,12 @@ impl Lab {
     /// Iterates until the status is final, or to the end of the motion's duration, and computes all displayed results.
     pub fn solve(&mut self) {
         let has_search = *self.simulation().status() == Status::Running;
-        let (session, shown) = self.desk.shown_facts();
+        let learns_rho = self.learns_rho();
+        let (session, shown) = self.desk.shown_facts(learns_rho);
         session.solve(shown);
+        if session.lacks_rho() {
+            session.wait_for_rho();
+        }
         self.apply_session_changes();
         let Desk { session, view, compare, sections, .. } = &mut self.desk;
         if session.is_motion() {
@@ -297,6 +302,11 @@ impl Lab {
         lesson.map(|lesson| &lesson.aside).or_else(|| self.story.is_none().then_some(&self.desk))
     }
 
+    /// Returns `true` if a card of Learn shows ρ at the equilibrium.
+    pub(super) fn learns_rho(&self) -> bool {
+        self.lesson.as_ref().is_some_and(|lesson| lesson.learn.shows_rho())
+    }
+
     /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
         let Self { desk: Desk { session, view, panel, .. }, intro, lesson, .. } = self;
@@ -316,11 +326,12 @@ impl Lab {
         Readout {
             reference: reference.and_then(Result::ok),
             reference_failure: reference.and_then(Result::err),
-            path: facts.path.get(session.scene()).map(|path| path.to(session.simulation().displacement())),
-            equilibrium_rho: match &self.story {
-                Some(story) => story.rho,
-                None => self.lesson.as_ref().and_then(|lesson| lesson.learn.rho(session.scene())),
-            },
+            // Only an equilibrium is the end of a path, or of another one.
+            path: (facts.path.get(session.scene()))
+                .filter(|_| *session.simulation().status() == Status::Converged)
+                .map(|path| path.to(session.simulation().displacement())),
+            equilibrium_rho: facts.rho.get(session.scene()).copied(),
+            is_computing_rho: facts.rho.is_pending(session.scene()),
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
             shows_converged: viewport.shows_converged(),

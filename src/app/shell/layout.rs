@@ -115,7 +115,8 @@ impl Lab {
             return;
         }
         let is_pressed = ctx.input(|i| i.pointer.any_down());
-        let (session, shown) = self.desk.shown_facts();
+        let learns_rho = self.learns_rho();
+        let (session, shown) = self.desk.shown_facts(learns_rho);
         if session.request_facts(shown, is_pressed) {
             ctx.request_repaint_after(POLL);
         }
@@ -281,11 +282,8 @@ impl Lab {
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // The state of the cards is taken out of the lab, because the readout borrows the lab.
         let Some(mut lesson) = self.lesson.take() else { return };
-        let rho = lesson.learn.rho(self.desk.session.scene());
         let budget = &self.desk.budget;
-        let mut readout = self.readout();
-        readout.equilibrium_rho = rho;
-        let shown = Shown { input: readout, study: budget.study(), progress: budget.progress() };
+        let shown = Shown { input: self.readout(), study: budget.study(), progress: budget.progress() };
         // Escape closes the panel over the body first.
         let sheet = self.desk.view.narrow && self.desk.view.sheet;
         let keys = !self.has_dialog() && !self.desk.view.help && !sheet;

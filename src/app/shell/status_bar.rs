@@ -1,6 +1,6 @@
-//! Status bar along the bottom: the main numbers of the result, a plot of the residual, and the button of the drawer.
+//! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, error_color, error_tip, rho, rho_number};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, error_color, error_tip, is_large, rho, rho_number};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -60,11 +60,6 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
                 for entry in entries {
                     number(ui, &palette, entry, wide);
                 }
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if input.simulation.motion().is_none() && ui.available_width() > 160.0 {
-                        sparkline(ui, &palette, input);
-                    }
-                });
             });
         });
     });
@@ -79,7 +74,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let doubt = doubt(input, errors);
     let is_without_reference =
         input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
-    let color = match error_color(palette, errors.own) {
+    let color = match error_color(palette, errors.bound) {
         color if doubt.is_some() && color == palette.good => palette.warning,
         color => color,
     };
@@ -88,6 +83,10 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
             name: "ERROR",
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match (doubt, errors.source) {
+                // A large error has a source, whatever else is to be doubted.
+                (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
+                    format!("{} · {doubt}", tr(source.word())).into()
+                }
                 (Some(doubt), _) => doubt.into(),
                 (None, Some(source)) => tr(source.word()).into(),
                 (None, None) if is_without_reference => tr("no reference").into(),
@@ -222,47 +221,6 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Respo
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
     response.on_hover_text(tip)
-}
-
-/// Plots the residual of every iteration, and the tolerance.
-fn sparkline(ui: &mut Ui, palette: &Palette, input: &Readout<'_>) {
-    const NAME: f32 = 9.0;
-    let name = tr("residual").to_owned();
-    let name = ui.painter().layout_no_wrap(name, FontId::proportional(SMALL), palette.secondary);
-    let size = vec2(84.0 + NAME + name.size().x, 28.0);
-    let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
-    let at = pos2(whole.left(), whole.center().y - 0.5 * name.size().y);
-    let rect = Rect::from_min_max(pos2(whole.left() + name.size().x + NAME, whole.top()), whole.max);
-    ui.painter().galley(at, name, palette.secondary);
-    let asked = input.scene.solver.tolerance.max(1e-300).log10();
-    let decades = |residual: f64| residual.clamp(1e-300, 1e300).log10();
-    let top = input.residuals.iter().map(|&r| decades(r)).fold(0.0_f64, f64::max);
-    let lowest = input.residuals.iter().map(|&r| decades(r)).fold(asked, f64::min).max(asked - 4.0);
-    let y = |value: f64| {
-        rect.bottom() - 2.0 - (rect.height() - 4.0) * ((value - lowest) / (top - lowest)).clamp(0.0, 1.0) as f32
-    };
-    let goal = y(asked);
-    let mut x = rect.left();
-    while x < rect.right() {
-        ui.painter().hline(x..=(x + 3.0).min(rect.right()), goal, Stroke::new(1.0, palette.secondary));
-        x += 7.0;
-    }
-    let last = input.residuals.len().saturating_sub(1).max(1) as f32;
-    let points: Vec<_> = (0u16..)
-        .zip(input.residuals)
-        .map(|(i, &r)| pos2(rect.left() + rect.width() * f32::from(i) / last, y(decades(r))))
-        .collect();
-    // Segments of one thick line would have joints that stick out at sharp corners.
-    for pair in points.windows(2) {
-        ui.painter().line(pair.to_vec(), Stroke::new(1.5, palette.method(input.scene.solver.method)));
-    }
-    let text = fill!(
-        "Residual %{residual} after %{n} iterations",
-        residual = format!("{:.1e}", input.simulation.residual()),
-        n = input.simulation.iterations()
-    );
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
-    response.on_hover_text(fill!("%{residual}; dashed: the tolerance", residual = text));
 }
 
 /// Returns the text of the current phase of a background solve.

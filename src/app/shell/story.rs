@@ -1,8 +1,6 @@
 //! Story of the first start: in five parts the article's beam shows linear theory, the limit of the warped iteration,
 //! Newton's method and another element. At the end the user's own scene is as before.
 
-use std::ops::ControlFlow;
-
 use egui::{Align2, Event, FontId, Painter, Rect, Role, Sense, Stroke, TouchPhase, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
 
@@ -109,8 +107,8 @@ impl Lab {
         let own = ViewOptions { bars: view.bars, narrow: view.narrow, ..ViewOptions::default() };
         let view = std::mem::replace(view, own);
         let (is_still, lesson) = (self.reduces_motion(), self.lesson.take());
-        let (start, part, left, compares, rho) = (None, 0, 0.0, false, None);
-        self.story = Some(Box::new(Story { start, part, left, is_still, compares, rho, view, lesson }));
+        let (start, part, left, compares) = (None, 0, 0.0, false);
+        self.story = Some(Box::new(Story { start, part, left, is_still, compares, view, lesson }));
         self.apply_session_changes();
     }
 
@@ -154,8 +152,9 @@ impl Lab {
         }
         session.solve_from_rest();
         let is_lost = method == MethodKind::Warped && !session.simulation().status().is_success();
-        story.rho =
-            if is_lost { learn::fixed_point_rho(session.scene(), &|_| ControlFlow::Continue(())) } else { None };
+        if is_lost {
+            session.wait_for_rho();
+        }
         self.apply_session_changes();
     }
 

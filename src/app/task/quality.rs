@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::scene::Material;
 use crate::sentence::Sentence;
-use crate::simulation::{Deformation, Simulation};
+use crate::simulation::{Deformation, Simulation, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
 
 /// Quality of the last state that was evaluated.
@@ -15,6 +15,10 @@ pub(crate) struct Quality {
     pub mesh_error_percent: Option<f64>,
     /// Largest principal strain that is recovered at a node.
     pub max_strain: f64,
+    /// Largest von Mises stress (Cauchy) that is recovered at a node, Pa, and the node's position at rest, m.
+    pub largest_stress: Option<(f64, Vector2<f64>)>,
+    /// Reason why this stress depends on the mesh.
+    pub singularity: Option<Sentence>,
     /// Number of elements that are turned inside out, and number of all elements.
     inside_out: [usize; 2],
 }
@@ -34,7 +38,11 @@ impl Quality {
             return;
         }
         let nodal = simulation.nodal_stress();
-        self.mesh_error_percent = simulation.mesh_error(&nodal).percent;
+        let error = simulation.mesh_error(&nodal);
+        let stress = StressResult::of(simulation.problem(), &nodal, &error);
+        self.mesh_error_percent = stress.mesh_error_percent;
+        self.largest_stress = stress.largest.map(|largest| (largest.von_mises, largest.at));
+        self.singularity = stress.singularity.as_ref().map(Sentence::from);
         let deformation = Deformation::of(simulation.problem(), simulation.state(), &nodal);
         self.max_strain = deformation.max_strain;
         self.inside_out = [deformation.inverted_elements, simulation.mesh().element_count()];

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
 
-use crate::app::viewport::arrow::{MIN_SPAN, paint_grip, power_of_ten_above};
+use crate::app::viewport::arrow::{Arrow, MIN_SPAN, paint_grip, power_of_ten_above};
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads, STRAIGHT};
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
@@ -117,13 +117,15 @@ impl MomentArrow {
         self.paint_arrow(painter, color, 3.0);
     }
 
-    /// Paints the arrow with its moment below it, thin if the body does not have this load.
+    /// Paints the arrow with its moment below it, or above it if one of these force arrows is below; thin if the body does
+    /// not have this load.
     pub(crate) fn paint(
         &self,
         painter: &Painter,
         color: Color32,
         visuals: &Visuals,
         (is_hot, is_outline): (bool, bool),
+        forces: &[Arrow],
     ) {
         let sweep = self.sweep();
         let faint = if self.moment == 0.0 && !is_hot { color.gamma_multiply(0.55) } else { color };
@@ -131,7 +133,12 @@ impl MomentArrow {
         paint_grip(painter, end + along * 3.0, faint, is_hot);
         let below = (RADIUS + PITCH * (sweep.abs() / TAU).ceil() + 12.0) as f32;
         let label = engineering(self.moment, "N m");
-        boxed_text(painter, self.center + vec2(0.0, below), Align2::CENTER_TOP, &label, visuals, faint, 200.0);
+        let is_crossed = |arrow: &Arrow| (arrow.from - self.center).length() < below && arrow.vector.y > 0.0;
+        let (side, anchor) = match forces.iter().any(is_crossed) {
+            true => (-1.0, Align2::CENTER_BOTTOM),
+            false => (1.0, Align2::CENTER_TOP),
+        };
+        boxed_text(painter, self.center + vec2(0.0, side * below), anchor, &label, visuals, faint, 200.0);
     }
 
     /// Paints the arc with a line of this width, points, and its head; returns the end of the arc and its direction.

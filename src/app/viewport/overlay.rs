@@ -407,11 +407,12 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
         }
     }
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
-    for arrow in forces.arrows(projection) {
+    let arrows = forces.arrows(projection);
+    for arrow in &arrows {
         arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline));
     }
     for arrow in forces.moment_arrows(projection) {
-        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline));
+        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline), &arrows);
     }
     if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);

@@ -88,10 +88,15 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
         Axes::Space => (Field::StressX, Field::StressY, Field::ShearStress),
         Axes::Material => (Field::MaterialStressX, Field::MaterialStressY, Field::MaterialShearStress),
     };
-    let strain = if point.is_linear {
-        "Strain ε = sym F − I of linear theory"
+    // Capitals are the axes of the material, which rotate with it.
+    let [stresses, shear_stress] = match axes {
+        Axes::Material if !point.is_linear => ["σ_X, σ_Y", "τ_XY"],
+        _ => ["σ_x, σ_y", "τ_xy"],
+    };
+    let ([strains, shear_strain], strain) = if point.is_linear {
+        (["ε_x, ε_y", "γ_xy"], "Strain ε = sym F − I of linear theory")
     } else {
-        "Strain ε = S − I, in the axes of the material"
+        (["ε_X, ε_Y", "γ_XY"], "Strain ε = S − I, in the axes X, Y of the material")
     };
     let mut rows = vec![("u", metres(point.displacement), "Displacement")];
     if !point.is_linear {
@@ -101,16 +106,16 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
     let direction = principal_direction(point).filter(|_| axes == Axes::Space || point.is_linear);
     let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees().round() + 0.0));
     rows.extend([
-        ("σ_x, σ_y", none(two(x, y)), "Cauchy stress, which follows from ε"),
-        ("τ_xy", none(one(xy)), "Cauchy stress, which follows from ε"),
+        (stresses, none(two(x, y)), "Cauchy stress, which follows from ε"),
+        (shear_stress, none(one(xy)), "Cauchy stress, which follows from ε"),
         (
             "σ_1, σ_2",
             none(principal) + &direction,
             "Principal stresses in the plane, and the direction of the larger one; drawn at the point",
         ),
         ("von Mises", none(one(Field::VonMises)), "Von Mises stress, from the Cauchy stress, which follows from ε"),
-        ("ε_x, ε_y", none(two(Field::StrainX, Field::StrainY)), strain),
-        ("γ_xy", none(one(Field::ShearStrain)), strain),
+        (strains, none(two(Field::StrainX, Field::StrainY)), strain),
+        (shear_strain, none(one(Field::ShearStrain)), strain),
         (
             "ε_1, ε_2",
             none(two(Field::LargerPrincipalStrain, Field::SmallerPrincipalStrain)),
@@ -223,7 +228,7 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     if !point.is_linear {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
-            for (own, name) in [(Axes::Space, "space"), (Axes::Material, "material")] {
+            for (own, name) in [(Axes::Space, "space x, y"), (Axes::Material, "material X, Y")] {
                 ui.selectable_value(axes, own, RichText::new(tr(name)).size(12.0));
             }
         });
@@ -260,8 +265,8 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
             let title = fill!("Point %{place}", place = place.as_str());
             let axes = match *axes {
                 _ if point.is_linear => None,
-                Axes::Space => Some("space"),
-                Axes::Material => Some("material"),
+                Axes::Space => Some("space x, y"),
+                Axes::Material => Some("material X, Y"),
             };
             let axes = axes.map(|name| format!("{}\t{}", tr("Stress in the axes of"), tr(name)));
             let rows = rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name)));

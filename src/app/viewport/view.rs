@@ -375,8 +375,15 @@ impl BodyView {
         // On a card of Learn a click selects a triangle.
         let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
+            // A probe that is kept there has the same values.
+            let system = content.simulation().system();
+            let mesh = system.mesh();
+            let rounded = probe::place(mesh, mesh.nodes(), point)
+                .and_then(|rest| mesh.locate(menu::rounded(system, rest)))
+                .filter(|near| near.element == point.element);
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
-            self.probe = (!kept.is_some_and(|kept| probe::is_on(kept, click))).then_some(point);
+            let is_unpinned = kept.is_some_and(|kept| probe::is_on(kept, click));
+            self.probe = (!is_unpinned).then_some(rounded.unwrap_or(point));
         }
     }
 

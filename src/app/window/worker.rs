@@ -2,9 +2,9 @@
 
 use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::compare::trace::ExactLine;
-use crate::app::modes::learn::{ElementErrors, Rho};
+use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
-use crate::app::session::facts::{CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, TimeFact};
+use crate::app::session::facts::{CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, RhoFact, TimeFact};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
@@ -25,7 +25,7 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<TimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
     entry::<FactWork<ExactLine>>(),
-    entry::<FactWork<Rho>>(),
+    entry::<FactWork<RhoFact>>(),
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),
     entry::<SolveWork>(),

@@ -227,7 +227,15 @@ fn settings(
             ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
             ui.add(egui::Label::new(RichText::new(said(now)).small()).truncate());
         } else {
-            let tip = "Measure error and time of every element, mesh, method and number of iterations, on this machine";
+            let tip = match budget.scene.analysis {
+                Analysis::Static => {
+                    "Measure error and time of every element, mesh, method and number of iterations, on this machine"
+                }
+                Analysis::Dynamic => {
+                    "Measure error and time of the integrators on coarse meshes, on this machine; `warpbeam study` \
+                     measures finer ones too"
+                }
+            };
             if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
@@ -243,10 +251,18 @@ fn settings(
                     RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
                 }
                 (None, Some(study)) => {
-                    RichText::new(fill!("Error against %{reference}.", reference = study.reference_text())).small()
+                    let against = fill!("Error against %{reference}.", reference = study.reference_text());
+                    let extent = match study {
+                        Measured::Rest(_) => None,
+                        Measured::Motion(_) => {
+                            Some(tr("Coarse meshes only: `warpbeam study` measures all.").to_owned())
+                        }
+                    };
+                    RichText::new(extent.into_iter().chain([against]).collect::<Vec<_>>().join(" ")).small()
                 }
             };
-            ui.add(egui::Label::new(text).truncate());
+            let whole = text.text().to_owned();
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(whole);
         }
     });
     let time = NumberField {

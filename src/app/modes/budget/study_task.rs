@@ -15,7 +15,7 @@ use crate::study::{Extent, MotionStudy, Study, StudyError};
 pub(crate) enum StudyProgress {
     /// Fraction done, and the current measurement, if it is another one.
     Now(f32, Option<Sentence>),
-    SoFar(Measured),
+    SoFar(Box<Measured>),
 }
 
 /// Measurements, or the reason why there are none; `None` for a cancelled study.
@@ -83,7 +83,7 @@ impl BackgroundStudy {
                     self.fraction = fraction;
                     self.now = now.unwrap_or(std::mem::take(&mut self.now));
                 }
-                Update::Progress(StudyProgress::SoFar(so_far)) => *study = Some(so_far),
+                Update::Progress(StudyProgress::SoFar(so_far)) => *study = Some(*so_far),
                 Update::Done(Ok(done)) => {
                     *study = Some(done);
                     return StudyState::Ended(Ok(()));
@@ -105,7 +105,7 @@ fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>
         &|progress: Progress<'_>| reporter.report(StudyProgress::Now(progress.fraction as f32, progress.now.cloned()));
     // A cancellation is seen by the next report of progress.
     let partial = |measured| {
-        let _ = reporter.report(StudyProgress::SoFar(measured));
+        let _ = reporter.report(StudyProgress::SoFar(Box::new(measured)));
     };
     match scene.analysis {
         Analysis::Static => {

@@ -15,8 +15,9 @@ use crate::scene::{ElementKind, Scene};
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;
-/// Height of a pane's header, points.
+/// Height of a pane's header without probes, and of a line with a probe, points.
 const HEADER: f32 = 60.0;
+const PROBE: f32 = 18.0;
 /// Height of the key under the panes, points.
 const KEY: f32 = 26.0;
 /// Smallest width of a pane in a row of three, points.
@@ -80,27 +81,35 @@ pub(super) struct Grid {
     pub tabs: Option<Rect>,
     /// Area of the key under the panes.
     pub key: Rect,
+    /// Height of the headers, points.
+    header: f32,
 }
 
 impl Grid {
-    /// Divides a rectangle among `panes` panes, side by side or in two rows; or, where these would be too small, into
-    /// a row of tabs and the pane `front`.
-    pub(super) fn new(whole: Rect, panes: usize, front: usize) -> Self {
+    /// Divides a rectangle among `panes` panes, whose headers have lines for `probes` probes, side by side or in two rows;
+    /// or, where these would be too small, into a row of tabs and the pane `front`.
+    pub(super) fn new(whole: Rect, (panes, front): (usize, usize), probes: usize) -> Self {
+        let header = HEADER + PROBE * probes as f32;
         let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
         let rest = Rect::from_min_max(whole.min, key.right_top());
         let cells = cells(rest, panes);
-        let is_small = |cell: &Rect| cell.width() < MIN_WIDTH || body_place(*cell).height() < MIN_HEIGHT;
+        let is_small = |cell: &Rect| cell.width() < MIN_WIDTH || body_place(*cell, header).height() < MIN_HEIGHT;
         if !cells.iter().any(is_small) {
-            return Self { cells: (0..).zip(cells).collect(), tabs: None, key };
+            return Self { cells: (0..).zip(cells).collect(), tabs: None, key, header };
         }
         let (tabs, cell) = rest.split_top_bottom_at_y((rest.top() + TABS).min(rest.bottom()));
-        Self { cells: vec![(front, cell)], tabs: Some(tabs), key }
+        Self { cells: vec![(front, cell)], tabs: Some(tabs), key, header }
+    }
+
+    /// Returns the area of the body in a cell, under the header.
+    pub(super) fn body_place(&self, cell: Rect) -> Rect {
+        body_place(cell, self.header)
     }
 }
 
-/// Returns the area of the body in a cell, under the header.
-pub(super) fn body_place(cell: Rect) -> Rect {
-    let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + HEADER).min(cell.bottom())), cell.max);
+/// Returns the area of the body in a cell, under a header of this height, points.
+fn body_place(cell: Rect, header: f32) -> Rect {
+    let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + header).min(cell.bottom())), cell.max);
     // Rounded to pixels, so that the render pass and the painter have the same centre.
     place.round_ui()
 }

@@ -28,6 +28,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Place, Scene};
 use crate::sentence::Sentence;
+use crate::simulation::Status;
 use crate::state::largest;
 use crate::study::{Reference, Setting};
 
@@ -72,12 +73,14 @@ pub(crate) struct Compare {
     trace: Trace,
     /// `true` if the load curve is shown; `None` means if there is room.
     shows_trace: Option<bool>,
+    /// `true` if the last frame showed it.
+    showed_trace: bool,
 }
 
 impl Default for Compare {
     fn default() -> Self {
         let panes = Panes::new(&METHODS_PRESET.map(PaneSetting::of_method));
-        Self { panes, trace: Trace::default(), shows_trace: None }
+        Self { panes, trace: Trace::default(), shows_trace: None, showed_trace: false }
     }
 }
 
@@ -198,6 +201,7 @@ impl Compare {
         let one_row = grid::first_row(panes, ui.ctx().content_rect().width() - panel) == panes;
         let low = if one_row { LOW } else { LOW_FOR_TWO_ROWS };
         let shows_trace = self.shows_trace.unwrap_or(height >= low);
+        self.showed_trace = shows_trace;
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
         if input.common.view.bars {
             Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
@@ -259,9 +263,14 @@ impl Compare {
             let icon = if shows_trace { Icon::Close } else { Icon::Open };
             let button = icon_button(ui, icon, tr("Load curve"), Some(tr("Load curve")), shows_trace);
             if button.on_hover_text(tr("The load curve, drawn while the load is dragged")).clicked() {
-                self.shows_trace = Some(!shows_trace);
+                self.toggle_trace();
             }
         });
+    }
+
+    /// Shows or hides the load curve.
+    pub(crate) fn toggle_trace(&mut self) {
+        self.shows_trace = Some(!self.showed_trace);
     }
 
     /// Shows the panes; returns the pointer's interaction with their load.
@@ -275,7 +284,7 @@ impl Compare {
         }
         let range = self.share_colors(input.common.view);
         let whole = ui.available_rect_before_wrap();
-        let grid = self.panes.lay_out(ui);
+        let grid = self.panes.lay_out(ui, shown_probes(input.common.scene));
         let reference = input.reference.filter(|_| input.common.view.exact);
         let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
         let exact = exact.unwrap_or_default();
@@ -384,16 +393,22 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
     change
 }
 
+/// Largest number of probes in a header, so that the bodies keep their room.
+const MAX_PROBES: usize = 3;
+
+/// Returns the number of probes that a header shows: those at points.
+fn shown_probes(scene: &Scene) -> usize {
+    scene.probes.iter().filter(|probe| matches!(probe.place, Place::At(_))).count().min(MAX_PROBES)
+}
+
 /// Shows the displacements of the probes at points.
 fn kept_probes(ui: &mut Ui, pane: &Pane) {
-    /// Largest number of rows, so that the bodies keep their room.
-    const MAX_ROWS: usize = 3;
     let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
     let is_at_point = |name: &str| {
         simulation.scene().probes.iter().any(|probe| probe.name == name && matches!(probe.place, Place::At(_)))
     };
     let probes = simulation.problem().probes().iter().filter(|probe| is_at_point(&probe.name));
-    for probe in probes.take(MAX_ROWS) {
+    for probe in probes.take(MAX_PROBES) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
         let text = RichText::new(format!("{}: u = {u}", probe.name)).size(SMALL);
@@ -410,7 +425,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         Activity::Rests(end) => match end.status.failure_sentence() {
             Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
             None => {
-                let stopped = if end.status.is_success() { "" } else { tr(", stopped") };
+                let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
                 // Images without bars omit the time, which differs from run to run.
                 let time = pane.seconds().filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));

@@ -234,7 +234,7 @@ impl MotionCompare {
         }
         let range = self.panes.share_colors(input.view, |pane| pane.motion.is_sound());
         let whole = ui.available_rect_before_wrap();
-        let layout = self.panes.lay_out(ui);
+        let layout = self.panes.lay_out(ui, 0);
         self.fit_camera(ui, input);
         let interaction =
             self.panes.show(ui, &layout, (input, &[]), |panes, ui, number| header(panes, ui, number, input));

@@ -200,12 +200,12 @@ impl<P: ComparedPane> Panes<P> {
         range
     }
 
-    /// Divides the available area among the panes.
-    pub(super) fn lay_out(&mut self, ui: &Ui) -> Grid {
-        let grid = Grid::new(ui.available_rect_before_wrap(), self.list.len(), self.front);
+    /// Divides the available area among the panes, whose headers have lines for `probes` probes.
+    pub(super) fn lay_out(&mut self, ui: &Ui, probes: usize) -> Grid {
+        let grid = Grid::new(ui.available_rect_before_wrap(), (self.list.len(), self.front), probes);
         for (number, pane) in self.list.iter_mut().enumerate() {
             let cell = grid.cells.iter().find(|(own, _)| *own == number);
-            pane.display_mut().place = cell.map(|(_, cell)| grid::body_place(*cell));
+            pane.display_mut().place = cell.map(|(_, cell)| grid.body_place(*cell));
         }
         grid
     }
@@ -268,7 +268,7 @@ impl<P: ComparedPane> Panes<P> {
             self.show_tabs(ui, rect, input.scene);
         }
         for &(number, cell) in &grid.cells {
-            let place = grid::body_place(cell);
+            let place = grid.body_place(cell);
             let header = Rect::from_min_max(cell.min, place.right_top());
             let inner = UiBuilder::new().max_rect(header.shrink2(vec2(8.0, 3.0))).id_salt(("pane", number));
             let shown = ui.scope_builder(inner, |ui| {

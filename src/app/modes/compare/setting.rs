@@ -88,15 +88,17 @@ impl PaneSetting {
     /// Returns the scene with these settings.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut scene = Setting {
+        let mut own = Setting {
             method: self.method.unwrap_or(scene.solver.method),
             element: self.element.unwrap_or(scene.element()),
             cells: self.cells,
             iterations: 0,
         }
         .apply(scene);
-        scene.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
-        scene
+        // The pane counts its own iterations.
+        own.solver.accept_after = if self.iterations.is_some() { 0 } else { scene.solver.accept_after };
+        own.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
+        own
     }
 }
 

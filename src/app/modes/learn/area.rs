@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
     });
-    row(ui, &palette, "exact", exact, palette.exact);
+    row(ui, &palette, "reference", exact, palette.exact);
     ui.add_space(6.0);
     let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
     ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());
@@ -92,7 +92,7 @@ pub(super) fn growth_text(growth: f64) -> String {
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
     /// Growth at the end of the bar, percent.
     const FULL: f64 = 110.0;
-    const NAME: f32 = 84.0;
+    const NAME: f32 = 100.0;
     const NUMBER: f32 = 78.0;
     let name = fill!("area, %{name}", name = tr(name));
     let text = growth.map_or_else(|| "\u{2013}".to_owned(), growth_text);

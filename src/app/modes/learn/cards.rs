@@ -78,7 +78,7 @@ pub(crate) const CARDS: &[Card] = &[
         title: "Linear theory makes the area grow",
         text: "Linear theory replaces a rotation by its tangent: a part that rotates by an angle \u{3b8} moves along \
                 a straight line instead of an arc, and grows. Its area growth is \u{3b8}\u{b2} (\u{3b8} in radians), \
-                whatever the material. The dashed line is the exact beam, which rotates without growing.",
+                whatever the material. The dashed line is the reference solution, which rotates without growing.",
         formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
         symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: identity \
                   matrix. J: rotation by 90\u{b0}. det: determinant, the factor by which an area grows.",
@@ -149,7 +149,8 @@ pub(crate) const CARDS: &[Card] = &[
                 four unknowns of the two clamped nodes drop out: 24 \u{2212} 4 = 20.",
         formula: &["R K R^{T} x = f + R K X"],
         symbols: "x, X: positions of the nodes now and at rest (m); u = x \u{2212} X. K with index e: stiffness matrix of \
-                  one triangle (element). \u{3a3}: sum over all triangles.",
+                  one triangle (element). R here: 6\u{d7}6, with the triangle\u{2019}s rotation in three blocks on its \
+                  diagonal. \u{3a3}: sum over all triangles.",
         task: "Click triangles, and point at entries for their values.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -237,10 +238,10 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Shear locking",
-        text: "The forces balance, and still the beam is far from the exact one (dashed). A three-node triangle has \
+        text: "The forces balance, and still the beam is far from the reference (dashed). A three-node triangle has \
                 the same strain everywhere, so it bends only with extra stretch and shear, which make it too stiff. \
                 Another element on the same five cells cures this.",
-        formula: &["`error` = | u \u{2212} u_{`exact`} | / | u_{`exact`} |"],
+        formula: &["`error` = | u \u{2212} u_{`reference`} | / | u_{`reference`} |"],
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
         task: "Try t6 and q4.",
         setup: Setup {

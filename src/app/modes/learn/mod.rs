@@ -7,15 +7,15 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
 use crate::app::readout::Readout;
+use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-use crate::progress::{Observer, Progress};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{self, Analysis, MethodKind, Scene, SolverSettings, Source, registry};
+use crate::scene::{self, Scene, Source, registry};
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
 use crate::study::Study;
@@ -65,14 +65,8 @@ pub(crate) enum Needs {
 }
 
 facts! {
-    /// Spectral radius ρ of the warped iteration at the equilibrium.
-    Rho by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
     /// Errors of all elements.
     ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, observe| Ok(locking::errors(scene, observe));
-}
-
-fn without_solver(scene: &Scene) -> Scene {
-    Scene { solver: SolverSettings::default(), ..scene.clone() }
 }
 
 fn without_element(scene: &Scene) -> Scene {
@@ -92,7 +86,6 @@ pub(crate) struct Learn {
     rotation_part: f64,
     /// Largest error in the table of the trade-off, percent.
     asked: f64,
-    rho: Keyed<Rho>,
     errors: Keyed<ElementErrors>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
@@ -165,7 +158,6 @@ impl Learn {
             picked: 6,
             rotation_part: 1.0,
             asked: 1.0,
-            rho: Keyed::default(),
             errors: Keyed::default(),
             messages: Messages::new(),
             line: 0,
@@ -194,9 +186,9 @@ impl Learn {
         (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
-    /// Returns ρ at the equilibrium of a scene; `None` until it has been computed.
-    pub(crate) fn rho(&self, scene: &Scene) -> Option<f64> {
-        self.rho.get(scene).copied()
+    /// Returns `true` if the card shows ρ at the equilibrium.
+    pub(crate) fn shows_rho(&self) -> bool {
+        self.card().needs == Needs::Rho
     }
 
     fn errors(&self, scene: &Scene) -> Option<&[ElementError]> {
@@ -205,31 +197,20 @@ impl Learn {
 
     /// Returns `true` while a result of a scene that the card shows is being computed.
     pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
-        match self.card().needs {
-            Needs::Nothing => false,
-            Needs::Rho => self.rho.is_pending(scene),
-            Needs::Errors => self.errors.is_pending(scene),
-        }
+        self.card().needs == Needs::Errors && self.errors.is_pending(scene)
     }
 
     /// Requests the results that the card shows.
     fn request(&mut self, scene: &Scene, ctx: &Context) {
-        let is_pending = match self.card().needs {
-            Needs::Nothing => false,
-            Needs::Rho => self.rho.request(scene),
-            Needs::Errors => self.errors.request(scene),
-        };
-        if is_pending {
+        if self.card().needs == Needs::Errors && self.errors.request(scene) {
             ctx.request_repaint_after(POLL);
         }
     }
 
     /// Computes the results that the card shows, and waits for them.
     pub(crate) fn wait(&mut self, scene: &Scene) {
-        match self.card().needs {
-            Needs::Nothing => {}
-            Needs::Rho => self.rho.wait(scene),
-            Needs::Errors => self.errors.wait(scene),
+        if self.card().needs == Needs::Errors {
+            self.errors.wait(scene);
         }
     }
 
@@ -485,21 +466,6 @@ pub(crate) fn article() -> Option<(Source, Scene)> {
     let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
     let scene = scene::open(&source).ok()?;
     Some((source, scene))
-}
-
-/// Returns ρ of the warped iteration at a scene's equilibrium, which is computed with Newton's method because the
-/// warped iteration may diverge.
-pub(crate) fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
-    if scene.analysis != Analysis::Static {
-        return None;
-    }
-    let mut scene = scene.clone();
-    scene.solver.method = MethodKind::Newton;
-    let mut simulation = Simulation::new(&scene).ok()?;
-    if simulation.solve_watched(&mut |_| observe(Progress::at(0.0))).is_break() {
-        return None;
-    }
-    simulation.certify().fixed_point_rho
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::scene::MethodKind;
 use crate::simulation::Status;
 
 /// Shows the buttons that iterate, and the residuals.
-pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.input.simulation.status() != Status::Running;
         for (name, tip, action, on) in [
@@ -31,11 +31,11 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: 
             ui.add(egui::Label::new(text).extend());
         }
     });
-    plot(ui, shown, learn);
+    plot(ui, shown);
 }
 
 /// Shows the buttons that choose a method, and the residuals.
-pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
             let chosen = shown.input.scene.solver.method == method.kind;
@@ -55,7 +55,7 @@ pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions
         };
         ui.add(egui::Label::new(text).extend());
     });
-    plot(ui, shown, learn);
+    plot(ui, shown);
 }
 
 /// Returns the ratio of the last two residuals.
@@ -65,14 +65,16 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
     (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
-fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
+fn plot(ui: &mut Ui, shown: &Shown<'_>) {
     /// Smallest number of iterations on the horizontal axis, and decimal exponent at the top of the vertical axis.
     const MIN_ITERATIONS: usize = 12;
     const HIGHEST: f64 = 1.0;
     const LEFT: f32 = 40.0;
     const BELOW: f32 = 20.0;
     let palette = Palette::new(ui.visuals());
-    let rho = learn.rho(shown.input.scene);
+    // The residuals of other methods do not follow it.
+    let is_warped = shown.input.scene.solver.method == MethodKind::Warped;
+    let rho = shown.input.equilibrium_rho.filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
@@ -122,7 +124,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>, learn: &Learn) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if rho.is_none() && learn.is_computing(shown.input.scene) {
+    if is_warped && shown.input.is_computing_rho {
         ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }

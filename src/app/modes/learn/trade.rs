@@ -74,7 +74,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     });
     let text = match shown.study {
         Some(study) => {
-            fill!("Error against %{reference}. Grey: the smallest error measured.", reference = said(&study.reference))
+            fill!(
+                "Error against %{reference}. Grey: the smallest bound, if none is that small.",
+                reference = said(&study.reference)
+            )
         }
         None => tr("Nothing measured yet: it takes some seconds.").to_owned(),
     };

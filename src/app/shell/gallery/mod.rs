@@ -127,11 +127,9 @@ impl Gallery {
                     for entry in row {
                         let is_present = entry.id == input.scene_name;
                         let response = self.entry(ui, &palette, entry, width, is_present);
-                        if is_present && !self.is_open {
+                        if is_present && !self.is_open && by_key {
                             response.scroll_to_me(Some(Align::Center));
-                            if by_key {
-                                response.request_focus();
-                            }
+                            response.request_focus();
                         }
                         if response.clicked() {
                             actions.push(Action::Open(entry.id));
@@ -181,7 +179,6 @@ impl Gallery {
         let quiet = if fill == palette.control { palette.secondary } else { palette.text };
         let mut job = LayoutJob::default();
         job.append(tr(&entry.name), 0.0, format(BODY, palette.text));
-        job.append(entry.id, 8.0, format(SMALL, quiet));
         job.append("\n", 0.0, format(BODY, palette.text));
         job.append(tr(&entry.about), 0.0, format(SMALL, quiet));
         job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
