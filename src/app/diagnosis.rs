@@ -90,18 +90,15 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
         return Some(tr("inverted elements").to_owned());
     }
     let strain = input.quality.max_strain;
-    if strain_warning(strain).is_some() {
-        return Some(fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    let is_hidden = errors.bound.is_some_and(|bound| error_level(bound) > error_level(own));
+    let known = input.reference.and_then(Reference::first).filter(|_| is_hidden);
+    let coarse = known.map(|first| fill!("reference ± %{own}", own = percent(first.own_error_percent)));
+    let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();
+    if !doubts.is_empty() {
+        return Some(doubts.join(" · "));
     }
-    if is_large(own) {
-        return None;
-    }
-    let reference = input.reference?;
-    let known = reference.first()?.own_error_percent;
-    if errors.bound.is_some_and(|bound| error_level(bound) > error_level(own)) {
-        return Some(fill!("reference ± %{own}", own = percent(known)));
-    }
-    let off = reference.beam_off_by_percent?;
+    let off = input.reference?.beam_off_by_percent.filter(|_| !is_large(own))?;
     Some(said(&Claim::BeamTheory { off_by_percent: off }))
 }
 
@@ -264,12 +261,18 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     }
     if !simulation.status().is_success() {
         lines.push(fill!(
-            "The forces do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
+            "The forces of the last iterate do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
             residual = number(two_digits(simulation.residual())),
             asked = number(input.scene.solver.tolerance)
         ));
     }
     let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
+    if let Some(rho) = rho.filter(|&rho| rho > 1.0 && !simulation.status().is_success()) {
+        lines.push(fill!(
+            "At the equilibrium that is sought, each iteration multiplies the error by about ρ = %{rho}: it grows.",
+            rho = rho_number(rho)
+        ));
+    }
     let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
     // The status has the others.
     let explains = |claim: &&Claim| {
@@ -340,9 +343,13 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     fits.then_some(Remedy { text, offer: tr("Refine the mesh").to_owned(), action })
 }
 
-/// Formats ρ with two significant digits.
+/// Formats ρ with two significant digits, or as many as tell it from 1.
 pub(crate) fn rho_number(rho: f64) -> String {
-    engineering(two_digits(rho), "")
+    if two_digits(rho) == 1.0 && rho != 1.0 {
+        number((1e4 * rho).round() / 1e4)
+    } else {
+        engineering(two_digits(rho), "")
+    }
 }
 
 /// Explains the error: that of the first probe's displacement, compared with the reference solution; or why there is

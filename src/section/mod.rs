@@ -256,6 +256,14 @@ impl Section {
     }
 }
 
+/// Returns the length of the cut at the point of a line, m; `None` outside the body.
+#[cfg(feature = "app")]
+pub(crate) fn cut_length(system: &crate::assembly::System, line: SectionLine) -> Option<f64> {
+    let cuts = Cut::all(system.mesh(), system.size(), line);
+    let points = &cuts.iter().find(|cut| cut.contains(0.0, system.size()))?.points;
+    Some(points.last()?.along - points.first()?.along)
+}
+
 /// Returns the nodes in front with the forces of the cut's elements on them, N.
 fn element_forces(problem: &Problem, state: &State, cut: &Cut) -> Vec<(u32, Vector2<f64>)> {
     let system = problem.system();

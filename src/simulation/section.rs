@@ -62,13 +62,15 @@ impl Simulation {
     /// # Errors
     /// [`SectionError::NoAxis`] for a body from a mesh file or a given mesh, and the errors of [`Self::section`].
     pub fn sections(&self, count: usize) -> Result<Vec<Section>, SectionError> {
+        let intervals = count.saturating_sub(1).max(1) as f64;
+        self.sections_along((0..count).map(|i| i as f64 / intervals))
+    }
+
+    /// Computes as [`Self::sections`] the sections at these points of the axis, fractions of the beam's length.
+    pub(crate) fn sections_along(&self, along: impl Iterator<Item = f64>) -> Result<Vec<Section>, SectionError> {
         let beam = self.system().beam().ok_or(SectionError::NoAxis)?;
         let nodal = self.nodal_stress();
-        let intervals = count.saturating_sub(1).max(1) as f64;
-        let line = |i: usize| {
-            let along = i as f64 / intervals;
-            SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) }
-        };
-        (0..count).map(|i| self.section_of(line(i), Some(&nodal))).collect()
+        let line = |along: f64| SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) };
+        along.map(|along| self.section_of(line(along), Some(&nodal))).collect()
     }
 }

@@ -158,9 +158,8 @@ impl Strip {
     /// larger at the smallest load, and `None` if it is not larger at any load at which the error is known.
     #[must_use]
     pub fn within(&self, percent: f64) -> Option<f64> {
-        let known = self.points.iter().filter_map(|p| Some((p.factor, p.error_percent?)));
         let mut before: Option<(f64, f64)> = None;
-        for (factor, error) in known {
+        for (factor, error) in self.known() {
             if error > percent {
                 return Some(before.map_or(0.0, |before| crossing(before, (factor, error), percent)));
             }
@@ -169,10 +168,16 @@ impl Strip {
         None
     }
 
-    /// Returns the largest part of the load at which the error is known, and the error; `None` if there is none.
+    /// Returns the largest part of the load up to which the error is known, and the error; `None` if there is none.
     #[must_use]
     pub fn last_known(&self) -> Option<(f64, f64)> {
-        self.points.iter().rev().find_map(|point| Some((point.factor, point.error_percent?)))
+        self.known().last()
+    }
+
+    /// Returns the loads with their errors up to the first load at which the error is not known.
+    fn known(&self) -> impl Iterator<Item = (f64, f64)> {
+        let known = self.points.iter().map(|point| Some((point.factor, point.error_percent?)));
+        known.skip_while(Option::is_none).map_while(|known| known)
     }
 
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
@@ -208,14 +213,11 @@ impl Strip {
         for pair in self.points.windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
             let mut ends = vec![a.factor, b.factor];
-            match (a.error_percent, b.error_percent) {
-                (Some(from), Some(to)) => ends.extend([GOOD, USABLE].iter().filter_map(|&percent| {
-                    let crosses = (from > percent) != (to > percent);
-                    crosses.then(|| crossing((a.factor, from), (b.factor, to), percent))
-                })),
-                (None, None) => {}
-                // The error is known at one of them.
-                _ => ends.push((a.factor * b.factor).sqrt()),
+            // Where the error is known at one of them only, nothing is said of the loads in between.
+            if let (Some(from), Some(to)) = (a.error_percent, b.error_percent) {
+                let crosses = |percent: f64| (from > percent) != (to > percent);
+                let levels = [GOOD, USABLE].into_iter().filter(|&percent| crosses(percent));
+                ends.extend(levels.map(|percent| crossing((a.factor, from), (b.factor, to), percent)));
             }
             if a.is_beyond_law() != b.is_beyond_law() {
                 ends.push(law_crossing(a, b));
@@ -230,7 +232,7 @@ impl Strip {
                         let least = f64::MIN_POSITIVE;
                         Rating::of(Some(from.max(least).powf(1.0 - t) * to.max(least).powf(t)))
                     }
-                    _ => part((a.factor * b.factor).sqrt()).rating(),
+                    _ => Rating::Unknown,
                 };
                 add(Piece {
                     range: [ends[0], ends[1]],
@@ -249,6 +251,12 @@ impl Strip {
         });
         results.extend(failed);
         results
+    }
+
+    /// Returns the first load at which the error is within 5 %; `None` if there is none.
+    fn usable_from(&self, range: [f64; 2]) -> Option<f64> {
+        let usable = |piece: &Piece| matches!(piece.rating, Rating::Good | Rating::Usable);
+        self.pieces(range).into_iter().find(usable).map(|piece| piece.range[0])
     }
 
     /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
@@ -273,8 +281,9 @@ impl Strip {
         [within(GOOD), within(USABLE), converges, law]
     }
 
-    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is never within 1 %, or else the
-    /// one up to which the method converges; `None` if there is no such load. `range` is that of the limits.
+    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger at the smallest load;
+    /// or the one from which it is within 5 %, or else up to which the method converges; `None` if there is no such load.
+    /// `range` is that of the limits.
     #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
@@ -282,6 +291,9 @@ impl Strip {
         match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at) {
             (Some((percent, factor)), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
+            }
+            (None, _) if let (None, Some(from)) = (percent, self.usable_from(range)) => {
+                Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = load_text(axis, from)))
             }
             (None, None) if percent.is_none() => Some(sentence!("not within %{percent} %", percent = number(USABLE))),
             (None, Some(0.0)) if self.integrator.is_some() => {
@@ -605,6 +617,22 @@ mod tests {
         assert!((end(Rating::Good).unwrap() - good).abs() < 1e-12, "{pieces:?}");
         assert!(pieces.windows(2).all(|pair| pair[0].range[1] == pair[1].range[0]), "{pieces:?}");
         assert_eq!([pieces[0].range[0], pieces[pieces.len() - 1].range[1]], [0.1, 10.0]);
+    }
+
+    /// Nothing is said of loads beyond one at which the error is not known.
+    #[test]
+    fn an_unknown_error_ends_what_is_known() {
+        let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]);
+        let points = vec![point(1.0, Some(3.0), 1e-3), point(2.0, None, 1e-3), point(4.0, Some(7.0), 1e-3)];
+        let strip = Strip { points, done: 1.0, ..Strip::new(&scene) };
+        assert_eq!((strip.within(USABLE), strip.last_known()), (None, Some((1.0, 3.0))));
+        let unknown = strip.pieces([1.0, 8.0]).into_iter().find(|piece| piece.rating == Rating::Unknown).unwrap();
+        assert_eq!(unknown.range, [1.0, 4.0]);
+        // An error that falls is within 5 % from where it does.
+        let falling = vec![point(1.0, Some(9.0), 1e-3), point(4.0, Some(1.0), 1e-3)];
+        let strip = Strip { points: falling, done: 1.0, ..Strip::new(&scene) };
+        let end = strip.end(&axis(&scene), [1.0, 8.0]).unwrap().to_string();
+        assert!(end.starts_with("5 % from 1.4"), "{end}");
     }
 
     /// A strip that is never within 5 % ends with the load up to which the method converges.

@@ -258,6 +258,7 @@ const NOT_SHOWN: &[&str] = &[
     "τ_XY",
     "ε_X, ε_Y",
     "γ_XY",
+    "σ_z",
     "ε_1, ε_2",
     "load curve",
     "WAYLAND_DISPLAY",

@@ -313,7 +313,7 @@ fn the_matrices_are_the_solvers() {
         sum.multiply(system.pattern(), &unit, &mut product);
         let (i, j) = (free[row] as usize, free[column] as usize);
         let shown = cell(&mut harness, "the body's matrix", 24, i, j);
-        let name = |unknown: usize| format!("node {} {}", unknown / 2 + 1, ["x", "y"][unknown % 2]);
+        let name = |unknown: usize| format!("node {} {}", unknown / 2, ["x", "y"][unknown % 2]);
         let expected = format!("{}force: {}, displacement: {}", words(product[row]), name(i), name(j));
         assert_eq!(shown, expected);
     }

@@ -10,7 +10,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::{FOCUS_KEYS, Lab, MOUSE};
 use warpbeam::format::percent;
-use warpbeam::scene::{Analysis, Load, LoadId, MethodKind, Source};
+use warpbeam::scene::{Analysis, ElementKind, Load, LoadId, MethodKind, Source};
 use warpbeam::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s; short enough for double clicks within a few frames.
@@ -210,16 +210,18 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
         let nodes = harness.get_all_by_role(Role::Label);
         let values: Vec<String> = nodes.filter_map(|node| node.accesskit_node().value()).collect();
         let after = |name: &str| {
-            let at = values.iter().position(|value| value == name).unwrap_or_else(|| panic!("{name} in {values:?}"));
-            values[at + 1].clone()
+            let at = values.iter().position(|value| value == name);
+            at.map_or_else(String::new, |at| values[at + 1].clone())
         };
-        [after("tip Δx, Δy"), after("Energy"), after("Equilibrium")]
+        ["tip Δx, Δy", "Energy", "Equilibrium", "Iterations", "ρ"].map(after)
     };
     let before = details(&harness);
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");
+    assert!(before[3].starts_with("21, residual") && before[4].contains("ρ = 0.47"), "{before:?}");
     type_into(&mut harness, "Force", "176000");
     assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
-    harness.get_by_label("equilibrium at 30 kN; 176 kN not reached");
+    // On the body and in Details.
+    assert_eq!(harness.query_all_by_label("equilibrium at 30 kN; 176 kN not reached").count(), 2);
     assert_eq!(details(&harness), before);
     harness.get_by_label_contains("ERROR \u{2013}");
     harness.get_by_label_contains("TIME \u{2013}");
@@ -242,7 +244,7 @@ fn a_scene_that_opens_with_too_large_a_load_shows_the_body_at_rest() {
     let mut harness = harness_of("article", large);
     unfold(&mut harness, "stable");
     assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
-    harness.get_by_label("equilibrium at 0 N; 176 kN not reached");
+    assert_eq!(harness.query_all_by_label("equilibrium at 0 N; 176 kN not reached").count(), 2);
     let values: Vec<String> =
         harness.get_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value()).collect();
     let at = values.iter().position(|value| value == "tip Δx, Δy").unwrap_or_else(|| panic!("{values:?}"));
@@ -271,6 +273,28 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     harness.get_by_label("explain").click();
     harness.run();
     harness.get_by_label_contains("Accepted after 3 iterations, as the scene asks: the relative residual is 0.02");
+}
+
+/// A body that is held is not said to be at another equilibrium than the one to which loading leads.
+#[test]
+fn a_held_body_has_no_note_of_another_equilibrium() {
+    let mut lab = lab_of("article", scene("article").with_element(ElementKind::T6).with_method(MethodKind::Newton));
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
+    harness.run_steps(40);
+    let pos = on_body(harness.state(), Vector2::new(2.5, 0.0));
+    harness.hover_at(pos);
+    harness.step();
+    harness.drag_at(pos);
+    harness.step();
+    for step in 1..20 {
+        harness.hover_at(pos + vec2(0.0, -6.0 * step as f32));
+        harness.step();
+    }
+    harness.run_steps(60);
+    assert!(harness.state().simulation().mouse_spring().is_some());
+    assert_eq!(*harness.state().simulation().status(), Status::Converged);
+    assert!(harness.query_by_label_contains("another equilibrium").is_none());
 }
 
 /// A drag moves the object that was pressed, even if the pointer has moved on before the next frame.

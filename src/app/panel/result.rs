@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, error_tip, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, equilibrium_text, error_tip, rho, stability};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -46,7 +46,12 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
 }
 
 fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
-    let simulation = input.simulation;
+    // All values are those of the drawn body.
+    let simulation = input.shown;
+    let method = simulation.scene().solver.method;
+    if input.shows_converged {
+        row("State", equilibrium_text(simulation.scene(), input.scene), "State of the body that is drawn");
+    }
     row(
         "Iterations",
         fill!(
@@ -57,8 +62,6 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         "Iterations since the last change; residual: out-of-balance force over the sum of the elements' absolute \
          forces",
     );
-    // The values are those of the drawn body.
-    let simulation = input.shown;
     probe_row(row, simulation);
     let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),
@@ -79,8 +82,9 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     }
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
-    if input.scene.solver.method == MethodKind::Warped {
-        let text = rho(input).map_or_else(
+    if method == MethodKind::Warped {
+        let own = || search.certificate()?.fixed_point_rho;
+        let text = if input.shows_converged { own() } else { rho(input) }.map_or_else(
             || UNKNOWN.to_owned(),
             |rho| sentence(&said(&Claim::Disturbance { rho, has_converged: false })),
         );

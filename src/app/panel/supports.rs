@@ -6,7 +6,7 @@ use crate::app::language::{fill, joined, tr};
 use crate::app::panel::{Action, PanelState};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
-use crate::format::{Context, editable, engineering, engineering_pair};
+use crate::format::{Context, editable, engineering, engineering_pair, three_digits};
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
 use crate::simulation::Simulation;
@@ -131,6 +131,10 @@ pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation:
     let forces = Context::of_inexact(reactions.iter().map(|reaction| reaction.force.norm()), Context::MAX_INEXACT);
     for (i, reaction) in reactions.into_iter().enumerate() {
         let force = forces.pair(reaction.force.into(), "N");
+        let size = simulation.system().size();
+        // A roller has no moment, and a clamp that nothing turns only a rounding error.
+        let moment = (reaction.moment.abs() > 1e-9 * size * reaction.force.norm())
+            .then(|| engineering(three_digits(reaction.moment), "N m"));
         let (name, tip) = match &reaction.place {
             Place::Edge(edge) => (
                 fill!("Support %{edge}", edge = tr(edge)),
@@ -143,6 +147,6 @@ pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation:
                 (fill!("Support %{n}", n = i + 1), fill!("Reaction of the support at %{place}", place = place))
             }
         };
-        row(&name, force, &tip);
+        row(&name, joined([force].into_iter().chain(moment)), &tip);
     }
 }

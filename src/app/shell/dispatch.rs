@@ -9,7 +9,7 @@ use crate::app::modes::learn;
 use crate::app::modes::limits::LimitMap;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
-use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::view_options::{Drawer, Magnification, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
@@ -45,6 +45,7 @@ impl Lab {
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;
+            view.magnification = Magnification::default();
             if let Some(lesson) = &mut self.lesson {
                 lesson.learn.line = 0;
             }

@@ -329,6 +329,7 @@ impl Lab {
             // Only an equilibrium is the end of a path, or of another one.
             path: (facts.path.get(session.scene()))
                 .filter(|_| *session.simulation().status() == Status::Converged)
+                .filter(|_| session.simulation().mouse_spring().is_none())
                 .map(|path| path.to(session.simulation().displacement())),
             equilibrium_rho: facts.rho.get(session.scene()).copied(),
             is_computing_rho: facts.rho.is_pending(session.scene()),

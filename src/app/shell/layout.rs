@@ -80,7 +80,10 @@ impl Lab {
         }
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
-            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
+            Mode::Compare => {
+                self.desk.viewport.hide_divergence(&self.desk.session);
+                self.comparison(ui, &mut actions, &mut requests);
+            }
             _ => self.body_view(ui, &mut actions, &mut requests),
         });
         let view = &self.desk.view;
@@ -409,7 +412,7 @@ impl Lab {
 
     /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
     fn remedy(&self, input: &Readout<'_>, errors: &Errors) -> Option<diagnosis::Remedy> {
-        let offers = self.desk.view.mode == Mode::Explore && self.story.is_none();
+        let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Limits) && self.story.is_none();
         diagnosis::remedy(input, errors).filter(|_| offers)
     }
 

@@ -1,5 +1,7 @@
 //! Menu of a point of the body: loads, supports, probes and sections to add there, and those to remove.
 
+use std::f64::consts::FRAC_PI_2;
+
 use egui::{Response, Ui};
 use nalgebra::Vector2;
 
@@ -10,6 +12,7 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::{Edge, System};
 use crate::mesh::{Mesh, Segment, axis_angle, straightened};
 use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
+use crate::section;
 
 /// Entry of the menu: its text, and the scene that it leads to.
 type MenuEntry = (String, Scene);
@@ -123,10 +126,15 @@ pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> boo
     scene.probes.iter().any(|probe| probe.place == place)
 }
 
-/// Returns the section through a point that is normal to the axis of the beam, or vertical in a body without axis.
+/// Returns the section through a point that is normal to the axis of the beam; in a body without axis it is vertical or
+/// horizontal, whichever is shorter.
 fn normal_section(system: &System, at: Vector2<f64>) -> SectionLine {
-    let angle = system.beam().map_or(0.0, |beam| axis_angle(beam, straightened(beam, at)[0]));
-    SectionLine { at, angle }
+    if let Some(beam) = system.beam() {
+        return SectionLine { at, angle: axis_angle(beam, straightened(beam, at)[0]) };
+    }
+    let [vertical, horizontal] = [0.0, FRAC_PI_2].map(|angle| SectionLine { at, angle });
+    let length = |line| section::cut_length(system, line).unwrap_or(f64::INFINITY);
+    if length(horizontal) < length(vertical) { horizontal } else { vertical }
 }
 
 /// Rounds a point to a thousandth of the body's size, if the body has that point.

@@ -182,14 +182,15 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
-    let seen = |v: Vector2<f64>| vec2(v.x as f32, -v.y as f32);
     // A small view has room for the numbers of the sections only; the panel has their values.
     let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
     let mut taken = Vec::new();
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
         let [from, to] = [0, 1].map(|i| projection.point(end(i)));
-        let (middle, tangent, normal) = (from + (to - from) * 0.5, seen(section.tangent()), seen(section.normal()));
+        // The axes of the cut as it is drawn: a magnified body has other ones.
+        let (middle, tangent) = (from + (to - from) * 0.5, (to - from).normalized());
+        let normal = -tangent.rot90();
         if !(tangent.is_finite() && middle.is_finite()) {
             continue;
         }

@@ -105,9 +105,15 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
     let principal = two(Field::LargerPrincipalStress, Field::SmallerPrincipalStress);
     let direction = principal_direction(point).filter(|_| axes == Axes::Space || point.is_linear);
     let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees().round() + 0.0));
+    let out_of_plane = point.cauchy.map(|stress| stress.zz).filter(|stress| *stress != 0.0);
+    let normal =
+        out_of_plane.map(|stress| ("σ_z", engineering(three_digits(stress), "Pa"), "Cauchy stress out of the plane"));
     rows.extend([
         (stresses, none(two(x, y)), "Cauchy stress, which follows from ε"),
         (shear_stress, none(one(xy)), "Cauchy stress, which follows from ε"),
+    ]);
+    rows.extend(normal);
+    rows.extend([
         (
             "σ_1, σ_2",
             none(principal) + &direction,

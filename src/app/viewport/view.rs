@@ -355,6 +355,12 @@ impl BodyView {
         self.shown_of(content.session)
     }
 
+    /// Lets the panel beside other views than this one show the last equilibrium in place of a state that diverges.
+    pub(crate) fn hide_divergence(&mut self, session: &Session) {
+        let is_lost = matches!(session.simulation().status(), Status::Diverged(_) | Status::NotConverged(_));
+        self.shows_converged = is_lost && session.converged().is_some();
+    }
+
     /// Returns the drawn body of a session; animations are ignored.
     pub(crate) fn shown_of<'a>(&self, session: &'a Session) -> &'a Simulation {
         session.converged().filter(|_| self.shows_converged).unwrap_or(session.simulation())

@@ -326,7 +326,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
-            if label.on_hover_text(m.parts()).clicked() {
+            if label.on_hover_text(format!("{}\n{}", m.text(), m.parts())).clicked() {
                 actions.push(m.action(budget.scene));
             }
         }

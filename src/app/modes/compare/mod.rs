@@ -447,7 +447,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         left += 6.0;
     } else {
         let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
-        let color = error_color(&palette, error);
+        let color = error_color(&palette, pane.error_bound.filter(|_| !bad));
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         semibold(painter, at.min, &galley, color);

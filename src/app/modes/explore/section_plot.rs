@@ -8,7 +8,8 @@ use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::widgets::buttons::option_button;
-use crate::scene::Scene;
+use crate::mesh::straightened;
+use crate::scene::{Load, Place, Scene};
 use crate::section::{Section, SectionError};
 use crate::simulation::{Equilibrium, Simulation};
 use crate::state::State;
@@ -27,12 +28,29 @@ struct Cuts {
 
 impl Cuts {
     fn of(simulation: &Simulation) -> Self {
-        /// Number of sections along a beam.
-        const ALONG: usize = 41;
+        /// Number of intervals between sections along a beam.
+        const ALONG: u32 = 40;
+        /// Distance of sections from a point where the forces jump, relative to the length.
+        const BESIDE: f64 = 1e-6;
         let scene = simulation.scene();
+        let loads = scene.loads.iter().filter_map(|load| match load {
+            Load::Force { place, .. } => Some(place),
+            _ => None,
+        });
+        let points = loads.chain(scene.supports.iter().map(|support| &support.place));
+        let jumps = simulation.system().beam().into_iter().flat_map(|beam| {
+            let points = points.clone().filter_map(|place| match place {
+                Place::At(at) => Some(straightened(beam, (*at).into())[0]),
+                Place::Edge(_) => None,
+            });
+            points.flat_map(|along| [along - BESIDE, along + BESIDE])
+        });
+        let even = (0..=ALONG).map(|i| f64::from(i) / f64::from(ALONG));
+        let mut along: Vec<f64> = jumps.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
+        along.sort_by(f64::total_cmp);
         Self {
             own: simulation.scene_sections(),
-            along: simulation.sections(ALONG).unwrap_or_default(),
+            along: simulation.sections_along(along.into_iter()).unwrap_or_default(),
             of: (simulation.state().clone(), scene.clone()),
         }
     }
@@ -181,5 +199,24 @@ impl Cuts {
                 .nth(i)
                 .ok_or(SectionError::NoAxis),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The shear force along a beam jumps at a point load, by the load, and is not drawn as a slope.
+    #[test]
+    fn the_shear_force_jumps_at_a_point_load() {
+        let scene = Scene::beam(10.0, 1.0).with_cells(20, 2).clamp("left").point_force([4.3, 0.2], [0.0, -1.0]);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.solve();
+        let cuts = Cuts::of(&simulation);
+        let pairs = cuts.along.windows(2);
+        let steps = pairs.map(|p| (p[1].line.at.x - p[0].line.at.x, (p[1].forces.shear - p[0].forces.shear).abs()));
+        let (distance, jump) = steps.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        assert!(distance < 1e-4 && (jump - 1.0).abs() < 1e-3, "{jump} N within {distance} m");
+        assert!(cuts.along.windows(2).all(|p| p[0].line.at.x <= p[1].line.at.x));
     }
 }

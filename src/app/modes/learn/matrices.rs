@@ -50,7 +50,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: clamped, %{all} \u{2212} %{clamped} = %{free} \
          unknowns. Red is positive, blue negative.",
         n = learn.picked + 1,
-        nodes = triangle.nodes.map(|n| (n + 1).to_string()).join(", "),
+        nodes = triangle.nodes.map(|n| n.to_string()).join(", "),
         all = all,
         clamped = all - free,
         free = free,
@@ -102,7 +102,7 @@ fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle:
 
 /// Returns the name of an unknown.
 fn name_of(unknown: usize) -> String {
-    fill!("node %{n} %{axis}", n = unknown / 2 + 1, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
+    fill!("node %{n} %{axis}", n = unknown / 2, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
 }
 
 /// Shows a matrix as a square of coloured cells with a diverging map about zero; hovering over a cell shows its value.
