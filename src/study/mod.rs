@@ -34,7 +34,7 @@ pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathS
 pub use motion::MotionStudy;
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Ranked, Ranking};
-#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
+#[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
 pub(crate) use reference::is_known_unstable;
