@@ -76,7 +76,7 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     });
     let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
-    Errors { own, bound: own.map(|error| error + first.own_error_percent), linear, source }
+    Errors { own, bound: own.map(|error| first.error_bound(error)), linear, source }
 }
 
 /// Errors above this value, percent, are large: they need a remedy.

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::assembly::{Kinematics, Problem};
+use crate::assembly::{Kinematics, Problem, System};
 use crate::element::Rotations;
 use crate::mesh::{axis_angle, straightened};
 use crate::model::{Beam, SectionLine};
@@ -146,15 +146,7 @@ impl Section {
     ) -> Result<Self, SectionError> {
         let system = problem.system();
         let mesh = system.mesh();
-        let mut cuts = Cut::all(mesh, system.size(), line);
-        let count = cuts.len();
-        let chosen = match cuts.iter().position(|cut| cut.contains(0.0, system.size())) {
-            Some(chosen) => chosen,
-            None if count == 1 => 0,
-            None if count == 0 => return Err(SectionError::Missed),
-            None => return Err(SectionError::Several(count)),
-        };
-        let cut = cuts.swap_remove(chosen);
+        let cut = cut_of(system, line)?;
         let positions: Vec<Vector2<f64>> = match kinematics {
             Kinematics::Linear => mesh.nodes().to_vec(),
             Kinematics::Corotated => mesh.nodes().iter().zip(state.displacement()).map(|(x, u)| x + u).collect(),
@@ -256,11 +248,23 @@ impl Section {
     }
 }
 
-/// Returns the length of the cut at the point of a line, m; `None` outside the body.
+/// Returns the cut of a line: that at its point, or else the only one.
+fn cut_of(system: &System, line: SectionLine) -> Result<Cut, SectionError> {
+    let mut cuts = Cut::all(system.mesh(), system.size(), line);
+    let count = cuts.len();
+    let chosen = match cuts.iter().position(|cut| cut.contains(0.0, system.size())) {
+        Some(chosen) => chosen,
+        None if count == 1 => 0,
+        None if count == 0 => return Err(SectionError::Missed),
+        None => return Err(SectionError::Several(count)),
+    };
+    Ok(cuts.swap_remove(chosen))
+}
+
+/// Returns the length of the cut of a line at rest, m; `None` if it has none.
 #[cfg(feature = "app")]
-pub(crate) fn cut_length(system: &crate::assembly::System, line: SectionLine) -> Option<f64> {
-    let cuts = Cut::all(system.mesh(), system.size(), line);
-    let points = &cuts.iter().find(|cut| cut.contains(0.0, system.size()))?.points;
+pub(crate) fn cut_length(system: &System, line: SectionLine) -> Option<f64> {
+    let points = cut_of(system, line).ok()?.points;
     Some(points.last()?.along - points.first()?.along)
 }
 

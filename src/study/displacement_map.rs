@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::exact_beam::ExactBeam;
 use crate::mesh::Mesh;
 use crate::simulation::Simulation;
 
@@ -18,7 +17,7 @@ pub(crate) struct DisplacementMap {
 }
 
 /// Triangles by the cells of a grid that their bounding boxes meet, so that a point is compared with few of them.
-struct Grid {
+struct TriangleIndex {
     low: Vector2<f64>,
     /// Size of a cell, m.
     cell: Vector2<f64>,
@@ -34,16 +33,15 @@ impl DisplacementMap {
         Self { rest: mesh.nodes().to_vec(), displacements: simulation.displacement().to_vec(), triangles }
     }
 
-    /// Returns the displacement of an exact beam of this height, m, whose sections stay plane; `None` as for
-    /// [`ExactBeam::outline`].
-    pub(crate) fn of_beam(beam: &ExactBeam, height: f64) -> Option<Self> {
-        let [rest, moved] = beam.outline(height)?;
-        let displacements = rest.iter().zip(&moved).map(|(x, now)| now - x).collect();
+    /// Returns the displacement of an exact beam, whose sections stay plane, from its outlines at rest and now, m, as of
+    /// [`ExactBeam::outline`](crate::exact_beam::ExactBeam::outline).
+    pub(crate) fn of_beam([rest, moved]: [&[Vector2<f64>]; 2]) -> Self {
+        let displacements = rest.iter().zip(moved).map(|(x, now)| now - x).collect();
         // The outline runs along the lower side, back along the upper side, and ends where it begins.
         let stations = (rest.len().saturating_sub(1) / 2) as u32;
         let quads = (1..stations).map(|i| [i - 1, i, 2 * stations - 1 - i, 2 * stations - i]);
         let triangles = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        Some(Self { rest, displacements, triangles })
+        Self { rest: rest.to_vec(), displacements, triangles }
     }
 
     /// Returns the displacement at every point, m; `None` outside the body. Points that are outside by a little, as on a
@@ -51,9 +49,9 @@ impl DisplacementMap {
     pub(crate) fn at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
         /// Largest distance outside a triangle, relative to its height.
         const OUTSIDE: f64 = 0.5;
-        let grid = Grid::new(self);
+        let index = TriangleIndex::new(self);
         let value = |at: &Vector2<f64>| {
-            let candidates = grid.triangles.get(grid.cell_at(at)?)?.iter();
+            let candidates = index.triangles.get(index.cell_at(at)?)?.iter();
             let inside = candidates.filter_map(|&t| {
                 let triangle = self.triangles.get(t as usize)?;
                 let weights = self.weights(triangle, at)?;
@@ -76,7 +74,7 @@ impl DisplacementMap {
     }
 }
 
-impl Grid {
+impl TriangleIndex {
     fn new(map: &DisplacementMap) -> Self {
         let infinity = Vector2::repeat(f64::INFINITY);
         let bounds = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
@@ -88,28 +86,28 @@ impl Grid {
         let side = (size.x * size.y / map.triangles.len().max(1) as f64).sqrt();
         let counts = [size.x, size.y].map(|v| (v / side).ceil().clamp(1.0, 2000.0) as usize);
         let cell = Vector2::new(size.x / counts[0] as f64, size.y / counts[1] as f64);
-        let mut grid = Self { low, cell, counts, triangles: vec![Vec::new(); counts[0] * counts[1]] };
+        let mut index = Self { low, cell, counts, triangles: vec![Vec::new(); counts[0] * counts[1]] };
         for (number, triangle) in (0..).zip(&map.triangles) {
             let [first, last] = bounds(&mut triangle.iter().filter_map(|&corner| map.rest.get(corner as usize)));
             // A point outside the body finds the triangles of the neighbouring cell.
-            let (Some(first), Some(last)) = (grid.place(&(first - cell * 0.5)), grid.place(&(last + cell * 0.5)))
+            let (Some(first), Some(last)) = (index.place(&(first - cell * 0.5)), index.place(&(last + cell * 0.5)))
             else {
                 continue;
             };
             for row in first[1]..=last[1] {
                 for column in first[0]..=last[0] {
-                    grid.triangles[row * counts[0] + column].push(number);
+                    index.triangles[row * counts[0] + column].push(number);
                 }
             }
         }
-        grid
+        index
     }
 
     /// Returns column and row of the cell at a point, or of the nearest one; `None` if the point is not finite.
     fn place(&self, at: &Vector2<f64>) -> Option<[usize; 2]> {
         let place = (at - self.low).component_div(&self.cell);
-        let index = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
-        Some([index(place.x, self.counts[0])?, index(place.y, self.counts[1])?])
+        let cell = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
+        Some([cell(place.x, self.counts[0])?, cell(place.y, self.counts[1])?])
     }
 
     fn cell_at(&self, at: &Vector2<f64>) -> Option<usize> {
@@ -136,6 +134,7 @@ fn triangles(mesh: &Mesh, nodes: &[u32]) -> Vec<[u32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact_beam::ExactBeam;
     use crate::scene::{ElementKind, Scene};
 
     /// The map has the displacement of every node, also on a curved outline, of the nodes of another mesh of the same
@@ -165,7 +164,8 @@ mod tests {
         }
         let straight = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -3e3]).probe("tip", "right");
         let beam = ExactBeam::of(&straight).unwrap();
-        let map = DisplacementMap::of_beam(&beam, 1.0).unwrap();
+        let [rest, moved] = beam.outline(1.0).unwrap();
+        let map = DisplacementMap::of_beam([&rest, &moved]);
         let tip = map.at(&[Vector2::new(10.0, 0.0)])[0].unwrap();
         let exact = beam.tip_displacement().unwrap();
         assert!((tip - exact).norm() < 1e-6 * exact.norm(), "{tip} {exact}");

@@ -182,25 +182,22 @@ impl Figure {
         let around = |[low, high]: [[f64; 2]; 2], p: [f64; 2]| {
             [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
         };
-        let grown = |[low, high]: [[f64; 2]; 2], part: f64| {
-            let by = [0, 1].map(|i| part * (high[i] - low[i]));
+        let extents = |[low, high]: [[f64; 2]; 2]| [0, 1].map(|i| high[i] - low[i]);
+        let grown = |[low, high]: [[f64; 2]; 2], by: [f64; 2]| {
             [[low[0] - by[0], low[1] - by[1]], [high[0] + by[0], high[1] + by[1]]]
         };
         let mut whole = places(false).fold([[0.0; 2]; 2], around);
         if whole[0] == whole[1] {
             whole = places(true).fold(whole, around);
         } else {
-            let mut most = grown(whole, LEAVES);
-            if self.has_one_scale() {
-                // The longer axis decides the scale, so the shorter one has room.
-                let longest = (0..2).map(|i| whole[1][i] - whole[0][i]).fold(0.0, f64::max);
-                most = [whole[0].map(|low| low - LEAVES * longest), whole[1].map(|high| high + LEAVES * longest)];
-            }
-            let [low, high] = most;
+            let [width, height] = extents(whole);
+            // The longer axis decides a common scale, so the shorter one has room.
+            let room = if self.has_one_scale() { [width.max(height); 2] } else { [width, height] };
+            let [low, high] = grown(whole, room.map(|extent| LEAVES * extent));
             let clamped = places(true).map(|p| [0, 1].map(|i| p[i].clamp(low[i], high[i])));
             whole = clamped.fold(whole, around);
         }
-        let [mut low, mut high] = grown(whole, SPACE);
+        let [mut low, mut high] = grown(whole, extents(whole).map(|extent| SPACE * extent));
         // An axis of loads begins at the edge of the picture, without a margin.
         if self.axes[0] == 0 && whole[0][0] == 0.0 {
             low[0] = 0.0;

@@ -60,9 +60,7 @@ impl Rating {
             (Self::Unknown, sentence!("error not known")),
         ]
     }
-}
 
-impl Rating {
     /// Returns the rating of an error, percent.
     fn of(error: Option<f64>) -> Self {
         match error {
@@ -413,7 +411,7 @@ impl MethodLimits {
         ))?;
         let known = |i: usize, u: Vector2<f64>| {
             let reference = solved.get(i).copied().flatten()?;
-            Some(error_percent(u, reference.displacement)? + reference.own_error_percent)
+            Some(reference.error_bound(error_percent(u, reference.displacement)?))
         };
         settings.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)

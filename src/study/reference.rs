@@ -78,6 +78,11 @@ impl ProbeReference {
         error_percent(result.u, self.displacement)
     }
 
+    /// Returns a bound of the exact error of a result at this distance, percent, from the reference.
+    pub(crate) fn error_bound(&self, error_percent: f64) -> f64 {
+        error_percent + self.own_error_percent
+    }
+
     /// Returns the distance between two displacements, percent of the reference's displacement.
     #[must_use]
     pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
@@ -271,10 +276,8 @@ impl Reference {
                 reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
                 let beam = beam.zip(scene.beam.as_ref()).filter(|_| i == 0);
                 if let Some([rest, line]) = beam.and_then(|(b, beam)| b.outline(beam.height)) {
+                    reference.displacements = DisplacementMap::of_beam([&rest, &line]);
                     (reference.rest_outline, reference.outline) = (vec![rest], vec![line]);
-                }
-                if let Some(displacements) = beam.and_then(|(b, beam)| DisplacementMap::of_beam(&b, beam.height)) {
-                    reference.displacements = displacements;
                 }
             } else if i == 0 {
                 reference.beam_off_by_percent = error_percent(tip, ends[i]);
@@ -294,9 +297,10 @@ impl Reference {
         if !at_tip || ratio > STUBBY {
             return None;
         }
-        let displacements = DisplacementMap::of_beam(&beam?, rectangle.height).unwrap_or_default();
-        let [rest, line] =
-            beam?.outline(rectangle.height).map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
+        let lines = beam?.outline(rectangle.height);
+        let displacements =
+            lines.as_ref().map(|[rest, line]| DisplacementMap::of_beam([rest, line])).unwrap_or_default();
+        let [rest, line] = lines.map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
         Some(Self {
             probes: vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()],
             beam_off_by_percent: None,

@@ -582,6 +582,11 @@ impl Session {
         self.residuals.clear();
     }
 
+    /// Adds to the results that are shown those that the state needs: ρ where it has none of its own.
+    fn with_rho<'a>(&self, shown: ShownFacts<'a>) -> ShownFacts<'a> {
+        ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown }
+    }
+
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
     pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
         self.wait_for_background();
@@ -593,6 +598,7 @@ impl Session {
             return self.facts.frequency.wait(&self.scene);
         }
         self.certify();
+        let shown = self.with_rho(shown);
         self.facts.wait_at_rest(&self.scene, shown);
     }
 
@@ -666,6 +672,7 @@ impl Session {
         }
         // A background solve has certified its result.
         let certifies = !self.is_in_background() && self.request_certificate();
+        let shown = self.with_rho(shown);
         self.facts.request_at_rest(&self.scene, shown) || certifies
     }
 

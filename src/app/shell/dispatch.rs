@@ -90,12 +90,7 @@ impl Lab {
             Action::Escape if self.desk.session.is_working() => self.cancel(),
             Action::Escape => self.desk.viewport.clear_probe(),
             Action::Edit(label, scene) => {
-                let added = match scene.loads.last() {
-                    Some(Load::Force { .. }) if scene.loads.len() > self.scene().loads.len() => {
-                        Some(scene.loads.len() - 1)
-                    }
-                    _ => None,
-                };
+                let before = self.scene().loads.len();
                 let applied = self.desk.session.apply(Edit::Scene(label, scene));
                 let messages = &mut self.desk.panel.messages;
                 match applied {
@@ -104,7 +99,10 @@ impl Lab {
                 };
                 self.apply_session_changes();
                 // The sliders set a new force.
-                if let Some(added) = added.filter(|added| *added < self.scene().loads.len()) {
+                if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()
+                    && rest.len() >= before
+                {
+                    let added = rest.len();
                     self.desk.panel.choose_force(added);
                 }
             }

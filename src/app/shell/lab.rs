@@ -77,9 +77,7 @@ impl Desk {
         }
         let limits_of = limits.base().filter(|_| shows_limits);
         session.turn_limits_to(limits_of);
-        // A result of the warped iteration has its own ρ.
-        let rho = learns_rho || session.lacks_rho();
-        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), rho, limits_of })
+        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), rho: learns_rho, limits_of })
     }
 
     /// Returns the common input of the panes of Compare.
@@ -274,9 +272,6 @@ impl Lab {
         let learns_rho = self.learns_rho();
         let (session, shown) = self.desk.shown_facts(learns_rho);
         session.solve(shown);
-        if session.lacks_rho() {
-            session.wait_for_rho();
-        }
         self.apply_session_changes();
         let Desk { session, view, compare, sections, .. } = &mut self.desk;
         if session.is_motion() {
@@ -328,8 +323,10 @@ impl Lab {
             reference_failure: reference.and_then(Result::err),
             // Only an equilibrium is the end of a path, or of another one.
             path: (facts.path.get(session.scene()))
-                .filter(|_| *session.simulation().status() == Status::Converged)
-                .filter(|_| session.simulation().mouse_spring().is_none())
+                .filter(|_| {
+                    let simulation = session.simulation();
+                    *simulation.status() == Status::Converged && simulation.mouse_spring().is_none()
+                })
                 .map(|path| path.to(session.simulation().displacement())),
             equilibrium_rho: facts.rho.get(session.scene()).copied(),
             is_computing_rho: facts.rho.is_pending(session.scene()),

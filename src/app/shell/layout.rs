@@ -81,7 +81,7 @@ impl Lab {
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
             Mode::Compare => {
-                self.desk.viewport.hide_divergence(&self.desk.session);
+                self.desk.viewport.show_last_equilibrium(&self.desk.session);
                 self.comparison(ui, &mut actions, &mut requests);
             }
             _ => self.body_view(ui, &mut actions, &mut requests),

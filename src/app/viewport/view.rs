@@ -86,7 +86,7 @@ impl<'a> Content<'a> {
     fn reference(&self) -> Option<&'a Reference> {
         let session = self.session;
         let is_at_rest = !session.is_motion() && !session.iterates() && session.simulation().mouse_spring().is_none();
-        session.reference().and_then(Result::ok).filter(|_| is_at_rest && self.animation.is_none())
+        session.reference().and_then(Result::ok).filter(|_| is_at_rest)
     }
 
     /// Returns the reference solution if it is known for the displayed state and its outline is not hidden.
@@ -286,7 +286,8 @@ impl BodyView {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        let shown = (content.options, content.reference().filter(|_| !self.shows_converged));
+        let is_own = !self.shows_converged && content.animation.is_none();
+        let shown = (content.options, content.reference().filter(|_| is_own));
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
@@ -356,7 +357,7 @@ impl BodyView {
     }
 
     /// Lets the panel beside other views than this one show the last equilibrium in place of a state that diverges.
-    pub(crate) fn hide_divergence(&mut self, session: &Session) {
+    pub(crate) fn show_last_equilibrium(&mut self, session: &Session) {
         let is_lost = matches!(session.simulation().status(), Status::Diverged(_) | Status::NotConverged(_));
         self.shows_converged = is_lost && session.converged().is_some();
     }

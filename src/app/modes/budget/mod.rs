@@ -261,8 +261,7 @@ fn settings(
                     RichText::new(extent.into_iter().chain([against]).collect::<Vec<_>>().join(" ")).small()
                 }
             };
-            let whole = text.text().to_owned();
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(whole);
+            ui.add(egui::Label::new(text).truncate());
         }
     });
     let time = NumberField {

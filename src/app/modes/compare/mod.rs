@@ -396,18 +396,20 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
 /// Largest number of probes in a header, so that the bodies keep their room.
 const MAX_PROBES: usize = 3;
 
-/// Returns the number of probes that a header shows: those at points.
+/// Returns `true` if headers show the probes at a place: those of edges are in the table of the load curve.
+fn is_in_header(place: &Place) -> bool {
+    matches!(place, Place::At(_))
+}
+
+/// Returns the number of probes that a header shows.
 fn shown_probes(scene: &Scene) -> usize {
-    scene.probes.iter().filter(|probe| matches!(probe.place, Place::At(_))).count().min(MAX_PROBES)
+    scene.probes.iter().filter(|probe| is_in_header(&probe.place)).count().min(MAX_PROBES)
 }
 
 /// Shows the displacements of the probes at points.
 fn kept_probes(ui: &mut Ui, pane: &Pane) {
     let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
-    let is_at_point = |name: &str| {
-        simulation.scene().probes.iter().any(|probe| probe.name == name && matches!(probe.place, Place::At(_)))
-    };
-    let probes = simulation.problem().probes().iter().filter(|probe| is_at_point(&probe.name));
+    let probes = simulation.problem().probes().iter().filter(|probe| is_in_header(&probe.place));
     for probe in probes.take(MAX_PROBES) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
@@ -447,7 +449,9 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         left += 6.0;
     } else {
         let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
-        let color = error_color(&palette, pane.error_bound.filter(|_| !bad));
+        let bound =
+            error.zip(input.reference.and_then(Reference::first)).map(|(error, first)| first.error_bound(error));
+        let color = error_color(&palette, bound);
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         semibold(painter, at.min, &galley, color);

@@ -24,8 +24,6 @@ pub struct Pane {
     pub(super) solve: ComparedSolve,
     pub(super) display: PaneDisplay,
     pub(super) error: Option<f64>,
-    /// The error with the largest error of the reference added, percent.
-    pub(super) error_bound: Option<f64>,
     /// Time of the solve from rest.
     time: Keyed<TimeFact>,
 }
@@ -155,16 +153,14 @@ impl Pane {
     /// Computes the error of the result, if the reference solution is known.
     pub(super) fn update_error(&mut self, reference: Option<&Reference>) {
         let probe = self.solve.answer().filter(|(_, good)| *good);
-        let first = reference.and_then(Reference::first);
-        self.error = first.zip(probe).and_then(|(first, (probe, _))| first.error_percent(&probe));
-        self.error_bound = self.error.zip(first).map(|(error, first)| error + first.own_error_percent);
+        self.error = reference.zip(probe).and_then(|(reference, (probe, _))| reference.first()?.error_percent(&probe));
     }
 }
 
 impl ComparedPane for Pane {
     fn new(setting: PaneSetting) -> Self {
         let solve = ComparedSolve::new(setting.iterations);
-        Self { setting, solve, display: PaneDisplay::default(), error: None, error_bound: None, time: Keyed::default() }
+        Self { setting, solve, display: PaneDisplay::default(), error: None, time: Keyed::default() }
     }
 
     fn own_setting(&self) -> PaneSetting {

@@ -38,15 +38,14 @@ impl Cuts {
             _ => None,
         });
         let points = loads.chain(scene.supports.iter().map(|support| &support.place));
-        let jumps = simulation.system().beam().into_iter().flat_map(|beam| {
-            let points = points.clone().filter_map(|place| match place {
-                Place::At(at) => Some(straightened(beam, (*at).into())[0]),
-                Place::Edge(_) => None,
-            });
-            points.flat_map(|along| [along - BESIDE, along + BESIDE])
+        let beam = simulation.system().beam();
+        let jumps = points.filter_map(|place| match place {
+            Place::At(at) => Some(straightened(beam?, (*at).into())[0]),
+            Place::Edge(_) => None,
         });
+        let beside = jumps.flat_map(|along| [along - BESIDE, along + BESIDE]);
         let even = (0..=ALONG).map(|i| f64::from(i) / f64::from(ALONG));
-        let mut along: Vec<f64> = jumps.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
+        let mut along: Vec<f64> = beside.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
         along.sort_by(f64::total_cmp);
         Self {
             own: simulation.scene_sections(),
