@@ -168,6 +168,11 @@ pub fn two_digits(value: f64) -> f64 {
     rounded(value, 2)
 }
 
+/// Rounds to six significant digits, the precision of shown coordinates.
+pub(crate) fn six_digits(value: f64) -> f64 {
+    rounded(value, 6)
+}
+
 /// Rounds to `digits` significant digits.
 fn rounded(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {

@@ -8,7 +8,9 @@ use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::memory::PeakMemory;
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
-use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text};
+use super::{
+    CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text, validated,
+};
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
@@ -192,7 +194,7 @@ fn limits_of_auto(scene: &Scene, solution: &Solution, reference: Option<&Referen
 pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let CurveArgs { scene, outputs, of } = args;
     let source = scene::Source::from(scene);
-    let (scene, _) = simulate(&source)?;
+    let scene = validated(&source)?;
     // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
     outputs.check()?;
@@ -242,7 +244,7 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let (scene, _) = simulate(source)?;
+    let scene = validated(source)?;
     let watch = Watch::new();
     let (result, interrupted) = match scene.analysis {
         Analysis::Static => {
@@ -267,7 +269,7 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
 }
 
 pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let (scene, _) = simulate(source)?;
+    let scene = validated(source)?;
     let watch = Watch::new();
     let memory = PeakMemory::watch();
     let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
@@ -296,7 +298,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let TuneArgs { scene, error, time, write } = args;
     write.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".toml"], ".toml"))?;
     let source = scene::Source::from(scene);
-    let (scene, _) = simulate(&source)?;
+    let scene = validated(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
     let demand = Demand { max_error_percent: error, max_time_ms: time };
     let watch = Watch::new();

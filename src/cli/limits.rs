@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
 use super::progress::Watch;
-use super::{CliError, json, named, simulate, text};
+use super::{CliError, json, named, text, validated};
 use crate::format::{engineering, three_digits};
 use crate::plot::{self, AxisScale};
 use crate::scene::{self, Scene};
@@ -19,7 +19,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let LimitsArgs { scene, json, outputs, linear } = args;
     let source = scene::Source::from(scene);
     outputs.check()?;
-    let (scene, _) = simulate(&source)?;
+    let scene = validated(&source)?;
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);

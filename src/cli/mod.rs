@@ -6,12 +6,13 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
 use self::args::{Cli, Command};
-use crate::assembly::SystemError;
+use crate::assembly::{Problem, System, SystemError};
 use crate::export::ExportError;
 use crate::format::number;
 use crate::image::PictureError;
@@ -201,18 +202,37 @@ fn sections_of(source: &scene::Source, simulation: &Simulation) -> Result<Vec<Se
         .collect()
 }
 
+/// Opens a scene, and sets up its simulation.
 fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
     let scene = scene::open(source)?;
-    let simulation = Simulation::new(&scene).map_err(|error| match error {
+    let simulation = Simulation::new(&scene).map_err(|error| refused(source, error))?;
+    warn_of_mesh(source, &scene, simulation.system());
+    Ok((scene, simulation))
+}
+
+/// Opens a scene, and checks that it can be simulated.
+fn validated(source: &scene::Source) -> Result<Scene, CliError> {
+    let scene = scene::open(source)?;
+    let problem = System::for_display(&scene).and_then(|system| Problem::new(&scene, Arc::new(system)));
+    let problem = problem.map_err(|error| refused(source, error.into()))?;
+    warn_of_mesh(source, &scene, problem.system());
+    Ok(scene)
+}
+
+/// Adds the place in the scene file to the reason for which a scene cannot be simulated.
+fn refused(source: &scene::Source, error: SimulationError) -> CliError {
+    match error {
         SimulationError::System(SystemError::Scene(invalid)) => scene::locate(source, invalid).into(),
         error => CliError::Simulation { scene: named(source), error },
-    })?;
-    // The unit of a built-in mesh is known.
-    if source.built_in().is_none() {
-        warn_of_millimetres(&scene, simulation.system().size());
-        warn_of_built_in_mesh(source, &scene);
     }
-    Ok((scene, simulation))
+}
+
+/// Prints warnings about the mesh file of a scene; the unit of a built-in mesh is known.
+fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
+    if source.built_in().is_none() {
+        warn_of_millimetres(scene, system.size());
+        warn_of_built_in_mesh(source, scene);
+    }
 }
 
 /// Returns the name of a scene in messages.

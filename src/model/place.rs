@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::dynamics::Pulse;
 use super::error::Invalid;
 use super::{check, is_default, limits};
-use crate::format::number;
+use crate::format::{number, six_digits};
 use crate::sentence::Sentence;
 
 /// Whole edge or single point.
@@ -74,7 +74,10 @@ impl std::fmt::Display for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Edge(edge) => f.write_str(edge),
-            Self::At([x, y]) => write!(f, "({}, {})", number(*x), number(*y)),
+            Self::At(at) => {
+                let [x, y] = at.map(|v| number(six_digits(v)));
+                write!(f, "({x}, {y})")
+            }
         }
     }
 }

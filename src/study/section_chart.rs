@@ -92,7 +92,7 @@ pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
     rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
         let [value, of_stress] =
             [&section.forces, &section.stress_forces].map(|forces| engineering(three_digits(of(forces)), unit));
-        let name = sentence!("%{symbol}; stress: %{value}", symbol, value = of_stress);
+        let name = sentence!("%{symbol} (of the drawn stress: %{value})", symbol, value = of_stress);
         row(render(&name), Ink::Scene, Mark::Disc, value)
     }));
     let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);

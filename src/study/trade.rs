@@ -191,14 +191,15 @@ pub struct Study {
     pub measurements: Vec<Measurement>,
 }
 
-/// Largest number of iterations for methods that have not converged before.
-const MAX_ITERATIONS: u32 = 20;
 /// Fraction of a study's time spent before timing starts.
 const ENDS_SHARE: f64 = 0.1;
 /// Numbers of iterations that are recorded.
-const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, MAX_ITERATIONS];
+const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, Study::MAX_ITERATIONS];
 
 impl Study {
+    /// Largest number of iterations for methods that have not converged before.
+    pub(crate) const MAX_ITERATIONS: u32 = 20;
+
     /// Measures a scene. `observe` receives the progress, and breaks to cancel.
     ///
     /// ```
@@ -316,7 +317,7 @@ impl Study {
             check(observe(Progress { fraction, now: Some(&now) }))?;
             let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
             // `auto` decides itself how many iterations it needs.
-            let most = if method == MethodKind::Auto { u32::MAX } else { MAX_ITERATIONS };
+            let most = if method == MethodKind::Auto { u32::MAX } else { Self::MAX_ITERATIONS };
             let times = times_from_rest(&mut simulation, most, &|_| observe(Progress::at(fraction)));
             let times = times.ok_or(StudyError::Cancelled)?;
             simulation.reset();
@@ -352,6 +353,12 @@ impl Study {
     fn mark_pareto(&mut self) {
         let front = self.ranking().pareto(0.0);
         self.measurements.iter_mut().zip(front).for_each(|(m, front)| m.pareto = front);
+    }
+
+    /// Returns `true` if the method of a measurement converged on its mesh, after this or another number of iterations.
+    pub(crate) fn converges(&self, measurement: &Measurement) -> bool {
+        let of = |m: &Measurement| (m.setting.element, m.setting.cells, m.setting.method);
+        self.measurements.iter().any(|m| m.converged && of(m) == of(measurement))
     }
 
     /// Returns the measurements, ranked by time and error.

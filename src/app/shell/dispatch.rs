@@ -2,7 +2,6 @@
 
 use crate::app::action::{Action, MAX_ITERATIONS};
 use crate::app::language::{fill, said, tr};
-use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::explore::figure;
 use crate::app::modes::learn;
@@ -38,7 +37,7 @@ impl Lab {
         }
         if changed.document {
             panel.clear();
-            *budget = Budget::default();
+            budget.clear();
             *compare = Compare::default();
             *motions = MotionCompare::default();
             *limits = LimitMap::default();

@@ -220,7 +220,7 @@ impl Lab {
                 if sections.request(shown) {
                     ui.ctx().request_repaint_after(POLL);
                 }
-                sections.show(ui, shown, actions);
+                sections.show(ui, session.scene(), shown, actions);
             }
             Drawer::Motion => {
                 let frequency = facts.frequency.get(session.scene()).copied();

@@ -10,6 +10,7 @@ use crate::app::session::Notice;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::toolbar;
 use crate::app::task::thread::POLL;
+use crate::app::view_options::Mode;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
 
@@ -33,13 +34,18 @@ impl Lab {
         is_new
     }
 
-    /// Shows warnings and offers under the toolbar.
+    /// Shows warnings and offers, over the body or over the plots of Compare.
     pub(super) fn show_banners(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let width = ctx.content_rect().width();
         let banner_width = (width - 24.0).max(0.0);
+        // Compare has its tabs and pickers under the toolbar.
+        let (align, offset) = match self.desk.view.mode {
+            Mode::Compare => (Align2::CENTER_BOTTOM, -8.0),
+            _ => (Align2::CENTER_TOP, toolbar::height(width) + 8.0),
+        };
         let area = egui::Area::new(egui::Id::unique("banners"))
             .default_width(banner_width)
-            .anchor(Align2::CENTER_TOP, egui::vec2(0.0, toolbar::height(width) + 8.0));
+            .anchor(align, egui::vec2(0.0, offset));
         area.show(ctx, |ui| {
             // While there was nothing to show, the area had no width.
             ui.set_max_width(banner_width);

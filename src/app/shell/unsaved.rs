@@ -93,13 +93,16 @@ impl Lab {
             Question::Unsaved(departure) => {
                 let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
                 let answers = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
-                match dialog(ctx, &title, tr("Discarded changes are lost."), &answers) {
+                let text = match departure {
+                    UnsavedDeparture::Close => "Discarded changes are lost.",
+                    UnsavedDeparture::Open(_) | UnsavedDeparture::AskForFile => "Undo restores discarded changes.",
+                };
+                match dialog(ctx, &title, tr(text), &answers) {
                     None => self.question = Question::Unsaved(departure),
                     Some("Save") => {
                         self.question = Question::Saving(departure);
                         self.save_here(ctx);
                     }
-                    // After another scene has been opened, undo restores the discarded edits.
                     Some("Discard") => self.go(ctx, departure),
                     Some(_) => {}
                 }

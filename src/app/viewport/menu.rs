@@ -10,7 +10,7 @@ use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::{Edge, System};
-use crate::mesh::{Mesh, Segment, axis_angle, straightened};
+use crate::mesh::{Mesh, Segment, axis_angle, bent, straightened};
 use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
 use crate::section;
 
@@ -124,6 +124,18 @@ pub(crate) fn with_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> Sc
 pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> bool {
     let place = Place::At(rounded(system, at).into());
     scene.probes.iter().any(|probe| probe.place == place)
+}
+
+/// Returns the scene with a section through the middle of the body.
+pub(crate) fn with_middle_section(scene: &Scene, system: &System) -> Scene {
+    let middle = system.beam().map_or_else(
+        || {
+            let (low, high) = system.mesh().bounds();
+            system.mesh().node(system.mesh().nearest_node(0.5 * (low + high)))
+        },
+        |beam| bent(beam, 0.5, 0.0),
+    );
+    edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, middle))))
 }
 
 /// Returns the section through a point that is normal to the axis of the beam; in a body without axis it is vertical or

@@ -63,6 +63,18 @@ impl Measured {
         }
     }
 
+    /// Returns the settings nearest to a demand that none meets: the most accurate one within the time, and the fastest
+    /// one within the error. None if the reference's own error is too large to tell.
+    pub(crate) fn nearest(&self, demand: Demand) -> Vec<Choice> {
+        if self.too_coarse_for(demand).is_some() {
+            return Vec::new();
+        }
+        let in_time = self.meeting(Demand { max_error_percent: None, ..demand });
+        let accurate = in_time.into_iter().min_by(|a, b| self.error_percent(a).total_cmp(&self.error_percent(b)));
+        let fast = self.meeting(Demand { max_time_ms: None, ..demand }).first().copied();
+        accurate.filter(|choice| self.error_percent(choice).is_finite()).into_iter().chain(fast).collect()
+    }
+
     /// Returns the error bound of the reference solution, percent.
     pub(crate) fn own_error_percent(&self) -> f64 {
         match self {
@@ -106,6 +118,47 @@ impl Measured {
     }
 }
 
+impl Measured {
+    /// Describes the unknowns and the parts of the error of a setting.
+    pub(crate) fn parts(&self, choice: &Choice) -> String {
+        match (self, choice) {
+            (Self::Rest(study), Choice::Rest(m)) => {
+                let parts = fill!(
+                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
+                    unknowns = count(m.dofs as u64, "unknown"),
+                    mesh = percent(m.error.discretization),
+                    iteration = percent(m.error.iteration),
+                    theory = percent(m.error.model)
+                );
+                [Some(parts), runs_away(study, m)].into_iter().flatten().collect::<Vec<_>>().join(" ")
+            }
+            (_, Choice::Motion(m)) => {
+                let part = |of: fn(&PathError) -> f64| percent(m.error.as_ref().map_or(0.0, of));
+                fill!(
+                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift %{drift} of the largest kinetic energy.",
+                    unknowns = count(m.dofs as u64, "unknown"),
+                    mesh = part(|e| e.discretization),
+                    steps = part(|e| e.integration),
+                    theory = part(|e| e.model),
+                    drift = percent(m.drift_percent)
+                )
+            }
+            _ => String::new(),
+        }
+    }
+}
+
+/// Returns the warning that a setting stops an iteration that does not converge when it runs on.
+pub(crate) fn runs_away(study: &Study, m: &Measurement) -> Option<String> {
+    (!study.converges(m)).then(|| {
+        fill!(
+            "%{method} does not converge here in %{n} iterations: other loads need another number of them.",
+            method = tr(m.setting.method.id()),
+            n = Study::MAX_ITERATIONS
+        )
+    })
+}
+
 impl Choice {
     /// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
     pub(crate) fn milliseconds(&self) -> f64 {
@@ -120,30 +173,6 @@ impl Choice {
         match self {
             Self::Rest(m) => said(&m.setting),
             Self::Motion(m) => said(&m.setting),
-        }
-    }
-
-    /// Returns the description of the unknowns and of the parts of the error.
-    pub(crate) fn parts(&self) -> String {
-        match self {
-            Self::Rest(m) => fill!(
-                "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
-                unknowns = count(m.dofs as u64, "unknown"),
-                mesh = percent(m.error.discretization),
-                iteration = percent(m.error.iteration),
-                theory = percent(m.error.model)
-            ),
-            Self::Motion(m) => {
-                let part = |of: fn(&PathError) -> f64| percent(m.error.as_ref().map_or(0.0, of));
-                fill!(
-                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift %{drift}.",
-                    unknowns = count(m.dofs as u64, "unknown"),
-                    mesh = part(|e| e.discretization),
-                    steps = part(|e| e.integration),
-                    theory = part(|e| e.model),
-                    drift = percent(m.drift_percent)
-                )
-            }
         }
     }
 

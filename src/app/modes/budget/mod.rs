@@ -78,6 +78,11 @@ impl Budget {
         }
     }
 
+    /// Drops the study; the limits stay.
+    pub(crate) fn clear(&mut self) {
+        *self = Self { limits: self.limits, ..Self::default() };
+    }
+
     /// Cancels the study, which then ends soon; measurements made so far are kept.
     pub(crate) fn cancel(&mut self) {
         if let Some(background) = &self.background {
@@ -153,6 +158,7 @@ impl Budget {
             choices: self.study.as_ref().map(Measured::choices).unwrap_or_default(),
             demand,
             meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
+            nearest: self.study.as_ref().map(|s| s.nearest(demand)).unwrap_or_default(),
             current: self.of.as_ref() == Some(&without_settings(scene)),
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(BackgroundStudy::progress),
@@ -193,6 +199,8 @@ struct BudgetView<'a> {
     demand: Demand,
     /// Settings that meet the demand, fastest first.
     meeting: Vec<Choice>,
+    /// Settings listed if none meets the demand: see [`Measured::nearest`].
+    nearest: Vec<Choice>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
     /// `true` if the study was cancelled.
@@ -306,26 +314,37 @@ fn settings(
         let measured = budget.choices.len();
         ui.label(match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
             Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
+            None if measured > 0 && meeting.is_empty() => {
+                fill!("None of %{measured} settings meets both; nearest:", measured = measured)
+            }
             None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
         });
     });
 }
 
-/// Shows the settings that meet the demand, fastest first, in a list of at most `height`, points; a click applies one.
+/// Shows the settings that meet the demand, fastest first, or those nearest to it, in a list of at most `height`, points;
+/// a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Action>) {
-    let meeting = &budget.meeting;
+    let listed = if budget.meeting.is_empty() { &budget.nearest } else { &budget.meeting };
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
-    area.show_rows(ui, row_height, meeting.len(), |ui, rows| {
-        for m in meeting.get(rows).unwrap_or_default() {
+    area.show_rows(ui, row_height, listed.len(), |ui, rows| {
+        for m in listed.get(rows).unwrap_or_default() {
             let text = format!("{:>7} {:>7}  {}", milliseconds(m), bound_percent(error(m)), m.text());
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
-            if label.on_hover_text(format!("{}\n{}", m.text(), m.parts())).clicked() {
+            if label
+                .on_hover_text(format!(
+                    "{}\n{}",
+                    m.text(),
+                    budget.study.map(|study| study.parts(m)).unwrap_or_default()
+                ))
+                .clicked()
+            {
                 actions.push(m.action(budget.scene));
             }
         }

@@ -7,6 +7,7 @@ use crate::app::language::{fill, said, tr};
 use crate::app::modes::explore::figure::{self, Parts};
 use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
+use crate::app::viewport::menu::with_middle_section;
 use crate::app::widgets::buttons::option_button;
 use crate::mesh::straightened;
 use crate::scene::{Load, Place, Scene};
@@ -123,20 +124,22 @@ impl SectionPlot {
         }
     }
 
-    /// Shows the plots; a scene without a section, or whose first result is pending, gets the reason.
-    pub(crate) fn show(&mut self, ui: &mut Ui, simulation: &Simulation, actions: &mut Vec<Action>) {
+    /// Shows the plots of an equilibrium of a scene; a scene without a section, or whose first result is pending, gets
+    /// the reason.
+    pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, simulation: &Simulation, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
         let cuts = self.cuts_of(simulation);
         let offered = cuts.map(Cuts::offered).unwrap_or_default();
         let shown = self.shown.filter(|figure| offered.contains(figure)).or_else(|| offered.first().copied());
         let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
+        let has_none = cuts.is_some_and(|cuts| cuts.own.is_empty());
         let parts = Parts::of(whole);
         ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
             Some(Ok(drawn)) => _ = figure::plot(ui, "sections", drawn, None),
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
             None => {
                 let reason = match cuts {
-                    Some(_) => "Click the body with the secondary button to add a section.",
+                    Some(_) => "No section has been added.",
                     None => "Sections are computed after the solve.",
                 };
                 ui.centered_and_justified(|ui| ui.weak(tr(reason)));
@@ -149,6 +152,13 @@ impl SectionPlot {
                     let (word, tip) = figure.text(offered.contains(&SectionFigure::Stress(1)));
                     if ui.add(option_button(Some(figure) == shown, &word)).on_hover_text(tr(tip)).clicked() {
                         self.shown = Some(figure);
+                    }
+                }
+                if has_none {
+                    let tip = "Adds a section through the middle of the body; the context menu of the body adds one at a point";
+                    if ui.button(tr("Add a section")).on_hover_text(tr(tip)).clicked() {
+                        let scene = with_middle_section(scene, simulation.system());
+                        actions.push(Action::Edit("Sections", Box::new(scene)));
                     }
                 }
                 if let Some(Ok(drawn)) = &drawn {

@@ -8,6 +8,7 @@ use crate::app::action::Action;
 use crate::app::language::{fill, percent, spaced, tr};
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
+use crate::format::{number, three_digits};
 use crate::scene::limits::Limit;
 use crate::scene::{Load, LoadId, MethodKind};
 
@@ -33,6 +34,13 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
     });
     row(ui, &palette, "reference", exact, palette.exact);
+    let linear = Some(shown.input.simulation).filter(|_| method == MethodKind::Linear).or(shown.input.linear);
+    if let Some(angle) = linear.map(triangle::largest_linear_angle) {
+        let [angle_text, growth] = [number(three_digits(angle)), percent(100.0 * angle * angle)];
+        let text =
+            fill!("linear: \u{3b8} up to %{angle} rad, \u{3b8}\u{b2} = %{growth}", angle = angle_text, growth = growth);
+        ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
+    }
     ui.add_space(6.0);
     let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
     ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());

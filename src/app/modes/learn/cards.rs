@@ -216,7 +216,7 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Beyond \u{3c1} = 1 it does not converge",
         text: "Under twice the force, a change of R changes the forces by more than A accounts for: the spectral \
-                radius \u{3c1} is above 1, and more iterations do not help. Newton\u{2019}s method adds the missing \
+                radius \u{3c1} is above 1. Even next to the equilibrium each iteration leads away from it. Newton\u{2019}s method adds the missing \
                 part G: how the forces change as R rotates. An iteration costs about the same.",
         formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
         symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \

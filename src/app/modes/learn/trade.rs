@@ -5,6 +5,7 @@ use egui::{Button, Grid, ProgressBar, RichText, Ui};
 use super::{Learn, Shown};
 use crate::app::action::Action;
 use crate::app::language::{bound_percent, fill, percent, said, tr};
+use crate::app::modes::budget::measured::runs_away;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, two_digits};
@@ -65,7 +66,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             for method in METHODS {
                 let best = shown.study.and_then(|study| {
                     let (m, good) = best(study, element, method.kind, learn.asked)?;
-                    Some((m, study.ranking().error_bound(&m), good))
+                    Some(Best { m, bound: study.ranking().error_bound(&m), good, runs_away: runs_away(study, &m) })
                 });
                 cell(ui, &palette, best.as_ref());
             }
@@ -75,7 +76,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let text = match shown.study {
         Some(study) => {
             fill!(
-                "Error against %{reference}. Grey: the smallest bound, if none is that small.",
+                "Bounds: parts of the error added, against %{reference}. Grey: the smallest bound, if none is that small. \
+                 *: stopped early, the method does not converge here.",
                 reference = said(&study.reference)
             )
         }
@@ -84,13 +86,27 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
 }
 
-fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, f64, bool)>) {
-    let Some((m, bound, good)) = best else {
+/// Best setting of an element and a method.
+struct Best {
+    m: Measurement,
+    /// Bound of its error, percent.
+    bound: f64,
+    /// `true` if the bound is as small as asked.
+    good: bool,
+    /// Warning that the method does not converge.
+    runs_away: Option<String>,
+}
+
+fn cell(ui: &mut Ui, palette: &Palette, best: Option<&Best>) {
+    let Some(Best { m, bound, good, runs_away }) = best else {
         ui.label(RichText::new("\u{2013}").color(palette.secondary));
         return;
     };
     let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
-    let text = if *good { time.clone() } else { fill!("at most %{error}", error = bound_percent(*bound)) };
+    let mut text = if *good { time.clone() } else { fill!("at most %{error}", error = bound_percent(*bound)) };
+    if runs_away.is_some() {
+        text.push('*');
+    }
     let color = if *good { palette.text } else { palette.secondary };
     let tip = fill!(
         "%{setting}: %{time}, error at most %{error}",
@@ -98,5 +114,6 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&(Measurement, f64, bool)>)
         time = time,
         error = bound_percent(*bound)
     );
+    let tip = std::iter::once(tip).chain(runs_away.clone()).collect::<Vec<_>>().join("\n");
     ui.label(RichText::new(text).color(color)).on_hover_text(tip);
 }

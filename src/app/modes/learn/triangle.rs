@@ -95,3 +95,15 @@ pub(super) fn area_growth(simulation: &Simulation) -> f64 {
     });
     100.0 * (now / rest - 1.0)
 }
+
+/// Returns the largest angle θ, rad, of linear theory in a body: half the difference of the derivatives of the
+/// displacement across each other.
+pub(super) fn largest_linear_angle(simulation: &Simulation) -> f64 {
+    let (problem, state) = (simulation.problem(), simulation.state());
+    let mut largest = 0.0_f64;
+    let elements = problem.system().elements();
+    elements.visit_strains(problem.material().lame(), state.displacement(), state.rotations(), &mut |_, h, _| {
+        largest = largest.max(0.5 * (h[(1, 0)] - h[(0, 1)]).abs());
+    });
+    largest
+}
