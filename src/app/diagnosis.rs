@@ -9,7 +9,7 @@ use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::stress::strain_warning;
-use crate::study::{Advice, Claim, Reference, moved_points};
+use crate::study::{Advice, Claim, FOLDS, Reference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -361,6 +361,9 @@ pub(crate) fn error_tip(reference: Option<&Reference>, failure: Option<&Sentence
     if let Some(reference) = reference.filter(|reference| reference.first().is_none()) {
         return sentence(&said(reference));
     }
+    let folds = reference.is_some_and(|reference| reference.folds).then(|| format!("\n{}", sentence(tr(FOLDS))));
     let reference = reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said);
-    fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference)
+    let tip =
+        fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference);
+    tip + &folds.unwrap_or_default()
 }

@@ -16,6 +16,7 @@ use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
+use crate::rotation::{Rotation, polar};
 use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, SupportId};
 use crate::section::Wrench;
 use crate::sentence::Sentence;
@@ -619,6 +620,18 @@ impl Simulation {
             Process::Search(search) => search.certify(&self.body.problem, &self.body.state),
             Process::Motion(_) => Certificate::default(),
         }
+    }
+
+    /// Returns the rotation R of every element, or the mean of those at its quadrature points. In linear theory all are
+    /// the identity.
+    pub(crate) fn element_rotations(&self) -> Vec<Rotation> {
+        let per_element =
+            (self.system().elements().rotation_count() / self.system().mesh().element_count().max(1)).max(1);
+        let mean = |own: &[Rotation]| {
+            let (c, s) = own.iter().fold((0.0, 0.0), |(c, s), r| (c + r.c, s + r.s));
+            polar(&Matrix2::new(c, -s, s, c)).unwrap_or(Rotation::IDENTITY)
+        };
+        self.state().rotations().chunks(per_element).map(mean).collect()
     }
 
     /// Returns the results of the current state.

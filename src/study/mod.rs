@@ -37,7 +37,7 @@ pub use ranking::{Demand, Ranked, Ranking};
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
-pub(crate) use reference::is_known_unstable;
+pub(crate) use reference::{FOLDS, is_known_unstable};
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::{time_from_rest, times_from_rest};

@@ -128,6 +128,9 @@ pub struct Reference {
     pub linear: Option<Vector2<f64>>,
     /// Points of the scene at which the reference solution has no node.
     pub moved: Vec<MovedPoint>,
+    /// `true` if the solution on a finer mesh has a fold: the reference is the last one without, and its own error covers
+    /// the distance.
+    pub folds: bool,
     /// `true` if all sides of a mesh file are straight: errors then refer to the polygon, not to a curved part that it
     /// approximates.
     pub is_polygon: bool,
@@ -151,6 +154,10 @@ impl From<&Reference> for Sentence {
         }
     }
 }
+
+/// Limitation of a reference with [`Reference::folds`].
+pub(crate) const FOLDS: &str =
+    "on finer meshes the material folds at the corner of a support; the error of the reference covers that state";
 
 /// Largest bound of a reference's own error, percent; with a larger bound there is no reference.
 const LARGEST_OWN_ERROR: f64 = 20.0;
@@ -252,6 +259,7 @@ impl Reference {
             displacements: if is_known { fine.displacements } else { DisplacementMap::default() },
             linear: fine.linear,
             moved: fine.moved,
+            folds: fine.folds,
             is_polygon: fine.is_polygon,
             unknowns: fine.unknowns,
         }
@@ -309,6 +317,7 @@ impl Reference {
             displacements,
             linear: None,
             moved: Vec::new(),
+            folds: false,
             is_polygon: false,
             unknowns: 0,
         })
@@ -333,6 +342,9 @@ impl Reference {
     pub fn limits(&self) -> Vec<String> {
         let mut limits: Vec<String> =
             self.moved.iter().map(|point| format!("in the reference solution, {point}")).collect();
+        if self.folds {
+            limits.push(FOLDS.to_owned());
+        }
         if self.is_polygon {
             limits.push(
                 "errors refer to the polygon of the file's straight sides, not to the curved part it stands for"

@@ -194,3 +194,32 @@ fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
     assert!(tally.severe * 2 >= tally.judged, "{tally:?}");
     assert!(tally.sharp * 5 >= tally.judged * 2, "{tally:?}");
 }
+
+/// Under large loads fine meshes fold at the corner of the clamp: the bound of the reference covers the folded state, and
+/// the reference does not jump to it from one load to the next.
+#[test]
+fn the_reference_does_not_jump_to_a_fold() {
+    let scene = |force: f64| {
+        let scene = Scene::beam(10.0, 1.0).with_element(ElementKind::Q4).with_method(MethodKind::Newton);
+        scene.clamp("left").force("right", [0.0, -force]).probe("tip", "right")
+    };
+    let references = [100e3, 104e3, 105e3].map(|force| {
+        let reference = Reference::of(&scene(force)).unwrap();
+        assert!(reference.folds, "{force} N");
+        reference.first().unwrap()
+    });
+    for pair in references.windows(2) {
+        let apart = pair[1].percent(pair[0].displacement, pair[1].displacement);
+        assert!(apart < 2.0 && apart < pair[1].own_error_percent, "{apart} %");
+    }
+    let mut fine = Simulation::new(&scene(105e3).with_cells(80, 8)).unwrap();
+    fine.solve();
+    let folded = fine.solution().probes[0].clone();
+    let error = references[2].error_percent(&folded).unwrap();
+    assert!(
+        (4.0..references[2].own_error_percent).contains(&error),
+        "{error} % of {}",
+        references[2].own_error_percent
+    );
+    assert!(!Reference::of(&scene(30e3)).unwrap().folds);
+}

@@ -3,7 +3,7 @@
 use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::frames::angle_text;
-use super::triangle::{Triangle, frames};
+use super::triangle::Triangle;
 use super::{Learn, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{count, fill, tr};
@@ -67,7 +67,7 @@ fn gradient(simulation: &Simulation, picked: usize) -> String {
 
 fn rotation(simulation: &Simulation, _: usize) -> String {
     let size = |rotation: &Rotation| rotation.angle().abs();
-    let largest = frames(simulation).into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    let largest = simulation.element_rotations().into_iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     fill!("largest rotation: %{angle}", angle = angle_text(largest.unwrap_or(Rotation::IDENTITY)))
 }
 

@@ -4,7 +4,7 @@ use egui::{Painter, RichText, Shape, Slider, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::frames::{angle_text, paint_picked};
-use super::triangle::{Triangle, frames};
+use super::triangle::Triangle;
 use super::{CardView, Learn, NOT_TRIANGLES, Shown, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
@@ -21,7 +21,7 @@ pub(super) fn place(simulation: &Simulation, rotation_part: f64, rest: &[Vector2
     let count = simulation.system().mesh().element_count().max(1);
     let each = (points.len() / count).max(1);
     let body = mean(rest);
-    let rotations = frames(simulation);
+    let rotations = simulation.element_rotations();
     for ((points, rest), rotation) in points.chunks_mut(each).zip(rest.chunks(each)).zip(rotations) {
         let (now, apart) = (mean(points), body + (mean(rest) - body) * APART);
         let center = now + (apart - now) * rotation_part;

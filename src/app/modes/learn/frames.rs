@@ -3,7 +3,7 @@
 use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::{Matrix2, Vector2};
 
-use super::triangle::{Triangle, frames};
+use super::triangle::Triangle;
 use super::{CardView, Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, tr};
@@ -15,7 +15,7 @@ const SHORTEST: f32 = 5.0;
 
 /// Paints the axes of every element's frame.
 pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
-    let rotations = if view.is_fine() { Vec::new() } else { frames(view.simulation) };
+    let rotations = if view.is_fine() { Vec::new() } else { view.simulation.element_rotations() };
     for (element, rotation) in rotations.into_iter().enumerate() {
         let corners = view.corners(element);
         let Some(center) = middle(&corners) else { continue };

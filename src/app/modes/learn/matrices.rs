@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::DMatrix;
 
-use super::triangle::{Triangle, assembled, frames};
+use super::triangle::{Triangle, assembled};
 use super::{Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());
-    let rotation = frames(simulation).get(learn.picked).copied().unwrap_or(triangle.rotation);
+    let rotation = simulation.element_rotations().get(learn.picked).copied().unwrap_or(triangle.rotation);
     let rotated = stiffness.rkrt(rotation);
     let largest = stiffness.ke.amax().max(rotated.amax());
     let local = |i: usize| name_of(triangle.unknowns()[i]);

@@ -58,7 +58,7 @@ impl Triangle {
 pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
     let count = 2 * simulation.system().mesh().nodes().len();
     let mut sum = DMatrix::zeros(count, count);
-    for (element, rotation) in frames(simulation).into_iter().enumerate() {
+    for (element, rotation) in simulation.element_rotations().into_iter().enumerate() {
         let triangle = Triangle::of(simulation, element)?;
         let rotated = triangle.stiffness(simulation)?.rkrt(rotation);
         let unknowns = triangle.unknowns();
@@ -69,18 +69,6 @@ pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
         }
     }
     Some(sum)
-}
-
-/// Returns the frame of every element: its R, or the mean R of its quadrature points. In linear theory all are the
-/// identity.
-pub(super) fn frames(simulation: &Simulation) -> Vec<Rotation> {
-    let elements = simulation.system().elements();
-    let per_element = (elements.rotation_count() / simulation.system().mesh().element_count().max(1)).max(1);
-    let mean = |own: &[Rotation]| {
-        let (c, s) = own.iter().fold((0.0, 0.0), |(c, s), r| (c + r.c, s + r.s));
-        polar(&Matrix2::new(c, -s, s, c)).unwrap_or(Rotation::IDENTITY)
-    };
-    simulation.state().rotations().chunks(per_element).map(mean).collect()
 }
 
 /// Returns the growth of a body's area ∫ det F dA, percent of the area at rest.
