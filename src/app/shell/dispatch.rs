@@ -85,6 +85,7 @@ impl Lab {
                 }
             }
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
+            Action::Escape if self.desk.view.why => self.desk.view.why = false,
             Action::Cancel => self.cancel(),
             Action::Escape if self.desk.session.is_working() => self.cancel(),
             Action::Escape => self.desk.viewport.clear_probe(),

@@ -287,9 +287,10 @@ impl Lab {
         let Some(mut lesson) = self.lesson.take() else { return };
         let budget = &self.desk.budget;
         let shown = Shown { input: self.readout(), study: budget.study(), progress: budget.progress() };
-        // Escape closes the panel over the body first.
-        let sheet = self.desk.view.narrow && self.desk.view.sheet;
-        let keys = !self.has_dialog() && !self.desk.view.help && !sheet;
+        // Escape closes the panel over the body and the explanation first.
+        let view = &self.desk.view;
+        let is_covered = view.help || view.why || view.narrow && view.sheet;
+        let keys = !self.has_dialog() && !is_covered;
         lesson.learn.show(ui, &shown, keys, actions);
         self.lesson = Some(lesson);
     }

@@ -85,11 +85,12 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
+    outlines(painter, rect, overlay, &palette);
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     let names = key(painter, rect, overlay, &palette, visuals);
     let legend = legend(painter, rect, names, overlay, &palette, visuals);
     let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
-    body_below(painter, rect, overlay, visuals, below);
+    on_body(painter, rect, overlay, visuals, below);
     scale_bar(painter, rect, &overlay.camera, &palette);
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
@@ -107,12 +108,12 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
-    body_below(painter, rect, overlay, visuals, 0.0);
+    outlines(painter, rect, overlay, &Palette::new(visuals));
+    on_body(painter, rect, overlay, visuals, 0.0);
 }
 
-/// Paints the same under a colour bar that ends `below` points from the top; the arrow of gravity is placed under it.
-fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
-    let palette = Palette::new(visuals);
+/// Paints the outlines of the body, of the body at rest, and of other solutions.
+fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
     let Overlay { geometry, system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
@@ -155,8 +156,16 @@ fn body_below(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Vi
         dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
     }
     if overlay.options.trail {
-        trails(painter, &projection, overlay, &palette);
+        trails(painter, &projection, overlay, palette);
     }
+}
+
+/// Paints supports, loads, probes and sections; the arrow of gravity is placed under a colour bar that ends `below`
+/// points from the top.
+fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
+    let palette = Palette::new(visuals);
+    let Overlay { system, camera, .. } = *overlay;
+    let projection = Projection { camera, rect };
     if let Some(edge) = &overlay.options.edge {
         let segments = system.mesh().edges().get(edge).into_iter().flatten();
         for piece in segments.flat_map(|s| s.nodes().windows(2)) {
