@@ -99,13 +99,14 @@ pub(super) struct Runs {
     pub enough: Duration,
 }
 
-/// Returns the median time of `run`, without `prepare`.
+/// Returns the median time of `run`, without `prepare`. Only one thread of the process measures at a time.
 pub(super) fn median_time<T>(
     runs: Runs,
     subject: &mut T,
     prepare: impl Fn(&mut T),
     mut run: impl FnMut(&mut T),
 ) -> Duration {
+    let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
     let Runs { count, enough } = runs;
     let mut times = Vec::new();
     while times.len() < *count.start() || (times.len() < *count.end() && times.iter().sum::<Duration>() < enough) {

@@ -315,7 +315,9 @@ fn settings_have_the_errors_of_study() {
     lab.show_card(9);
     lab.show_study(study.clone());
     let shown = Shown::in_window(&harness_of(lab));
-    let at_most = shown.0.iter().filter_map(|text| text.strip_prefix("at most ")).collect::<Vec<_>>();
+    // A star marks settings of methods that do not converge.
+    let at_most = shown.0.iter().filter_map(|text| text.strip_prefix("at most "));
+    let at_most = at_most.map(|bound| bound.trim_end_matches('*')).collect::<Vec<_>>();
     assert!(!at_most.is_empty(), "{:?}", shown.0);
     for bound in at_most {
         assert!(texts.iter().any(|(text, _)| text.contains(&format!(" {bound}  "))), "{bound}: {texts:?}");

@@ -90,7 +90,7 @@ fn the_plots_have_the_values_of_the_library() {
     let simulation = harness.state().simulation();
     let section = simulation.section(harness.state().scene().sections[0]).unwrap();
     let rows = section_chart::stress(&section, harness.state().scene(), &ToString::to_string).rows;
-    let row = rows.iter().find(|row| row.name.starts_with("M;")).unwrap();
+    let row = rows.iter().find(|row| row.name.starts_with("M (")).unwrap();
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
     let along = simulation.sections(41).unwrap();
     let row = section_chart::forces(&along, harness.state().scene(), &ToString::to_string)[2].rows[0].clone();
@@ -110,11 +110,20 @@ fn a_body_without_axis_has_its_own_sections_only() {
     let mut harness = harness("clip");
     harness.key_press(Key::Q);
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("to add a section").is_some());
+    let has_none = |harness: &Harness<'_, Lab>| harness.query_by_label_contains("No section").is_some();
+    assert!(has_none(&harness));
     let node = harness.state().simulation().mesh().nodes()[0];
     choose(&mut harness, node.into(), "Add a section here");
-    assert!(harness.query_by_label_contains("to add a section").is_none());
-    assert!(harness.query_by_label_contains("M; stress:").is_some());
+    assert!(!has_none(&harness));
+    assert!(harness.query_by_label_contains("M (of the drawn stress:").is_some());
     assert!(harness.query_by_role_and_label(Role::Button, "N").is_none());
     assert_eq!(harness.state().scene().sections.len(), 1);
+    // Without the menu: a section through the middle of the body.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(4);
+    assert!(has_none(&harness));
+    harness.get_by_role_and_label(Role::Button, "Add a section").click();
+    harness.run_steps(4);
+    let line = harness.state().scene().sections[0];
+    assert!(harness.state().simulation().section(line).is_ok() && !has_none(&harness), "{line:?}");
 }

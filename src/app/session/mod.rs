@@ -35,7 +35,7 @@ use crate::app::task::solve::{SolveStart, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
+use crate::scene::{Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
@@ -415,6 +415,11 @@ impl Session {
         self.changed.body |= is_another_body;
         self.playback.change_scene(scene, is_another_body);
         self.facts.turn_to(scene);
+        // A time step with other settings takes another time.
+        let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
+        if scene.analysis == Analysis::Dynamic && is_another_step {
+            self.timings = Timings::default();
+        }
     }
 
     /// Replaces the document.

@@ -57,8 +57,15 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
                 }
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                for entry in entries {
-                    number(ui, &palette, entry, wide);
+                // Remarks have the room that the numbers leave.
+                let texts: Vec<Texts> = entries.iter().map(|entry| Texts::of(ui, &palette, entry, wide)).collect();
+                let gaps = ui.spacing().item_spacing.x * texts.len().saturating_sub(1) as f32;
+                let mut room = ui.available_width() - gaps - texts.iter().map(Texts::width).sum::<f32>();
+                for (entry, texts) in entries.into_iter().zip(texts) {
+                    let remark = texts.remark_width();
+                    let has_remark = remark <= room;
+                    room -= if has_remark { remark } else { 0.0 };
+                    number(ui, &palette, entry, texts, has_remark);
                 }
             });
         });
@@ -173,27 +180,56 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Bar
     ]
 }
 
-/// Shows a name, its number, its bar and its remark.
-fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Response {
-    const GAP: f32 = 6.0;
-    const BAR: egui::Vec2 = vec2(56.0, 6.0);
-    let BarNumber { name, value, word, tip, color, ratio } = entry;
-    let ratio = ratio.filter(|_| wide);
-    let (name, mut word) = (tr(name), word.as_ref());
-    let painter = ui.painter();
-    let small = |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
-    let [title, after] = [name, word].map(small);
-    let big = painter.layout_no_wrap(value.clone(), FontId::proportional(HEADLINE), color);
-    let bar_width = ratio.map_or(0.0, |_| BAR.x + GAP);
-    // A minimum width keeps what follows in place when the number of digits changes.
-    let number_width = big.size().x.max(if wide { 62.0 } else { 0.0 });
-    let without_word = title.size().x + GAP + number_width + bar_width;
-    // Half a remark would only confuse.
-    if without_word + after.size().x + GAP > ui.available_width() {
-        word = "";
+/// Space between the parts of an entry, points, and size of its bar.
+const GAP: f32 = 6.0;
+const BAR: egui::Vec2 = vec2(56.0, 6.0);
+
+/// Texts of a number, laid out.
+struct Texts {
+    title: Arc<Galley>,
+    number: Arc<Galley>,
+    number_width: f32,
+    /// `true` if there is a bar.
+    has_bar: bool,
+    remark: Option<Arc<Galley>>,
+}
+
+impl Texts {
+    fn of(ui: &Ui, palette: &Palette, entry: &BarNumber, wide: bool) -> Self {
+        let painter = ui.painter();
+        let small =
+            |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
+        let number = painter.layout_no_wrap(entry.value.clone(), FontId::proportional(HEADLINE), entry.color);
+        Self {
+            title: small(tr(entry.name)),
+            // A minimum width keeps what follows in place when the number of digits changes.
+            number_width: number.size().x.max(if wide { 62.0 } else { 0.0 }),
+            number,
+            has_bar: wide && entry.ratio.is_some(),
+            remark: (!entry.word.is_empty()).then(|| small(&entry.word)),
+        }
     }
-    let after_width = if word.is_empty() { 0.0 } else { after.size().x + GAP };
-    let size = vec2(without_word + after_width, ui.spacing().interact_size.y);
+
+    /// Returns the width without the remark, points.
+    fn width(&self) -> f32 {
+        let bar = if self.has_bar { BAR.x + GAP } else { 0.0 };
+        self.title.size().x + GAP + self.number_width + bar
+    }
+
+    fn remark_width(&self) -> f32 {
+        self.remark.as_ref().map_or(0.0, |remark| remark.size().x + GAP)
+    }
+}
+
+/// Shows a name, its number, its bar and, if it has room, its remark.
+fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, has_remark: bool) -> Response {
+    let BarNumber { name, value, word, tip, color, ratio } = entry;
+    let remark_width = if has_remark { texts.remark_width() } else { 0.0 };
+    let size = vec2(texts.width() + remark_width, ui.spacing().interact_size.y);
+    let Texts { title, number, number_width, has_bar, remark } = texts;
+    let (ratio, remark) = (ratio.filter(|_| has_bar), remark.filter(|_| has_remark));
+    let word = if remark.is_some() { word.as_ref() } else { "" };
+    let name = tr(name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let middle = rect.center().y;
     let mut x = rect.left();
@@ -208,9 +244,9 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Respo
     };
     let title_width = title.size().x;
     put(title, title_width, false);
-    put(big, number_width, true);
-    if !word.is_empty() {
-        put(after, after_width - GAP, false);
+    put(number, number_width, true);
+    if let Some(remark) = remark {
+        put(remark, remark_width - GAP, false);
     }
     if let Some(ratio) = ratio {
         let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);

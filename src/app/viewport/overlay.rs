@@ -540,13 +540,13 @@ fn legend(
     if has_legend_on_top(rect.height()) {
         let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
         let ends = [text(low), text(format!("{high} {symbol}{unit}"))];
-        return Some(legend_row(
+        return legend_row(
             painter,
             rect,
             names,
             (text(format!("{}{raw}{range}", tr(field.name()))), ends, map),
             visuals,
-        ));
+        );
     }
     let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));
@@ -563,15 +563,17 @@ fn legend(
 }
 
 /// Paints title, lowest value, colour bar and highest value in one row: beside the line key, or under it if there is no
-/// room. Returns the area.
+/// room and the view is not too low. Returns the area.
 fn legend_row(
     painter: &Painter,
     rect: Rect,
     names: Rect,
     (title, [low, high], map): (Arc<Galley>, [Arc<Galley>; 2], ColorMap),
     visuals: &Visuals,
-) -> Rect {
+) -> Option<Rect> {
     const BAR: Vec2 = vec2(110.0, 10.0);
+    /// Part of the view that may be above the body; in a low view a colour bar under the line key would cover the body.
+    const ABOVE: f32 = 1.0 / 3.0;
     const GAP: f32 = 7.0;
     const MARGIN: f32 = 14.0;
     let text = Palette::new(visuals).text;
@@ -580,8 +582,12 @@ fn legend_row(
     let has_title = with_title <= rect.width() - 2.0 * MARGIN;
     let width = if has_title { with_title } else { scale };
     let left = rect.right() - MARGIN - width;
-    let middle = if names.right() + MARGIN <= left { names.center().y } else { names.bottom() + MARGIN };
+    let is_beside = names.right() + MARGIN <= left;
+    let middle = if is_beside { names.center().y } else { names.bottom() + MARGIN };
     let frame = Rect::from_min_max(pos2(left, middle - 10.0), pos2(rect.right() - MARGIN, middle + 10.0)).expand(4.0);
+    if !is_beside && frame.bottom() - rect.top() > ABOVE * rect.height() {
+        return None;
+    }
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     let mut x = left;
     let mut put = |galley: Arc<Galley>, gap: f32| {
@@ -597,7 +603,7 @@ fn legend_row(
     color_bar(painter, Rect::from_min_size(pos2(from, middle - 0.5 * BAR.y), BAR), map);
     x += BAR.x + GAP;
     painter.galley(pos2(x, middle - 0.5 * high.size().y), high, text);
-    frame
+    Some(frame)
 }
 
 /// Paints the colours of a map from the lowest to the highest.

@@ -519,5 +519,15 @@ mod tests {
         }
         assert_eq!(budget.of, Some(without_settings(&second)));
         assert!(budget.error.is_none() && !budget.is_partial && budget.study().is_some());
+        // Where no setting meets a demand, the nearest ones each meet one of its halves.
+        let measured = budget.study.unwrap();
+        let all = measured.choices();
+        let least = |of: &dyn Fn(&Choice) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+        let [time, error] = [least(&Choice::milliseconds), least(&|m| measured.error_percent(m))].map(|v| 1.01 * v);
+        let demand = Demand { max_error_percent: Some(error), max_time_ms: Some(time) };
+        assert!(measured.meeting(demand).is_empty());
+        let nearest = measured.nearest(demand);
+        assert_eq!(nearest.len(), 2);
+        assert!(nearest[0].milliseconds() <= time && measured.error_percent(&nearest[1]) <= error);
     }
 }

@@ -181,7 +181,7 @@ impl SectionFigure {
             Self::Stress(_) => (tr("Stress").to_owned(), Self::STRESS),
             Self::Along(i) => {
                 let symbol = COMPONENTS.get(i).map_or("", |component| component.symbol);
-                (symbol.to_owned(), "Along the beam, in sections normal to its axis")
+                (symbol.to_owned(), "Along the beam, in sections normal to its axis; the slope of M is \u{2212}V")
             }
         }
     }
