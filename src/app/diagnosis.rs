@@ -84,13 +84,16 @@ const LARGE_ERROR: f64 = 5.0;
 
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
-pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
+///
+/// `is_raw` is `true` if the field is drawn as it is in the elements: its largest strain is not the recovered one.
+pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Option<String> {
     let own = errors.own.filter(|_| *input.simulation.status() == Status::Converged)?;
     if input.quality.is_inside_out(input.simulation) {
         return Some(tr("inverted elements").to_owned());
     }
     let strain = input.quality.max_strain;
-    let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    let strained =
+        strain_warning(strain).filter(|_| !is_raw).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
     let is_hidden = errors.bound.is_some_and(|bound| error_level(bound) > error_level(own));
     let known = input.reference.and_then(Reference::first).filter(|_| is_hidden);
     let coarse = known.map(|first| fill!("reference ± %{own}", own = percent(first.own_error_percent)));
@@ -267,11 +270,20 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         ));
     }
     let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
-    if let Some(rho) = rho.filter(|&rho| rho > 1.0 && !simulation.status().is_success()) {
-        lines.push(fill!(
-            "At the equilibrium that is sought, each iteration multiplies the error by about ρ = %{rho}: it grows.",
-            rho = rho_number(rho)
-        ));
+    if let Some(rho) = rho.filter(|_| !simulation.status().is_success()) {
+        let n = rho_number(rho);
+        lines.push(if rho > 1.0 {
+            fill!(
+                "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}: it grows.",
+                rho = n
+            )
+        } else {
+            fill!(
+                "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}, but the \
+                 iteration from rest does not come near it.",
+                rho = n
+            )
+        });
     }
     let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
     // The status has the others.

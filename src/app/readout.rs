@@ -3,6 +3,7 @@
 use crate::app::language::Language;
 use crate::app::session::playback::Playback;
 use crate::app::task::quality::Quality;
+use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::Scene;
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
@@ -15,6 +16,8 @@ pub(crate) struct Readout<'a> {
     pub scene: &'a Scene,
     /// Scene as last opened or saved.
     pub original: &'a Scene,
+    /// Loads that the scene was opened with.
+    pub opening: OpeningLoads,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
     /// Drawn state: the last equilibrium in place of a state that diverges.

@@ -40,7 +40,11 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
         Some(duration) => writeln!(text, "the first {} of the motion\n", engineering(three_digits(duration), "s")),
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
-            writeln!(text, "the reference solution is known at {known} of {all} loads\n")
+            let _ = writeln!(text, "the reference solution is known at {known} of {all} loads");
+            if let Some(critical) = limits.critical.map(load) {
+                let _ = writeln!(text, "critical load {critical}: the load path from rest buckles or jumps there");
+            }
+            writeln!(text)
         }
     };
     let ends = if limits.duration.is_some() { "finishes to" } else { "converges to" };
@@ -102,8 +106,9 @@ fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
         "reference": limits.reference.iter().map(|(factor, u)| json!({ "load_factor": factor, "displacement": u })).collect::<Value>(),
         "strips": limits.strips.iter().map(strip).collect::<Value>(),
     });
-    if let Some(duration) = limits.duration {
-        object["duration"] = json!(duration);
+    match limits.duration {
+        Some(duration) => object["duration"] = json!(duration),
+        None => object["critical_load_factor"] = json!(limits.critical),
     }
     json::text(&object)
 }

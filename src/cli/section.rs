@@ -55,12 +55,15 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     })?;
     outputs.write_picture(|| {
         Ok(match along {
-            None => Drawing::stacked(
-                sections.iter().map(|cut| plot::figure(&section_chart::stress(cut, &scene, &ToString::to_string))),
-            ),
-            Some(_) => Drawing::stacked(
-                section_chart::forces(&sections, &scene, &ToString::to_string).iter().map(plot::figure),
-            ),
+            None => Drawing::stacked(sections.iter().map(|cut| {
+                let within = section_chart::contexts(std::slice::from_ref(cut), &simulation);
+                plot::figure(&section_chart::stress(cut, &scene, &within, &ToString::to_string))
+            })),
+            Some(_) => {
+                let within = section_chart::contexts(&sections, &simulation);
+                let figures = section_chart::forces(&sections, &scene, &within, &ToString::to_string);
+                Drawing::stacked(figures.iter().map(plot::figure))
+            }
         })
     })?;
     text::print(&match (json, along) {

@@ -96,18 +96,21 @@ pub fn support_stiffness(
 /// Describes ρ in a sentence.
 #[must_use]
 pub fn rho_text(rho: f64) -> Sentence {
+    let text = match rho {
+        // As many digits as tell it from 1.
+        _ if (rho - 1.0).abs() < 5e-4 => format!("{rho:.6}"),
+        ..1000.0 => format!("{rho:.3}"),
+        _ => format!("{rho:.1e}"),
+    };
     match rho {
         ..1.0 => sentence!(
             "the warped iteration converges near this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
-            n = format!("{rho:.3}")
+            n = text
         ),
-        _ => {
-            let rho = if rho < 1000.0 { format!("{rho:.3}") } else { format!("{rho:.1e}") };
-            sentence!(
-                "the warped iteration leaves this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
-                n = rho
-            )
-        }
+        _ => sentence!(
+            "the warped iteration leaves this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
+            n = text
+        ),
     }
 }
 

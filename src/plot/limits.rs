@@ -1,10 +1,10 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::{AxisScale, ScaledAxis};
-use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
-use crate::study::limits::{MethodLimits, Piece, Rating, axis as load_axis, load_text};
+use crate::study::limits::{MethodLimits, Piece, Rating, axis as load_axis, axis_text, load_text};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
@@ -47,6 +47,11 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing
         drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
         drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
     }
+    if let Some(critical) = limits.critical {
+        let x = axis.place(critical);
+        let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
+        drawing.line(vec![[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
+    }
     if !limits.reference.is_empty() {
         curve(&mut drawing, limits, scale, &axis);
     }
@@ -58,7 +63,8 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing
         drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
     }
     legend(&mut drawing, bottom + 46.0, limits.duration.is_some());
-    drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, loads.name.to_string());
+    let name = axis_text(limits, &loads).to_string();
+    drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, name);
     drawing
 }
 

@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
+use super::load_path::LoadPath;
 use super::motion::steps::{StepResult, StepStudy};
 use super::progress::{StudyError, all_done, check};
 use super::{Effort, Reference, parallel};
@@ -315,6 +316,17 @@ pub fn axis(scene: &Scene) -> LoadAxis {
     }
 }
 
+/// Returns the name of the axis, with the critical load if there is one.
+#[must_use]
+pub fn axis_text(limits: &MethodLimits, axis: &LoadAxis) -> Sentence {
+    match limits.critical {
+        Some(factor) => {
+            sentence!("%{load}; critical load (dashed) %{value}", load = &axis.name, value = load_text(axis, factor))
+        }
+        None => axis.name.clone(),
+    }
+}
+
 /// Formats a part of a scene's load or time step.
 #[must_use]
 pub fn load_text(axis: &LoadAxis, factor: f64) -> String {
@@ -328,6 +340,9 @@ pub struct MethodLimits {
     pub range: [f64; 2],
     /// Simulated time of a motion, s.
     pub duration: Option<f64>,
+    /// Part of the load at which the load path from rest buckles or jumps on the scene's mesh; `None` if it does neither
+    /// in the range, and for a motion or a body of more than 6000 unknowns.
+    pub critical: Option<f64>,
     /// Reference displacement of the first probe, m, at every load; `None` if it is not known. Empty for a motion.
     pub reference: Vec<(f64, Option<Vector2<f64>>)>,
     /// Strips, by element and method.
@@ -391,10 +406,15 @@ impl MethodLimits {
             Self {
                 range: RANGE,
                 duration: None,
+                critical: None,
                 reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
                 strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
             },
         );
+        let begin = &|_: Progress<'_>| observe(Progress::at(0.0));
+        if let Some(critical) = critical(scene, begin) {
+            so_far.change(|limits| limits.critical = Some(critical));
+        }
         let solved = all_done(parallel::map(
             &factors,
             |&(i, factor), observe| {
@@ -462,6 +482,7 @@ impl MethodLimits {
             Self {
                 range: [first, last],
                 duration: Some(study.duration()),
+                critical: None,
                 reference: Vec::new(),
                 strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),
             },
@@ -539,6 +560,18 @@ fn factors() -> Vec<f64> {
     let decades = (RANGE[1] / RANGE[0]).log10();
     let count = (f64::from(PER_DECADE) * decades).round() as i32;
     (0..=count).map(|i| RANGE[0] * 10f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect()
+}
+
+/// Returns the part of the load at which the load path from rest buckles or jumps, if it does so in the range.
+fn critical(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
+    /// Number of unknowns above which the path takes too long.
+    const MAX_UNKNOWNS: u64 = 6000;
+    if scene.unknowns() > MAX_UNKNOWNS {
+        return None;
+    }
+    let path = LoadPath::observed(&at(scene, RANGE[1]).with_method(MethodKind::Newton), observe)?;
+    let events = [path.jump.map(|jump| jump.factor), path.summary().buckling.map(|buckling| buckling.factor)];
+    events.into_iter().flatten().reduce(f64::min).map(|factor| RANGE[1] * factor)
 }
 
 /// Returns the scene under a part of its loads and prescribed displacements.

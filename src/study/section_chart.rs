@@ -57,10 +57,10 @@ pub fn text_of(section: &Section, simulation: &Simulation) -> String {
 /// Number of points of a curve of beam theory, whose shear stress is a parabola.
 const BEAM_POINTS: u32 = 25;
 
-/// Draws the stress along a cut: recovered and by beam theory, against the distance from the middle; `render` translates
-/// its names.
+/// Draws the stress along a cut of a scene: recovered and by beam theory, against the distance from the middle; the
+/// forces have these contexts, and `render` translates the names.
 #[must_use]
-pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
+pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> Figure {
     let recovered = |i: usize| section.points.iter().map(move |p| (p.stress.map(|stress| stress[i]), p.along));
     let ends = [section.points.first(), section.points.last()].map(|point| point.filter(|point| point.beam.is_some()));
     let beam = |i: usize| -> Vec<(Option<f64>, f64)> {
@@ -82,17 +82,17 @@ pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
     let method = Ink::Method(scene.solver.method);
     let mut series = vec![
         series("normal stress, recovered", method, Mark::Line, recovered(0).collect()),
-        series("normal stress, beam theory", Ink::Exact, Mark::Dashes, beam(0)),
+        series("normal stress, beam theory", Ink::Scene, Mark::Dashes, beam(0)),
         series("shear stress, recovered", method, Mark::Dots, recovered(1).collect()),
-        series("shear stress, beam theory", Ink::Exact, Mark::Dots, beam(1)),
+        series("shear stress, beam theory", Ink::Scene, Mark::Dots, beam(1)),
     ];
     series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();
-    rows.extend(COMPONENTS.map(|SectionComponent { symbol, unit, of, .. }| {
+    rows.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
         let [value, of_stress] =
-            [&section.forces, &section.stress_forces].map(|forces| engineering(three_digits(of(forces)), unit));
-        let name = sentence!("%{symbol} (of the drawn stress: %{value})", symbol, value = of_stress);
+            [&section.forces, &section.stress_forces].map(|forces| within.engineering(three_digits(of(forces)), unit));
+        let name = sentence!("%{symbol} (of the drawn stress: %{value})", symbol = *symbol, value = of_stress);
         row(render(&name), Ink::Scene, Mark::Disc, value)
     }));
     let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
@@ -108,8 +108,11 @@ pub fn stress(section: &Section, scene: &Scene, render: Render<'_>) -> Figure {
 
 /// Draws N, V and M along a beam, each with its largest value; `render` translates the names.
 #[must_use]
-pub fn forces(sections: &[Section], scene: &Scene, render: Render<'_>) -> [Figure; 3] {
-    COMPONENTS.map(|SectionComponent { name, unit, of: value, .. }| {
+pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 3] {
+    let of = |i: usize| {
+        let SectionComponent { name, unit, of: value, .. } = COMPONENTS[i];
+        let within = contexts[i];
+        let value = |forces: &SectionForces| within.rounded(value(forces));
         let (ink, name) = (Ink::Method(scene.solver.method), render(&name.into()));
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
         let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));
@@ -128,7 +131,8 @@ pub fn forces(sections: &[Section], scene: &Scene, render: Render<'_>) -> [Figur
             rows: largest.into_iter().collect(),
             ..Figure::default()
         }
-    })
+    };
+    [0, 1, 2].map(of)
 }
 
 fn row(name: String, ink: Ink, mark: Mark, value: String) -> FigureRow {
@@ -147,7 +151,8 @@ mod tests {
         let mut beam = Simulation::new(&scene).unwrap();
         beam.solve();
         let section = beam.section(SectionLine { at: nalgebra::Vector2::new(5.0, 0.0), angle: 0.0 }).unwrap();
-        let figure = stress(&section, &scene, &ToString::to_string);
+        let within = contexts(std::slice::from_ref(&section), &beam);
+        let figure = stress(&section, &scene, &within, &ToString::to_string);
         let series = figure.series.iter().find(|series| series.name == "shear stress, beam theory").unwrap();
         let peak = series.points.iter().filter_map(|point| point.values[0]).map(f64::abs).fold(0.0, f64::max);
         let area = (section.ends[1] - section.ends[0]).norm() * scene.material.thickness;

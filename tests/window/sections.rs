@@ -89,11 +89,12 @@ fn the_plots_have_the_values_of_the_library() {
     harness.run_steps(6);
     let simulation = harness.state().simulation();
     let section = simulation.section(harness.state().scene().sections[0]).unwrap();
-    let rows = section_chart::stress(&section, harness.state().scene(), &ToString::to_string).rows;
+    let within = section_chart::contexts(std::slice::from_ref(&section), simulation);
+    let rows = section_chart::stress(&section, harness.state().scene(), &within, &ToString::to_string).rows;
     let row = rows.iter().find(|row| row.name.starts_with("M (")).unwrap();
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
     let along = simulation.sections(41).unwrap();
-    let row = section_chart::forces(&along, harness.state().scene(), &ToString::to_string)[2].rows[0].clone();
+    let row = section_chart::forces(&along, harness.state().scene(), &within, &ToString::to_string)[2].rows[0].clone();
     harness.get_by_label("M").click();
     harness.run_steps(4);
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");

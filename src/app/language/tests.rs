@@ -85,7 +85,11 @@ fn the_sentences_of_the_library_are_translated() {
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.solve();
     let along = simulation.sections(3).unwrap();
-    let _ = (section_chart::stress(&along[1], &scene, &render), section_chart::forces(&along, &scene, &render));
+    let within = section_chart::contexts(&along, &simulation);
+    let _ = (
+        section_chart::stress(&along[1], &scene, &within, &render),
+        section_chart::forces(&along, &scene, &within, &render),
+    );
     texts.extend(names.into_inner());
     for [text, said] in texts {
         // Keys of a scene are not translated.

@@ -301,7 +301,17 @@ impl<'a> StripChart<'a> {
             self.text(ui, at, Align2::CENTER_TOP, &load_text(self.axis, factor), palette.text);
         }
         let at = pos2(strips.center().x, strips.bottom() + LINE);
-        self.text(ui, at, Align2::CENTER_TOP, &said(&self.axis.name), palette.secondary);
+        let name = said(&limits::axis_text(self.limits, self.axis));
+        self.text(ui, at, Align2::CENTER_TOP, &name, palette.secondary);
+        if let Some(critical) = self.limits.critical {
+            let x = self.x(critical);
+            let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
+            painter.add(egui::Shape::dashed_line(&ends, Stroke::new(1.5, palette.error), 6.0, 4.0));
+            // Painted like the other labels of the axis, it has no widget of its own.
+            let place = Rect::from_center_size(at + vec2(0.0, 0.5 * LINE), vec2(strips.width(), LINE));
+            let response = ui.interact(place, ui.scope_id().with("axis"), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
+        }
         let Some(up) = self.up() else { return };
         // Only as many decades as have room for their labels.
         let room = (curve.height() / LINE).max(1.0) as usize;

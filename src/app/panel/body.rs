@@ -99,7 +99,8 @@ pub(super) fn size_summary(beam: &Beam) -> String {
     format!("{} × {}", engineering(beam.length, "m"), engineering(beam.height, "m"))
 }
 
-/// Numbers of cells that follow the size of a beam, so that the size of a cell stays about the same.
+/// Numbers of cells that follow the size of a beam, so that the size of a cell stays about the same; in a much smaller
+/// beam, whose size has been typed in other units, the number stays.
 #[derive(Debug, Default)]
 pub(super) struct CellsThatFollow {
     /// Length or height, m, and number of cells that new numbers are computed from.
@@ -112,7 +113,12 @@ impl CellsThatFollow {
     /// set otherwise.
     fn count(&mut self, axis: usize, [old, new]: [f64; 2], cells: u32) -> u32 {
         let Some(reference) = self.references.get_mut(axis) else { return cells };
+        /// Ratio of the new size to that of the reference below which the number of cells stays.
+        const SMALLER: f64 = 0.2;
         let at = |(size, cells): (f64, u32), now: f64| {
+            if now < SMALLER * size {
+                return cells;
+            }
             (f64::from(cells) * now / size).round().clamp(limits::CELLS.min, limits::CELLS.max) as u32
         };
         let from = reference.filter(|&from| at(from, old) == cells).unwrap_or((old, cells));

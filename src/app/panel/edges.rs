@@ -11,7 +11,6 @@ use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{acts_at_point, can_carry_moment, force_by_hand, is_free};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
 use crate::format::{editable, number};
@@ -298,7 +297,7 @@ fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
     if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
-        let [usual, _] = force_range(OpeningLoads::of(input.original), &scene.material, input.simulation.system());
+        let [usual, _] = force_range(input.opening, &scene.material, input.simulation.system());
         scene.loads.push(force_by_hand(input.simulation.system().mesh(), place, [0.0, -usual]));
     }
     scene
@@ -311,7 +310,7 @@ fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
     let mut edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
     let first = edge_for_moment(&scene, system).filter(|name| !is_taken(name));
     if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
-        let [usual, _] = moment_range(OpeningLoads::of(input.original), &scene.material, system);
+        let [usual, _] = moment_range(input.opening, &scene.material, system);
         scene.loads.push(Load::moment(&edge, usual));
     }
     scene

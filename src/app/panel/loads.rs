@@ -7,7 +7,6 @@ use crate::app::panel::{Action, PanelState, edges};
 use crate::app::readout::Readout;
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::format::engineering;
 use crate::scene::{Load, Place, Scene, limits};
@@ -62,7 +61,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     let as_opened = forces(input.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(state.force_direction());
-    let opening = OpeningLoads::of(input.original);
+    let opening = input.opening;
     let [usual, largest] = force_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Force",
@@ -79,7 +78,7 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
     let field = NumberField {
         label: "Direction",
         tooltip: "Direction of the force: 0° right, 90° up, −90° down.",
-        limit: limits::DIRECTION,
+        limit: TURN,
         slider: -180.0..=180.0,
         scale: SliderScale::Linear,
         whole: false,
@@ -90,6 +89,9 @@ pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, ac
         actions.push(Action::Edit("Direction", with_force(input, chosen, vector(magnitude, new))));
     }
 }
+
+/// Typed directions; 270° is −90°.
+const TURN: limits::Limit = limits::Limit { min: -360.0, max: 360.0, ..limits::DIRECTION };
 
 /// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
 pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
@@ -111,7 +113,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut P
         actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
     }
     let current = moment_of(scene);
-    let opening = OpeningLoads::of(input.original);
+    let opening = input.opening;
     let [usual, largest] = moment_range(opening, &scene.material, input.simulation.system());
     let field = NumberField {
         label: "Moment",

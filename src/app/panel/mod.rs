@@ -33,6 +33,8 @@ pub const PANEL_WIDTH: f32 = 284.0;
 #[derive(Debug, Default)]
 pub(super) struct PanelState {
     pub messages: Messages,
+    /// `true` between a press and its release if there were messages before the press.
+    has_old_messages: bool,
     /// Last directions, degrees, kept while a magnitude is zero.
     force_direction: Option<f64>,
     gravity_direction: Option<f64>,
@@ -45,6 +47,18 @@ impl PanelState {
     /// Resets the state for another scene.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
+    }
+
+    /// Removes messages when the pointer is released after the next press: the fields have their values again. A press
+    /// that itself leads to a message keeps it.
+    pub(super) fn fade_messages(&mut self, ctx: &egui::Context) {
+        let (pressed, released) = ctx.input(|i| (i.pointer.any_pressed(), i.pointer.any_released()));
+        if pressed {
+            self.has_old_messages = !self.messages.is_empty();
+        }
+        if released && std::mem::take(&mut self.has_old_messages) && !ctx.text_edit_focused() {
+            self.messages.clear();
+        }
     }
 
     /// Makes the sliders set this load of the scene, if it is a force.

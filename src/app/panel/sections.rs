@@ -40,15 +40,18 @@ pub(super) fn show(
 ) {
     let scene = input.scene;
     let id = Id::unique(("section", input.scene_name));
-    let remembered = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default();
-    let chosen = remembered.min(scene.sections.len().saturating_sub(1));
+    let last = scene.sections.len().saturating_sub(1);
+    let (remembered, before) = ui.data(|data| data.get_temp::<(usize, usize)>(id)).unwrap_or((0, last));
+    // A new section is chosen.
+    let chosen = if last > before { last } else { remembered.min(last) };
+    ui.data_mut(|data| data.insert_temp(id, (chosen, last)));
     let Some(&line) = scene.sections.get(chosen) else { return };
     let name = |i: usize| fill!("Section %{n}", n = i + 1);
     if scene.sections.len() > 1 {
         ComboBox::from_id_salt("section").selected_text(name(chosen)).show_ui(ui, |ui| {
             for i in 0..scene.sections.len() {
                 if ui.selectable_label(i == chosen, name(i)).clicked() {
-                    ui.data_mut(|data| data.insert_temp(id, i));
+                    ui.data_mut(|data| data.insert_temp(id, (i, last)));
                 }
             }
         });

@@ -15,6 +15,8 @@ pub(crate) struct Document {
     pub source: Source,
     /// Scene as last opened or saved.
     pub original: Scene,
+    /// Scene as last opened: saving does not change the scales of arrows and sliders, which follow from its loads.
+    pub opened: Arc<Scene>,
     /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
     has_file: bool,
     /// Content of the file when it was last read or written; `None` if there was none.
@@ -50,7 +52,7 @@ impl Document {
     /// Creates the document of a file that had this content when it was last read or written.
     pub(crate) fn with_text(source: Source, original: Scene, text: Option<Arc<str>>) -> Self {
         let has_file = source.built_in().is_none() && !source.is_stream();
-        Self { source, original, has_file, text }
+        Self { source, opened: Arc::new(original.clone()), original, has_file, text }
     }
 
     /// Returns the current content of the file; `None` if it cannot be read.
@@ -107,6 +109,7 @@ impl Document {
         }
         let toml = scene.to_toml()?;
         files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
-        Ok(Self::with_text(Source { name: path.to_owned(), assignments: Vec::new() }, scene, Some(toml.into())))
+        let source = Source { name: path.to_owned(), assignments: Vec::new() };
+        Ok(Self { opened: self.opened.clone(), ..Self::with_text(source, scene, Some(toml.into())) })
     }
 }

@@ -303,7 +303,8 @@ impl Lab {
         }
         let view = &mut self.desk.view;
         view.panel = settings.panel;
-        view.drawer = settings.drawer;
+        let scene = self.desk.session.scene();
+        view.drawer = settings.drawer.map(|drawer| if drawer.suits(scene) { drawer } else { Drawer::of(scene) });
         view.color_with(settings.color());
         self.settings = settings;
         if let Some(path) = self.desk.session.document().path() {

@@ -91,7 +91,7 @@ impl Desk {
             scene: session.scene(),
             view,
             direction: panel.force_direction(),
-            opening: OpeningLoads::of(&session.document().original),
+            opening: OpeningLoads::of(&session.document().opened),
             eases,
             own: session.equations(),
         }
@@ -335,6 +335,7 @@ impl Lab {
             shows_converged: viewport.shows_converged(),
             scene: session.scene(),
             original: &session.document().original,
+            opening: OpeningLoads::of(&session.document().opened),
             scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
             shown: viewport.shown_of(session),

@@ -27,6 +27,8 @@ const STATUS_BAR_HEIGHT: f32 = 42.0;
 
 /// Height of the plots under the body, points, and its largest fraction of the window's height.
 const DRAWER_HEIGHT: f32 = 270.0;
+/// Height of Limits, whose strips have a curve above them, points.
+const LIMITS_HEIGHT: f32 = 350.0;
 const DRAWER_SHARE: f32 = 0.45;
 
 /// Height of the status under a low view, points.
@@ -45,6 +47,7 @@ impl Lab {
         let mut actions = Vec::new();
         self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
+        self.desk.panel.fade_messages(ui.ctx());
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
         self.desk.budget.poll(ui.ctx());
@@ -65,12 +68,12 @@ impl Lab {
             Mode::Compare => self.comparison_bars(ui, &mut actions),
             Mode::Budget => {
                 let Desk { session, budget, .. } = &mut self.desk;
-                drawer_panel(ui).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
+                drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
             }
             Mode::Limits => {
                 let mut limits = std::mem::take(&mut self.desk.limits);
                 let shown = self.readout().shown;
-                drawer_panel(ui).show(ui, |ui| limits.show(ui, &self.desk.session, shown, &mut actions));
+                drawer_panel(ui, LIMITS_HEIGHT).show(ui, |ui| limits.show(ui, &self.desk.session, shown, &mut actions));
                 self.desk.limits = limits;
             }
         }
@@ -205,7 +208,7 @@ impl Lab {
         let Desk { session, view, viewport, sections, .. } = &mut self.desk;
         let Some(drawer) = view.drawer else { return };
         let facts = session.facts();
-        drawer_panel(ui).show(ui, |ui| match drawer {
+        drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Curve => {
                 load_curve::show(
                     ui,
@@ -331,7 +334,11 @@ impl Lab {
         let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
         // If there is a status bar, it shows the status.
         let status = (is_bad && !self.desk.view.bars).then_some(status);
-        let label = readout.shows_converged.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene));
+        let label = if self.content().shows_iterate() {
+            Some(tr("last iterate, no equilibrium").to_owned())
+        } else {
+            readout.shows_converged.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene))
+        };
         let visuals = ui.visuals();
         let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
         let note = status.iter().chain(&label).map(String::as_str).collect::<Vec<_>>().join("\n");
@@ -513,8 +520,8 @@ fn press(ctx: &egui::Context) -> Press {
 }
 
 /// Returns the panel for the plots under the body.
-fn drawer_panel(ui: &Ui) -> Panel {
-    let height = DRAWER_HEIGHT.min(DRAWER_SHARE * ui.ctx().content_rect().height());
+fn drawer_panel(ui: &Ui, height: f32) -> Panel {
+    let height = height.min(DRAWER_SHARE * ui.ctx().content_rect().height());
     Panel::bottom("drawer").exact_size(height).resizable(false).frame(unfilled(ui))
 }
 

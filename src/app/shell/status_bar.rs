@@ -43,7 +43,7 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {
             Some(motion) => of_motion(&palette, input, motion).into(),
-            None => of_solve(&palette, input, errors),
+            None => of_solve(&palette, input, errors, view.raw),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let has_sections = !input.scene.sections.is_empty() && Drawer::Section.suits(input.scene);
@@ -72,13 +72,13 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     });
 }
 
-fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
+fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Vec<BarNumber> {
     let simulation = input.simulation;
     let time = input.solve_time.filter(|_| simulation.status().is_success());
     let seconds = time.map_or(0.0, |time| time.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
-    let doubt = doubt(input, errors);
+    let doubt = doubt(input, errors, is_raw);
     let is_without_reference =
         input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
     let color = match error_color(palette, errors.bound) {

@@ -94,6 +94,12 @@ impl<'a> Content<'a> {
         self.reference().filter(|_| self.options.exact)
     }
 
+    /// Returns `true` if a card of Learn shows the last iterate of a search that has found no equilibrium.
+    pub(crate) fn shows_iterate(&self) -> bool {
+        let is_lost = matches!(self.simulation().status(), Status::Diverged(_) | Status::NotConverged(_));
+        self.card.is_some() && self.animation.is_none() && is_lost
+    }
+
     /// Returns the displacement of the linear solution, m, if it is displayed.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
         let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
@@ -348,7 +354,9 @@ impl BodyView {
 
     /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
     fn ghost<'a>(&self, content: &Content<'a>) -> Option<&'a [Vector2<f64>]> {
-        content.ghost().filter(|_| !self.shows_converged)
+        // Linear theory does not have the force of the mouse spring.
+        let is_grabbed = content.session.simulation().mouse_spring().is_some();
+        content.ghost().filter(|_| !self.shows_converged && !is_grabbed)
     }
 
     /// Returns the drawn body; animations are ignored.
@@ -425,7 +433,7 @@ impl BodyView {
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
-        let opening = OpeningLoads::of(&content.session.document().original);
+        let opening = OpeningLoads::of(&content.session.document().opened);
         menu::show(response, (scene, system), (at, NEAR / self.camera().scale), opening)
     }
 
@@ -438,7 +446,7 @@ impl BodyView {
             positions: &self.body.nodes,
             time: simulation.state().time(),
             direction: content.direction,
-            opening: OpeningLoads::of(&content.session.document().original),
+            opening: OpeningLoads::of(&content.session.document().opened),
         }
     }
 
@@ -508,7 +516,7 @@ impl BodyView {
         let status = session.simulation().status();
         let is_sound =
             if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() || self.shows_converged };
-        if is_sound {
+        if is_sound || content.shows_iterate() && self.is_of_usual_size(content) {
             let (mut low, mut high) = content.mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
                 (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
@@ -540,6 +548,14 @@ impl BodyView {
         if self.camera.aim(fitted, self.eases.then_some(dt)) {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
+    fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
+        const LARGEST: f64 = 3.0;
+        let (low, high) = content.mesh().bounds();
+        let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
+        (to - from).norm() < LARGEST * (high - low).norm()
     }
 
     /// Leaves room for a beam that is going to bend, and for its arrow.
@@ -652,7 +668,7 @@ impl BodyView {
             errors: if is_animated { Errors::default() } else { errors },
             time: shown.state().time(),
             direction: content.direction,
-            opening: OpeningLoads::of(&session.document().original),
+            opening: OpeningLoads::of(&session.document().opened),
             hot: self.pointer.hot_handle(),
             mouse_spring: simulation.mouse_spring(),
             playback: session.playback(),
@@ -662,6 +678,9 @@ impl BodyView {
             has_values: self.body.has_values(),
             note,
         };
+        if content.shows_iterate() {
+            overlay::dim(painter, self.rect, &Palette::new(visuals));
+        }
         overlay::paint(painter, self.rect, &overlay, visuals);
         if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {
             bases.paint(painter, hot, visuals, Palette::new(visuals).load);

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
+use egui::text_edit::TextEditState;
 use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
 
 use crate::app::language::{fill, said, tr};
@@ -86,6 +87,13 @@ impl NumberField {
                         });
                     let size = egui::vec2(VALUE_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
+                    if response.gained_focus()
+                        && let Some(mut text) = TextEditState::load(ui.ctx(), response.id)
+                    {
+                        // Undo in the field ends at the text that the edit begins with.
+                        text.clear_undoer();
+                        text.store(ui.ctx(), response.id);
+                    }
                     if response.changed() {
                         edited = Some(if response.dragged() { three_digits(typed) } else { typed });
                     }

@@ -87,7 +87,7 @@ pub(crate) fn show(
 }
 
 fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    still(palette, id, x, y).legend(Legend::default().position(Corner::RightTop).follow_insertion_order(true))
+    still(palette, id, x, y).legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true))
 }
 
 fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {

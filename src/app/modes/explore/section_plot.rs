@@ -9,6 +9,7 @@ use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;
 use crate::app::widgets::buttons::option_button;
+use crate::format::Context;
 use crate::mesh::straightened;
 use crate::scene::{Load, Place, Scene};
 use crate::section::{Section, SectionError};
@@ -25,6 +26,8 @@ struct Cuts {
     own: Vec<Result<Section, SectionError>>,
     /// Sections along the beam; none if the body has no axis.
     along: Vec<Section>,
+    /// Contexts of the forces in all of them.
+    contexts: [Context; 3],
 }
 
 impl Cuts {
@@ -48,9 +51,13 @@ impl Cuts {
         let even = (0..=ALONG).map(|i| f64::from(i) / f64::from(ALONG));
         let mut along: Vec<f64> = beside.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
         along.sort_by(f64::total_cmp);
+        let (own, along) =
+            (simulation.scene_sections(), simulation.sections_along(along.into_iter()).unwrap_or_default());
+        let all: Vec<Section> = own.iter().flatten().chain(&along).cloned().collect();
         Self {
-            own: simulation.scene_sections(),
-            along: simulation.sections_along(along.into_iter()).unwrap_or_default(),
+            contexts: section_chart::contexts(&all, simulation),
+            own,
+            along,
             of: (simulation.state().clone(), scene.clone()),
         }
     }
@@ -75,6 +82,8 @@ pub(crate) struct SectionPlot {
     cuts: Option<Cuts>,
     computing: Option<Task<(), Box<Cuts>>>,
     shown: Option<SectionFigure>,
+    /// Number of sections of the scene that was shown last.
+    count: usize,
 }
 
 impl SectionPlot {
@@ -128,6 +137,11 @@ impl SectionPlot {
     /// the reason.
     pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, simulation: &Simulation, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
+        let count = self.cuts_of(simulation).map_or(self.count, |cuts| cuts.own.len());
+        if std::mem::replace(&mut self.count, count) < count {
+            // A new section is shown.
+            self.shown = Some(SectionFigure::Stress(count - 1));
+        }
         let cuts = self.cuts_of(simulation);
         let offered = cuts.map(Cuts::offered).unwrap_or_default();
         let shown = self.shown.filter(|figure| offered.contains(figure)).or_else(|| offered.first().copied());
@@ -199,11 +213,11 @@ impl Cuts {
         let scene = &self.of.1;
         match shown {
             SectionFigure::Stress(i) => match self.own.get(i) {
-                Some(Ok(section)) => Ok(section_chart::stress(section, scene, &|name| said(name))),
+                Some(Ok(section)) => Ok(section_chart::stress(section, scene, &self.contexts, &|name| said(name))),
                 Some(Err(error)) => Err(*error),
                 None => Err(SectionError::Missed),
             },
-            SectionFigure::Along(i) => section_chart::forces(&self.along, scene, &|name| said(name))
+            SectionFigure::Along(i) => section_chart::forces(&self.along, scene, &self.contexts, &|name| said(name))
                 .into_iter()
                 .nth(i)
                 .ok_or(SectionError::NoAxis),

@@ -18,7 +18,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.input.simulation.status() != Status::Running;
         for (name, tip, action, on) in [
-            ("Step once", "One iteration (N)", Action::Step, true),
+            ("Step once", "One iteration (N)", Action::Step, !ended),
             ("From rest", "Back to rest (R)", Action::Reset, true),
             ("Go on", "Iterate to the end (Space)", Action::ToggleRun, !ended && !shown.input.running),
         ] {
