@@ -97,7 +97,7 @@ pub fn support_stiffness(
 #[must_use]
 pub fn rho_text(rho: f64) -> Sentence {
     let text = match rho {
-        // As many digits as tell it from 1.
+        // Near 1, more digits are needed.
         _ if (rho - 1.0).abs() < 5e-4 => format!("{rho:.6}"),
         ..1000.0 => format!("{rho:.3}"),
         _ => format!("{rho:.1e}"),

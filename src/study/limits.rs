@@ -666,6 +666,18 @@ mod tests {
         assert!(end.starts_with("5 % from 1.4"), "{end}");
     }
 
+    /// A column buckles at Euler's load; a beam that is bent does not.
+    #[test]
+    fn the_critical_load_of_a_column_is_eulers() {
+        let euler = std::f64::consts::PI.powi(2) * 1e6 * 0.5f64.powi(3) / 12.0 / 400.0;
+        let column = Scene::beam(10.0, 0.5).with_cells(20, 2).with_element(ElementKind::Q4).clamp("left");
+        let bent = column.clone().force("right", [0.0, -0.1 * euler]).probe("tip", "right");
+        assert_eq!(super::critical(&bent, &|_| std::ops::ControlFlow::Continue(())), None);
+        let column = column.force("right", [-0.5 * euler, 0.0]).probe("tip", "right");
+        let critical = super::critical(&column, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+        assert!((0.5 * critical - 1.0).abs() < 0.02, "{critical}");
+    }
+
     /// A strip that is never within 5 % ends with the load up to which the method converges.
     #[test]
     fn an_inaccurate_strip_names_its_last_load() {

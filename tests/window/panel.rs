@@ -94,6 +94,8 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     let mut harness = harness("cantilever");
     type_into(&mut harness, "Force", "0.5 kN");
     assert_eq!(force(harness.state()), [0.0, -500.0]);
+    type_into(&mut harness, "Direction", "270");
+    assert!((force(harness.state())[1] + 500.0).abs() < 1e-9 && force(harness.state())[0].abs() < 1e-9);
     type_into(&mut harness, "Direction", "0");
     assert_eq!(force(harness.state()), [500.0, 0.0]);
     type_into(&mut harness, "Force", "0");
@@ -112,6 +114,11 @@ fn typed_values_take_effect_also_beyond_the_slider() {
     type_into(&mut harness, "Cells across", "3");
     assert_eq!(harness.state().scene().beam.as_ref().unwrap().cells, [40, 3]);
     assert_eq!(harness.state().simulation().system().mesh().element_count(), 240);
+    // A part in other units keeps its number of cells, and a coordinate its digits.
+    type_into(&mut harness, "Length", "6 in");
+    type_into(&mut harness, "Height", "0.5 in");
+    let beam = harness.state().scene().beam.clone().unwrap();
+    assert_eq!((beam.length, beam.height, beam.cells), (0.1524, 0.0127, [40, 3]));
 }
 
 /// A value out of range is refused with a message about the expected range. It is neither clamped nor accepted.
@@ -122,7 +129,7 @@ fn values_out_of_range_are_refused_with_a_message() {
         ("Force", "lots", "got \u{201c}lots\u{201d}"),
         ("Force", "0,5", "can be read in two ways"),
         ("Force", "12 Pa", "is a pressure (Pa); expected a force (N)"),
-        ("Direction", "400", "expected -180 to 180 °, got 400"),
+        ("Direction", "400", "expected -360 to 360 °, got 400"),
         ("Gravity", "1e9", "m/s², got 1e9"),
         ("Moment", "1e30", "N m, got 1e30"),
         ("Young E", "0", "Pa, got 0"),
@@ -193,6 +200,28 @@ fn a_refused_text_stays_for_correction() {
     harness.key_press(Key::Enter);
     harness.run();
     assert!((force(harness.state())[1] + 12e3).abs() < 1e-6, "{:?}", force(harness.state()));
+    // Undo in the field ends at the text that the edit begins with.
+    type_into(&mut harness, "Force", "4 kN");
+    harness.get_by_role_and_label(Role::SpinButton, "Force").click();
+    harness.run();
+    for _ in 0..3 {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.step();
+    }
+    let field = harness.get_by_role_and_label(Role::SpinButton, "Force").accesskit_node().value();
+    assert_eq!(field.as_deref(), Some("4 kN"));
+    // A click elsewhere restores the value, and the next one removes the message.
+    type_into(&mut harness, "Force", "12 kg");
+    let pos = harness.get_by_label("explain").rect().left_center() - egui::vec2(40.0, 0.0);
+    harness.hover_at(pos);
+    for pressed in [true, false, true, false] {
+        assert!(harness.query_by_label_contains("expected").is_some(), "{pressed}");
+        let button = egui::PointerButton::Primary;
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        harness.run();
+    }
+    assert!(harness.query_by_label_contains("expected").is_none());
+    assert!((force(harness.state())[1] + 4e3).abs() < 1e-6);
 }
 
 /// A body with inverted elements is reported, even if its equations are solved.

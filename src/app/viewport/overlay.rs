@@ -96,8 +96,13 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
     }
     if let Some((note, color)) = overlay.note {
-        let at = rect.center_top() + vec2(0.0, 46.0);
-        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 48.0);
+        // In a low view the body begins at the top; the note is beside it.
+        let (at, align) = if has_legend_on_top(rect.height()) {
+            (rect.left_top() + vec2(14.0, 40.0), Align2::LEFT_TOP)
+        } else {
+            (rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP)
+        };
+        boxed_text(painter, at, align, note, visuals, color, rect.width() - 48.0);
     }
 }
 
