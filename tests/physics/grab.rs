@@ -73,7 +73,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
 fn random_pulls_never_break_a_motion() {
     let kinds = || INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)));
     let cases = ids_of(Analysis::Dynamic).into_iter().flat_map(|id| kinds().map(move |(i, e)| (id, i, e)));
-    for (id, integrator, element) in sampled(cases, 4) {
+    for (id, integrator, element) in sampled(cases, 8) {
         let mut scene = scene(id);
         scene.set_element(element.kind);
         scene.dynamics.integrator = integrator.kind;

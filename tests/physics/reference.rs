@@ -179,7 +179,7 @@ fn compare_scenes(seeds: impl Iterator<Item = u64>) -> Tally {
 #[test]
 fn claimed_errors_are_true_within_the_own_error_of_the_reference() {
     // All 300 scenes take a quarter of an hour.
-    let seeds = crate::common::sampled(0..300_u64, 15);
+    let seeds = crate::common::sampled(0..300_u64, 20);
     // The longest test of its program: the threads of the others are free at its end.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
