@@ -356,6 +356,7 @@ impl Study {
     }
 
     /// Returns `true` if the method of a measurement converged on its mesh, after this or another number of iterations.
+    #[cfg(feature = "app")]
     pub(crate) fn converges(&self, measurement: &Measurement) -> bool {
         let of = |m: &Measurement| (m.setting.element, m.setting.cells, m.setting.method);
         self.measurements.iter().any(|m| m.converged && of(m) == of(measurement))
