@@ -545,10 +545,12 @@ fn legend(
     if has_legend_on_top(rect.height()) {
         let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
         let ends = [text(low), text(format!("{high} {symbol}{unit}"))];
+        let projection = Projection { camera: overlay.camera, rect };
+        let is_covered = |area: Rect| overlay.positions.iter().any(|&place| area.contains(projection.point(place)));
         return legend_row(
             painter,
-            rect,
-            names,
+            (rect, names),
+            &is_covered,
             (text(format!("{}{raw}{range}", tr(field.name()))), ends, map),
             visuals,
         );
@@ -568,17 +570,15 @@ fn legend(
 }
 
 /// Paints title, lowest value, colour bar and highest value in one row: beside the line key, or under it if there is no
-/// room and the view is not too low. Returns the area.
+/// room and it does not cover the body, as `is_covered` tells of an area. Returns the area.
 fn legend_row(
     painter: &Painter,
-    rect: Rect,
-    names: Rect,
+    (rect, names): (Rect, Rect),
+    is_covered: &dyn Fn(Rect) -> bool,
     (title, [low, high], map): (Arc<Galley>, [Arc<Galley>; 2], ColorMap),
     visuals: &Visuals,
 ) -> Option<Rect> {
     const BAR: Vec2 = vec2(110.0, 10.0);
-    /// Part of the view that may be above the body; in a low view a colour bar under the line key would cover the body.
-    const ABOVE: f32 = 1.0 / 3.0;
     const GAP: f32 = 7.0;
     const MARGIN: f32 = 14.0;
     let text = Palette::new(visuals).text;
@@ -590,7 +590,7 @@ fn legend_row(
     let is_beside = names.right() + MARGIN <= left;
     let middle = if is_beside { names.center().y } else { names.bottom() + MARGIN };
     let frame = Rect::from_min_max(pos2(left, middle - 10.0), pos2(rect.right() - MARGIN, middle + 10.0)).expand(4.0);
-    if !is_beside && frame.bottom() - rect.top() > ABOVE * rect.height() {
+    if !is_beside && is_covered(frame) {
         return None;
     }
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
