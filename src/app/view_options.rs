@@ -141,6 +141,11 @@ impl Drawer {
         self == Self::of(scene) || self == Self::Section && scene.analysis == Analysis::Static
     }
 
+    /// Returns this drawer if it suits a scene, else the one of the scene's analysis.
+    pub(crate) fn suited(self, scene: &Scene) -> Self {
+        if self.suits(scene) { self } else { Self::of(scene) }
+    }
+
     /// Returns the drawer's name and a description of its content.
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {

@@ -47,7 +47,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing
         drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
         drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
     }
-    if let Some(critical) = limits.critical.filter(|&critical| limits.contains(critical)) {
+    if let Some(critical) = limits.critical_in_range() {
         let x = axis.place(critical);
         let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
-use super::load_path::LoadPath;
+use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::motion::steps::{StepResult, StepStudy};
 use super::progress::{StudyError, all_done, check};
 use super::{Effort, Reference, parallel};
@@ -350,6 +350,12 @@ pub struct MethodLimits {
 }
 
 impl MethodLimits {
+    /// Returns the critical part of the load if it is in the range of the limits.
+    #[must_use]
+    pub fn critical_in_range(&self) -> Option<f64> {
+        self.critical.filter(|&critical| self.contains(critical))
+    }
+
     /// Returns `true` if a part of the scene's loads, or of its time step, is in the range of the limits: that of a very
     /// short time step is not.
     #[must_use]
@@ -564,9 +570,7 @@ fn factors() -> Vec<f64> {
 
 /// Returns the part of the load at which the load path from rest buckles or jumps, if it does so in the range.
 fn critical(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
-    /// Number of unknowns above which the path takes too long.
-    const MAX_UNKNOWNS: u64 = 6000;
-    if scene.unknowns() > MAX_UNKNOWNS {
+    if scene.unknowns() > MAX_UNKNOWNS as u64 {
         return None;
     }
     let path = LoadPath::observed(&at(scene, RANGE[1]).with_method(MethodKind::Newton), observe)?;

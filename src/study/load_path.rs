@@ -144,7 +144,7 @@ const INTEGRATED: u32 = 60;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
-const MAX_UNKNOWNS: usize = 6000;
+pub(super) const MAX_UNKNOWNS: usize = 6000;
 /// Largest distance between a result and the end of the path, relative to the largest displacement, at which both count
 /// as the same equilibrium.
 const SAME: f64 = 0.02;

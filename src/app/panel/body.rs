@@ -112,9 +112,9 @@ impl CellsThatFollow {
     /// calls use the same reference, so that small steps do not add up rounding errors, until the number of cells is
     /// set otherwise.
     fn count(&mut self, axis: usize, [old, new]: [f64; 2], cells: u32) -> u32 {
-        let Some(reference) = self.references.get_mut(axis) else { return cells };
         /// Ratio of the new size to that of the reference below which the number of cells stays.
         const SMALLER: f64 = 0.2;
+        let Some(reference) = self.references.get_mut(axis) else { return cells };
         let at = |(size, cells): (f64, u32), now: f64| {
             if now < SMALLER * size {
                 return cells;

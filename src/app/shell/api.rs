@@ -304,7 +304,7 @@ impl Lab {
         let view = &mut self.desk.view;
         view.panel = settings.panel;
         let scene = self.desk.session.scene();
-        view.drawer = settings.drawer.map(|drawer| if drawer.suits(scene) { drawer } else { Drawer::of(scene) });
+        view.drawer = settings.drawer.map(|drawer| drawer.suited(scene));
         view.color_with(settings.color());
         self.settings = settings;
         if let Some(path) = self.desk.session.document().path() {

@@ -26,7 +26,7 @@ impl Lab {
         if changed.scene {
             self.intro = None;
             let scene = session.simulation().scene();
-            view.drawer = view.drawer.map(|drawer| if drawer.suits(scene) { drawer } else { Drawer::of(scene) });
+            view.drawer = view.drawer.map(|drawer| drawer.suited(scene));
         }
         let mesh = session.simulation().system().mesh();
         if changed.mesh {

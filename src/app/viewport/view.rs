@@ -96,8 +96,7 @@ impl<'a> Content<'a> {
 
     /// Returns `true` if a card of Learn shows the last iterate of a search that has found no equilibrium.
     pub(crate) fn shows_iterate(&self) -> bool {
-        let is_lost = matches!(self.simulation().status(), Status::Diverged(_) | Status::NotConverged(_));
-        self.card.is_some() && self.animation.is_none() && is_lost
+        self.card.is_some() && self.animation.is_none() && is_lost(self.simulation())
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -109,6 +108,11 @@ impl<'a> Content<'a> {
         };
         linear.map(Simulation::displacement).filter(|_| is_wanted)
     }
+}
+
+/// Returns `true` if a search has ended without an equilibrium.
+fn is_lost(simulation: &Simulation) -> bool {
+    matches!(simulation.status(), Status::Diverged(_) | Status::NotConverged(_))
 }
 
 /// State of the checks for self-intersections of the outline.
@@ -366,8 +370,7 @@ impl BodyView {
 
     /// Lets the panel beside other views than this one show the last equilibrium in place of a state that diverges.
     pub(crate) fn show_last_equilibrium(&mut self, session: &Session) {
-        let is_lost = matches!(session.simulation().status(), Status::Diverged(_) | Status::NotConverged(_));
-        self.shows_converged = is_lost && session.converged().is_some();
+        self.shows_converged = is_lost(session.simulation()) && session.converged().is_some();
     }
 
     /// Returns the drawn body of a session; animations are ignored.

@@ -116,9 +116,7 @@ impl Measured {
             _ => f64::INFINITY,
         }
     }
-}
 
-impl Measured {
     /// Describes the unknowns and the parts of the error of a setting.
     pub(crate) fn parts(&self, choice: &Choice) -> String {
         match (self, choice) {

@@ -152,13 +152,15 @@ impl Budget {
     pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         let demand = Demand::from(self.limits);
         let moves = scene.analysis == Analysis::Dynamic;
+        let study = self.study.as_ref();
+        let meeting = study.map(|study| study.meeting(demand)).unwrap_or_default();
         let budget = BudgetView {
             scene,
-            study: self.study.as_ref(),
-            choices: self.study.as_ref().map(Measured::choices).unwrap_or_default(),
+            study,
+            choices: study.map(Measured::choices).unwrap_or_default(),
             demand,
-            meeting: self.study.as_ref().map(|s| s.meeting(demand)).unwrap_or_default(),
-            nearest: self.study.as_ref().map(|s| s.nearest(demand)).unwrap_or_default(),
+            nearest: study.filter(|_| meeting.is_empty()).map(|study| study.nearest(demand)).unwrap_or_default(),
+            meeting,
             current: self.of.as_ref() == Some(&without_settings(scene)),
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(BackgroundStudy::progress),
@@ -337,14 +339,8 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
-            if label
-                .on_hover_text(format!(
-                    "{}\n{}",
-                    m.text(),
-                    budget.study.map(|study| study.parts(m)).unwrap_or_default()
-                ))
-                .clicked()
-            {
+            let parts = budget.study.map(|study| study.parts(m)).unwrap_or_default();
+            if label.on_hover_text(format!("{}\n{parts}", m.text())).clicked() {
                 actions.push(m.action(budget.scene));
             }
         }
