@@ -5,7 +5,7 @@ use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
 use crate::format::{self, engineering, number, three_digits, two_digits};
-use crate::scene::{ElementKind, Load, MethodKind, Scene, Support, limits};
+use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::stress::strain_warning;
@@ -82,6 +82,9 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
 /// Errors above this value, percent, are large: they need a remedy.
 const LARGE_ERROR: f64 = 5.0;
 
+/// Ratio of the reference's own error to a large error above which both are stated.
+const COARSE: f64 = 0.25;
+
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
 ///
@@ -95,7 +98,8 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Optio
     let strained =
         strain_warning(strain).filter(|_| !is_raw).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
     let is_hidden = errors.bound.is_some_and(|bound| error_level(bound) > error_level(own));
-    let known = input.reference.and_then(Reference::first).filter(|_| is_hidden);
+    let known = input.reference.and_then(Reference::first);
+    let known = known.filter(|first| is_hidden || is_large(own) && first.own_error_percent > COARSE * own);
     let coarse = known.map(|first| fill!("reference ± %{own}", own = percent(first.own_error_percent)));
     let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();
     if !doubts.is_empty() {
@@ -235,11 +239,16 @@ fn load_text(scene: &Scene) -> Option<String> {
     is_only.then(|| engineering(three_digits(value), unit))
 }
 
+/// Limit of an explicit integrator.
+const EXPLICIT: &str = "An explicit integrator explodes if its time step is too long; the pull of a grab and large strains \
+                        make the longest possible step shorter.";
+
 /// Explains the status, one sentence per entry.
 pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
-    if input.quality.is_inside_out(simulation) {
+    let has_stopped = matches!(simulation.status(), Status::Stopped(_));
+    if input.quality.is_inside_out(simulation) && !has_stopped {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
                     equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());
@@ -248,8 +257,14 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         let counts = motion.counts();
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));
         lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
-        let halved = "A time step that does not converge is halved. The drift is the energy that the integrator adds.";
-        lines.push(tr(halved).into());
+        let is_explicit = input.scene.dynamics.integrator.entry().is_explicit();
+        lines.push(match is_explicit {
+            true => tr(EXPLICIT).into(),
+            false => {
+                tr("A time step that does not converge is halved. The drift is the energy that the integrator adds.")
+                    .into()
+            }
+        });
         return lines;
     }
     lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
@@ -308,6 +323,13 @@ pub(crate) struct Remedy {
 /// Returns the most effective remedy; `None` if nothing is wrong or no edit helps.
 pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let (simulation, scene) = (input.simulation, input.scene);
+    let has_stopped = matches!(simulation.status(), Status::Stopped(_));
+    if has_stopped && scene.dynamics.integrator.entry().is_explicit() {
+        let mut scene = Box::new(scene.clone());
+        scene.dynamics.integrator = IntegratorKind::TrBdf2;
+        let offer = fill!("Use %{integrator}", integrator = IntegratorKind::TrBdf2.id());
+        return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action: Action::Edit("Integrator", scene) });
+    }
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         return None;
     }

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::correction::Corrector;
 use crate::assembly::{Forces, System};
 use crate::element::Tangent;
-use crate::format::number;
+use crate::format::{number, three_digits};
 use crate::sentence::{Sentence, sentence};
 use crate::solver::SolverError;
 use crate::state::State;
@@ -85,13 +85,17 @@ impl From<&StopReason> for Sentence {
     fn from(reason: &StopReason) -> Self {
         match reason {
             StopReason::Step { step, error } => {
-                sentence!("a time step failed even when shortened to %{n} s: %{error}", n = number(*step), error)
+                sentence!(
+                    "a time step failed even when shortened to %{n} s: %{error}",
+                    n = number(three_digits(*step)),
+                    error
+                )
             }
             StopReason::Exploded { step, critical } => sentence!(
                 "the motion exploded: the time step of %{n} s is too long; near rest, the critical one is about \
                  %{critical} s",
-                n = number(*step),
-                critical = number(*critical)
+                n = number(three_digits(*step)),
+                critical = number(three_digits(*critical))
             ),
             StopReason::RanAway(sizes) => {
                 sentence!("the body has moved by more than %{n} times its size", n = number(*sizes))

@@ -35,7 +35,7 @@ use crate::simulation::{Simulation, Status, probe_results};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Claim {
-    /// The forces balance.
+    /// The forces balance, under `auto` so well that the error is within `solver.max_error_percent`.
     Converged {
         /// Relative residual.
         residual: f64,
@@ -158,6 +158,12 @@ impl From<&Claim> for Sentence {
             Claim::Converged { tolerance, floor: Some(floor), .. } => sentence!(
                 "the forces balance to machine precision: %{rounding}",
                 rounding = floor_text(*floor, *tolerance)
+            ),
+            Claim::Converged { residual, tolerance, floor: None } if residual > tolerance => sentence!(
+                "the solve ends within solver.max_error_percent: the relative residual is %{residual}, above the \
+                 tolerance of %{asked}",
+                residual = number(two_digits(*residual)),
+                asked = number(*tolerance)
             ),
             Claim::Converged { residual, tolerance, floor: None } => sentence!(
                 "the forces balance: the relative residual is %{residual}, the tolerance is %{asked}",

@@ -2,7 +2,7 @@
 //! where it stops to converge, and where strains leave the linear law. In motion: the same of every integrator, up to
 //! which time step.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::motion::steps::{StepResult, StepStudy};
 use super::progress::{StudyError, all_done, check};
-use super::{Effort, Reference, parallel};
+use super::{Effort, ProbeReference, Reference, parallel};
 use crate::assembly::System;
 use crate::dynamics::INTEGRATORS;
 use crate::exact_beam::error_percent;
@@ -27,12 +27,16 @@ use crate::stress::LAW_HOLDS;
 pub const RANGE: [f64; 2] = [0.01, 10.0];
 /// Loads per decade.
 const PER_DECADE: i32 = 6;
+/// Further loads relative to a critical load, near which errors change within a few percent of the load.
+const NEAR_CRITICAL: [f64; 3] = [0.9, 0.97, 1.03];
 /// Error, percent, up to which a result counts as good.
 pub const GOOD: f64 = 1.0;
 /// Error, percent, up to which a result counts as usable.
 pub const USABLE: f64 = 5.0;
 /// Bisections of the load at which a method stops to converge: to 1 % of the load.
 const BISECTIONS: u32 = 6;
+/// Largest number of bisections of the load at which the error of a method exceeds a limit.
+const REFINEMENTS: u32 = 3;
 
 /// Error of a result, in classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -240,8 +244,10 @@ impl Strip {
                 });
             }
         }
+        // The error was not measured beyond the last result of a method that stops to converge.
         if let (Some(last), Some(end)) = (self.points.last(), end) {
-            add(of([last.factor, end], last));
+            let rating = if self.ends_at.is_some() { Rating::Unknown } else { last.rating() };
+            add(Piece { rating, ..of([last.factor, end], last) });
         }
         let failed = self.ends_at.map(|end| Piece {
             range: [end.max(range[0]), range[1]],
@@ -405,40 +411,30 @@ impl MethodLimits {
             .iter()
             .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)));
         let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
-        let factors: Vec<(usize, f64)> = factors().into_iter().enumerate().collect();
+        let critical = critical(scene, &|_: Progress<'_>| observe(Progress::at(0.0)));
+        let factors: Vec<(usize, f64)> = factors(critical).into_iter().enumerate().collect();
         let all = (factors.len() + settings.len()) as f64;
         let so_far = SoFar::new(
             partial,
             Self {
                 range: RANGE,
                 duration: None,
-                critical: None,
+                critical,
                 reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
                 strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
             },
         );
-        let begin = &|_: Progress<'_>| observe(Progress::at(0.0));
-        if let Some(critical) = critical(scene, begin) {
-            so_far.change(|limits| limits.critical = Some(critical));
-        }
-        let solved = all_done(parallel::map(
+        let references = References { scene, known: Mutex::default() };
+        all_done(parallel::map(
             &factors,
             |&(i, factor), observe| {
-                // Without a reference solution the error is not known.
-                let known = match Reference::find(&at(scene, factor), None, Effort::Bounded, observe) {
-                    Err(StudyError::Cancelled) => return Err(StudyError::Cancelled),
-                    found => found.ok().and_then(|reference| reference.first()),
-                };
+                let known = references.at(factor, observe)?;
                 let displacement = known.map(|known| known.displacement);
                 so_far.change(|limits| _ = limits.reference.get_mut(i).map(|(_, u)| *u = displacement));
                 Ok(known)
             },
             |done| observe(Progress { fraction: done as f64 / all, now: Some(&now[0]) }),
         ))?;
-        let known = |i: usize, u: Vector2<f64>| {
-            let reference = solved.get(i).copied().flatten()?;
-            Some(reference.error_bound(error_percent(u, reference.displacement)?))
-        };
         settings.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
         });
@@ -450,18 +446,24 @@ impl MethodLimits {
                     let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
                     check(flow).map(|()| Some(simulation).filter(|s| *s.status() == Status::Converged))
                 };
-                let point = |i: usize, factor: f64| {
+                let point = |_, factor: f64| {
                     let Some(solved) = solve(factor)? else { return Ok(None) };
                     let problem = solved.problem();
                     let probe = problem.probes().first();
                     let displacement = probe.map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
                     let Deformation { max_strain, inverted_elements, .. } =
                         Deformation::of(problem, solved.state(), &solved.nodal_stress());
-                    let error_percent = known(i, displacement);
+                    let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
+                    let error_percent = known
+                        .and_then(|known| Some(known.error_bound(error_percent(displacement, known.displacement)?)));
                     Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
                 };
                 let converges = |factor: f64| Ok(solve(factor)?.is_some());
-                follow(Strip::new(own), &factors, &point, &converges, &|strip| so_far.set(*row, strip))
+                let is_costly = |factor: f64| references.folds(factor);
+                let found = follow(Strip::new(own), &factors, &point, &converges, &|strip| so_far.set(*row, strip))?;
+                let refined = refine(found, &point, &is_costly)?;
+                so_far.set(*row, &refined);
+                Ok(())
             },
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
         ))?;
@@ -497,8 +499,8 @@ impl MethodLimits {
         all_done(parallel::map(
             &settings,
             |(row, (integrator, strip)), observe| {
-                let point = |i: usize, factor: f64| {
-                    let Some(&power) = powers.get(i) else { return Ok(None) };
+                let point = |i: Option<usize>, factor: f64| {
+                    let Some(&power) = i.and_then(|i| powers.get(i)) else { return Ok(None) };
                     let solved = study.solve(*integrator, power, observe)?;
                     Ok(solved.map(|StepResult { displacement, error_percent, max_strain, inverted_elements }| {
                         let error_percent = Some(error_percent);
@@ -507,7 +509,9 @@ impl MethodLimits {
                 };
                 // Time steps shorter than the first are not measured.
                 let finishes = |factor: f64| Ok(factor >= first && study.finishes(*integrator, factor, observe)?);
-                follow(strip.clone(), &factors, &point, &finishes, &|strip| so_far.set(*row, strip))
+                let found = follow(strip.clone(), &factors, &point, &finishes, &|strip| so_far.set(*row, strip))?;
+                so_far.set(*row, &found);
+                Ok(())
             },
             |done| {
                 let fraction = REFERENCE + (1.0 - REFERENCE) * done as f64 / settings.len() as f64;
@@ -515,6 +519,47 @@ impl MethodLimits {
             },
         ))?;
         Ok(so_far.end())
+    }
+}
+
+/// Reference solutions of a scene's first probe under parts of its load, each computed once.
+struct References<'a> {
+    scene: &'a Scene,
+    known: Mutex<Vec<KnownReference>>,
+}
+
+/// Reference of a scene's first probe under a part of its load.
+#[derive(Clone, Copy)]
+struct KnownReference {
+    factor: f64,
+    probe: Option<ProbeReference>,
+    /// `true` if the material folds on finer meshes: such a reference takes long, and is inaccurate.
+    folds: bool,
+}
+
+impl References<'_> {
+    fn known(&self) -> MutexGuard<'_, Vec<KnownReference>> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the reference under a part of the load; `None` if there is none, so that the error is not known.
+    fn at(&self, factor: f64, observe: Observer<'_>) -> Result<Option<ProbeReference>, StudyError> {
+        if let Some(known) = self.known().iter().find(|known| known.factor == factor) {
+            return Ok(known.probe);
+        }
+        let found = match Reference::find(&at(self.scene, factor), None, Effort::Bounded, observe) {
+            Err(StudyError::Cancelled) => return Err(StudyError::Cancelled),
+            found => found.ok(),
+        };
+        let probe = found.as_ref().and_then(Reference::first);
+        let folds = found.is_some_and(|reference| reference.folds);
+        self.known().push(KnownReference { factor, probe, folds });
+        Ok(probe)
+    }
+
+    /// Returns `true` if the reference under a part of the load is known, and folds.
+    fn folds(&self, factor: f64) -> bool {
+        self.known().iter().any(|known| known.factor == factor && known.folds)
     }
 }
 
@@ -561,11 +606,15 @@ fn law_crossing(a: &LimitPoint, b: &LimitPoint) -> f64 {
     crossing((a.factor, a.max_strain), (b.factor, b.max_strain), LAW_HOLDS)
 }
 
-/// Returns the parts of the load, evenly spaced in their logarithm.
-fn factors() -> Vec<f64> {
+/// Returns the parts of the load, evenly spaced in their logarithm, and more near the critical one.
+fn factors(critical: Option<f64>) -> Vec<f64> {
     let decades = (RANGE[1] / RANGE[0]).log10();
     let count = (f64::from(PER_DECADE) * decades).round() as i32;
-    (0..=count).map(|i| RANGE[0] * 10f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect()
+    let spaced = (0..=count).map(|i| RANGE[0] * 10f64.powf(f64::from(i) / f64::from(PER_DECADE)));
+    let near = critical.into_iter().flat_map(|critical| NEAR_CRITICAL.map(|part| part * critical));
+    let mut all: Vec<f64> = spaced.chain(near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor))).collect();
+    all.sort_by(f64::total_cmp);
+    all
 }
 
 /// Returns the part of the load at which the load path from rest buckles or jumps, if it does so in the range.
@@ -586,19 +635,25 @@ fn at(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection. Each
-/// solve starts from rest, as `warpbeam solve` does. `report` receives the strip so far after each load.
+/// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection; the
+/// last result is that at the end, if `solve` has one there. Each solve starts from rest, as `warpbeam solve` does.
+/// `solve` receives the index of the load among `factors`, or `None` for another load. `report` receives the strip so far after
+/// each load.
 fn follow(
     mut strip: Strip,
     factors: &[(usize, f64)],
-    solve: &dyn Fn(usize, f64) -> Result<Option<LimitPoint>, StudyError>,
+    solve: &dyn Fn(Option<usize>, f64) -> Result<Option<LimitPoint>, StudyError>,
     converges: &dyn Fn(f64) -> Result<bool, StudyError>,
     report: &dyn Fn(&Strip),
-) -> Result<(), StudyError> {
+) -> Result<Strip, StudyError> {
     for &(i, factor) in factors {
-        let Some(point) = solve(i, factor)? else {
+        let Some(point) = solve(Some(i), factor)? else {
             let reached = strip.points.last().map_or(0.0, |point| point.factor);
-            strip.ends_at = Some(end_between([reached, factor], converges)?);
+            let end = end_between([reached, factor], converges)?;
+            strip.ends_at = Some(end);
+            if end > reached {
+                strip.points.extend(solve(None, end)?);
+            }
             break;
         };
         strip.points.push(point);
@@ -606,8 +661,37 @@ fn follow(
         report(&strip);
     }
     strip.done = 1.0;
-    report(&strip);
-    Ok(())
+    Ok(strip)
+}
+
+/// Adds results where the error grows too much between two loads to be interpolated, unless `is_costly` of the larger one.
+fn refine(
+    mut strip: Strip,
+    solve: &dyn Fn(Option<usize>, f64) -> Result<Option<LimitPoint>, StudyError>,
+    is_costly: &dyn Fn(f64) -> bool,
+) -> Result<Strip, StudyError> {
+    for percent in [GOOD, USABLE] {
+        for _ in 0..REFINEMENTS {
+            let Some((next, [from, to])) = coarse_crossing(&strip, percent) else { break };
+            if is_costly(to) {
+                break;
+            }
+            let Some(point) = solve(None, (from * to).sqrt())? else { break };
+            strip.points.insert(next, point);
+        }
+    }
+    Ok(strip)
+}
+
+/// Returns the two loads between which the error first exceeds `percent`, and the index of the second result, if the
+/// error grows too much between them to be interpolated.
+fn coarse_crossing(strip: &Strip, percent: f64) -> Option<(usize, [f64; 2])> {
+    /// Ratio of errors that is interpolated well enough.
+    const SMALL_RATIO: f64 = 3.0;
+    let next = strip.points.iter().position(|point| point.error_percent.is_some_and(|error| error > percent))?;
+    let [before, after] = [strip.points.get(next.checked_sub(1)?)?, strip.points.get(next)?];
+    let ratio = after.error_percent? / before.error_percent?;
+    (ratio > SMALL_RATIO).then_some((next, [before.factor, after.factor]))
 }
 
 /// Returns the load between two parts beyond which the method does not converge.

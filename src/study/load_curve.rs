@@ -23,7 +23,7 @@ pub struct Sample {
     pub exact: Vector2<f64>,
     /// Rotation of the tip, rad.
     pub rotation: f64,
-    /// Largest bending strain: half the height times the curvature at the clamp.
+    /// Largest strain at the clamp: that of the normal force, and half the height times the curvature.
     pub strain: f64,
 }
 
@@ -99,13 +99,15 @@ impl LoadCurve {
         let rest = Vector2::new(beam.length, 0.0);
         let none =
             Sample { factor: 0.0, linear: Vector2::zeros(), exact: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
+        let clamp_force = beam.tip_force + beam.weight * beam.length;
         let (loaded, buckles_at) = beam.path_to_critical(LARGEST_FACTOR, SAMPLES);
         let sample = |p: &PathPoint| Sample {
             factor: p.factor,
             linear: linear * p.factor,
             exact: p.tip.x - rest,
             rotation: p.tip.angle,
-            strain: 0.5 * height * (p.clamp_moment / beam.bending).abs(),
+            strain: p.factor * (clamp_force.x * beam.stretch_compliance).abs()
+                + 0.5 * height * (p.clamp_moment / beam.bending).abs(),
         };
         let samples: Vec<Sample> = std::iter::once(none).chain(loaded.iter().map(sample)).collect();
         let sampled = |largest: f64| -> Vec<Sample> {

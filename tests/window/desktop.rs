@@ -577,8 +577,21 @@ fn edits_survive_a_destroyed_window() {
     at(0.7);
     wait_for("the second edit", || (changed(&window.image(), &before) > 1_000).then_some(()));
     desktop.xdotool(&["windowclose", &window.id]);
-    assert!(window.process.wait().unwrap().success());
+    let status = window.process.wait().unwrap();
+    Window::check_end(&(status.code(), window.said()));
     assert_ne!(scene().unwrap(), first);
+}
+
+/// Another program destroys the window while it draws one frame after the other.
+#[test]
+fn a_moving_window_can_be_destroyed() {
+    let Some(desktop) = Desktop::start() else { return };
+    for _ in 0..3 {
+        let mut window = Window::open(&desktop, &["run", "jelly"]);
+        desktop.xdotool(&["windowclose", &window.id]);
+        let status = window.process.wait().unwrap();
+        Window::check_end(&(status.code(), window.said()));
+    }
 }
 
 /// Returns the number of pictures of a GIF file and its duration, s; `None` while the file is incomplete.

@@ -238,10 +238,10 @@ fn rotated_triangles_are_rotated_back_onto_their_rest_shape() {
     let f = Affine2::from_triangle(rest, now).unwrap().linear;
     let strain = polar(&f).unwrap().matrix().transpose() * f - Matrix2::identity();
     let signed = |v: f64| format!("{}{}", if v < 0.0 { "\u{2212}" } else { "+" }, percent(100.0 * v.abs()));
-    let (along, across, shear) = (signed(strain.m11), signed(strain.m22), signed(strain.m12));
+    let (along, across, shear) = (signed(strain.m11), signed(strain.m22), signed(2.0 * strain.m12));
     assert_eq!(
         text(&harness, "strain \u{3b5}"),
-        format!("strain \u{3b5}: along {along}, across {across}, shear {shear}")
+        format!("strain \u{3b5}: along {along}, across {across}, shear \u{3b3} {shear}")
     );
     // A press on a triangle that is drawn elsewhere does not pull the body, and selects the triangle drawn there.
     let seen = drawn(harness.state(), 1).iter().sum::<Vector2<f64>>() / 3.0;

@@ -124,7 +124,7 @@ impl LimitMap {
         if !has_one_row {
             ui.horizontal(|ui| {
                 ui.add_space(8.0);
-                legend(ui, moves);
+                ui.horizontal_wrapped(|ui| legend(ui, moves));
             });
         }
         let axis = limits::axis(&base);
@@ -169,21 +169,25 @@ fn first_probe(shown: &Simulation) -> Option<f64> {
     Some(probe.mean(shown.displacement()).norm())
 }
 
-/// Shows the key of the colours in one line.
+/// Shows the key of the colours; a line breaks between entries.
 fn legend(ui: &mut Ui, moves: bool) {
     const BOX: f32 = 10.0;
-    ui.spacing_mut().item_spacing.x = 5.0;
+    const GAP: f32 = 5.0;
+    ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
     let entry = |ui: &mut Ui, name: &str, paint: &dyn Fn(&Ui, Rect)| {
-        let (rect, _) = ui.allocate_exact_size(vec2(BOX, BOX), Sense::hover());
-        paint(ui, rect);
-        ui.add(egui::Label::new(RichText::new(name).size(SMALL)).truncate());
-        ui.add_space(6.0);
+        let (font, ink) = (FontId::proportional(SMALL), ui.visuals().text_color());
+        let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
+        let size = vec2(BOX + GAP + galley.size().x, LINE);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        paint(ui, Rect::from_center_size(rect.left_center() + vec2(0.5 * BOX, 0.0), vec2(BOX, BOX)));
+        ui.painter().galley(rect.left_center() + vec2(BOX + GAP, -0.5 * galley.size().y), galley, ink);
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
     };
     for (rating, name) in Rating::all(moves) {
         entry(ui, &said(&name), &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
     }
     let ink = Palette::new(ui.visuals()).text;
-    entry(ui, tr("strains above 10 %, or inverted elements"), &|ui, rect| {
+    entry(ui, tr("strains above 10 % or inverted"), &|ui, rect| {
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
         hatch(ui, rect, ink);
     });

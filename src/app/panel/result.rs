@@ -75,9 +75,12 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     quality_rows(row, input);
     let Some(search) = simulation.equilibrium() else { return };
     let (factor, steps) = (search.load_factor(), search.load_steps());
-    if steps > 1 || factor < 1.0 {
-        let part = format!("{:.3} %", 100.0 * factor);
-        let text = fill!("%{n}, at %{part} of the load", n = steps, part = part);
+    if steps > 1 || factor != 1.0 {
+        let part = percent(100.0 * factor);
+        let text = match factor == 1.0 {
+            true => steps.to_string(),
+            false => fill!("%{n}, at %{part} of the load", n = steps, part = part),
+        };
         row("Load steps", text, "Number of steps in which the load is applied");
     }
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });
@@ -144,7 +147,7 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
         }
         None => UNKNOWN.to_owned(),
     };
-    let tip = tr("Largest von Mises stress (Cauchy), and its point at rest").to_owned();
+    let tip = tr("Largest von Mises stress (Cauchy), and its point at rest; no yielding is modelled").to_owned();
     let tip = std::iter::once(tip).chain(quality.singularity.as_ref().map(said)).collect::<Vec<_>>().join("; ");
     row("Stress", text, &tip);
     let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
@@ -197,7 +200,9 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     let joules = |value: f64| engineering(value, "J");
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
-    row("Drift", percent(100.0 * ledger.drift_of_input()), DRIFT_TIP);
+    let has_stopped = matches!(input.simulation.status(), Status::Stopped(_));
+    let drift = if has_stopped { UNKNOWN.to_owned() } else { percent(100.0 * ledger.drift_of_input()) };
+    row("Drift", drift, DRIFT_TIP);
     if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }

@@ -56,16 +56,9 @@ enum ComparedBody {
     #[default]
     None,
     Here(Box<Simulation>),
-    Away(Box<Away>),
+    Away(Box<BackgroundSolve>),
     /// Error of the scene.
     Refused(Sentence),
-}
-
-/// Background solve, and its start.
-#[derive(Debug)]
-struct Away {
-    solve: BackgroundSolve,
-    since: Instant,
 }
 
 /// Returns the model of a solve: an existing simulation, existing equations of the scene's mesh, or a new mesh.
@@ -153,7 +146,7 @@ impl ComparedSolve {
         match (&self.end, &self.body) {
             (Some(end), _) => Activity::Rests(end),
             (None, ComparedBody::Refused(reason)) => Activity::Refused(reason),
-            (None, ComparedBody::Away(away)) => Activity::Works(match away.solve.phase() {
+            (None, ComparedBody::Away(solve)) => Activity::Works(match solve.phase() {
                 Phase::Iterating(iterations) => iterations,
                 _ => 0,
             }),
@@ -255,11 +248,11 @@ impl ComparedSolve {
 
     /// Takes back a simulation that was solved in the background; returns `false` while it is still being solved.
     fn take_solved(&mut self) -> bool {
-        let ComparedBody::Away(away) = &mut self.body else { return true };
-        if self.given != self.wanted && away.since.elapsed() > LONGEST_OUTDATED {
-            away.solve.cancel();
+        let ComparedBody::Away(solve) = &mut self.body else { return true };
+        if self.given != self.wanted && solve.age() > LONGEST_OUTDATED {
+            solve.cancel();
         }
-        let Some(ended) = away.solve.poll_end() else { return false };
+        let Some(ended) = solve.poll_end() else { return false };
         self.body = match ended {
             Ok(solved) => {
                 self.geometry = solved.snapshot.geometry.or_else(|| self.geometry.take());
@@ -314,7 +307,7 @@ impl ComparedSolve {
         let iterations = self.most_iterations.map(|most| most.saturating_sub(made));
         let request = SolveRequest { scene, model, start, iterations, residuals: Vec::new(), is_displayed: false };
         self.body = match BackgroundSolve::start(request) {
-            Ok(solve) => ComparedBody::Away(Box::new(Away { solve, since: Instant::now() })),
+            Ok(solve) => ComparedBody::Away(Box::new(solve)),
             Err(error) => ComparedBody::Refused(sentence!(
                 "the system starts no thread for the solve: %{error}",
                 error = error.to_string()

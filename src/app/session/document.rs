@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::app::platform::files;
-use crate::scene::{Scene, SceneError, Source};
+use crate::app::platform::{IS_PAGE, files};
+use crate::scene::{MeshFile, Scene, SceneError, Source, built_in_mesh};
 use crate::sentence::{Sentence, sentence};
 
 /// Name of a scene's file or built-in scene, and the scene as it is stored there.
@@ -19,6 +19,9 @@ pub(crate) struct Document {
     pub opened: Arc<Scene>,
     /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
     has_file: bool,
+    /// Folder that the path of the scene's mesh file is relative to: that of the file which was opened. Saving elsewhere
+    /// does not change the path in the scene.
+    mesh_folder: Option<PathBuf>,
     /// Content of the file when it was last read or written; `None` if there was none.
     text: Option<Arc<str>>,
 }
@@ -52,7 +55,8 @@ impl Document {
     /// Creates the document of a file that had this content when it was last read or written.
     pub(crate) fn with_text(source: Source, original: Scene, text: Option<Arc<str>>) -> Self {
         let has_file = source.built_in().is_none() && !source.is_stream();
-        Self { source, opened: Arc::new(original.clone()), original, has_file, text }
+        let mesh_folder = folder(&source.name).filter(|_| has_file);
+        Self { source, opened: Arc::new(original.clone()), original, has_file, mesh_folder, text }
     }
 
     /// Returns the current content of the file; `None` if it cannot be read.
@@ -90,26 +94,56 @@ impl Document {
         self.text = self.read();
     }
 
-    /// Writes a scene to a file, and returns the document of that file. The relative path of a mesh file becomes
-    /// absolute if the new file is in another folder.
-    ///
-    /// # Errors
-    /// [`SaveError`]; the file is unchanged.
-    pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, SaveError> {
+    /// Returns the scene as a file at `path` has it: the relative path of a mesh file becomes absolute if that file is in
+    /// another folder than the one that was opened.
+    pub(crate) fn relocated(&self, scene: &Scene, path: &Path) -> Scene {
         let mut scene = scene.clone();
-        let folder =
-            |path: &Path| path.parent().map(|folder| std::path::absolute(folder.join("."))).and_then(Result::ok);
-        let before = self.path().and_then(folder);
-        if let (Some(mesh), Some(before)) =
-            (&mut scene.mesh, before.filter(|before| Some(before) != folder(path).as_ref()))
+        let before = self.mesh_folder.as_ref().filter(|before| folder(path).as_ref() != Some(*before));
+        if let (Some(mesh), Some(before)) = (&mut scene.mesh, before)
             && before.join(&mesh.file).is_file()
             && let Some(whole) = before.join(&mesh.file).to_str()
         {
             mesh.file = whole.to_owned();
         }
-        let toml = scene.to_toml()?;
+        scene
+    }
+
+    /// Writes a scene to a file, and returns the document of that file. A built-in mesh is written beside it.
+    ///
+    /// # Errors
+    /// [`SaveError`]; the file is unchanged.
+    pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, SaveError> {
+        let mut written = self.relocated(scene, path);
+        if let Some(mesh) = written.mesh.as_mut().filter(|_| !IS_PAGE) {
+            save_built_in_mesh(mesh, path)?;
+        }
+        let toml = written.to_toml()?;
         files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
         let source = Source { name: path.to_owned(), assignments: Vec::new() };
-        Ok(Self { opened: self.opened.clone(), ..Self::with_text(source, scene, Some(toml.into())) })
+        let saved = Self::with_text(source, scene.clone(), Some(toml.into()));
+        Ok(Self { opened: self.opened.clone(), mesh_folder: self.mesh_folder.clone(), ..saved })
     }
+}
+
+/// Writes a built-in mesh beside the scene file at `path`, and names it there; a different file with its name stays, and
+/// the scene keeps the built-in mesh.
+fn save_built_in_mesh(mesh: &mut MeshFile, path: &Path) -> Result<(), SaveError> {
+    let Some(folder) = path.parent() else { return Ok(()) };
+    let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).map(str::to_owned);
+    let (Some(text), Some(name)) = (built_in_mesh(&mesh.file, folder), name) else { return Ok(()) };
+    let beside = path.with_file_name(&name);
+    match std::fs::read_to_string(&beside) {
+        Ok(present) if present == text => {}
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            files::save(&beside, text.as_bytes()).map_err(|reason| SaveError::File { path: beside, reason })?;
+        }
+        _ => return Ok(()),
+    }
+    mesh.file = name;
+    Ok(())
+}
+
+/// Returns the absolute path of a file's folder; `None` on a page, which has none.
+fn folder(path: &Path) -> Option<PathBuf> {
+    path.parent().and_then(|folder| std::path::absolute(folder.join(".")).ok())
 }

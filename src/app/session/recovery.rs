@@ -66,8 +66,8 @@ fn write(document: &Document, scene: &Scene, place: &CopyPlace) -> io::Result<()
     let copy = Copy {
         name: name.to_string_lossy().into_owned(),
         assignments: assignments.clone(),
-        original: document.original.to_toml().map_err(io::Error::other)?,
-        scene: scene.to_toml().map_err(io::Error::other)?,
+        original: document.relocated(&document.original, &name).to_toml().map_err(io::Error::other)?,
+        scene: document.relocated(scene, &name).to_toml().map_err(io::Error::other)?,
         file: document.text().map(str::to_owned),
     };
     place.write(&toml::to_string(&copy).map_err(io::Error::other)?)

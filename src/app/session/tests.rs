@@ -388,3 +388,45 @@ fn a_frame_makes_as_many_iterations_as_it_has_time_for() {
     let made = session.simulation().iterations();
     assert!((1..100).contains(&made) && session.iterates(), "{made} iterations");
 }
+
+/// The file of a scene finds its mesh, however often and wherever it is saved.
+#[test]
+fn a_saved_scene_has_its_mesh() {
+    let [first, second] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let open = |path: &Path| {
+        let source = Source { name: path.to_owned(), assignments: Vec::new() };
+        let scene = crate::scene::open(&source).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        Session::new(source, scene, simulation)
+    };
+    let bracket = Source { name: "bracket".into(), assignments: Vec::new() };
+    let scene = crate::scene::open(&bracket).unwrap();
+    let mut session = Session::new(bracket, scene.clone(), Simulation::new(&scene).unwrap());
+    let path = first.path().join("mine.toml");
+    session.save(&path).unwrap();
+    assert!(!session.is_edited(), "saving is no edit");
+    let name = |path: &Path| open(path).scene().mesh.as_ref().unwrap().file.clone();
+    assert_eq!(name(&path), "bracket.msh");
+    // Saved in another folder, and there once more after an edit.
+    let mut session = open(&path);
+    let elsewhere = second.path().join("copy.toml");
+    for young in [2e6, 3e6] {
+        let mut edited = session.scene().clone();
+        edited.material.young = young;
+        session.set_scene(edited).unwrap();
+        session.save(&elsewhere).unwrap();
+        assert!(!session.is_edited());
+        assert_eq!(open(&elsewhere).scene().material.young, young);
+        assert_eq!(Path::new(&name(&elsewhere)), first.path().join(".").join("bracket.msh"));
+    }
+    // Another file with the name of the built-in mesh is left alone.
+    std::fs::write(second.path().join("bracket.msh"), "mine").unwrap();
+    let mut session = Session::new(
+        Source { name: "bracket".into(), assignments: Vec::new() },
+        scene.clone(),
+        Simulation::new(&scene).unwrap(),
+    );
+    session.save(&second.path().join("third.toml")).unwrap();
+    assert_eq!(std::fs::read_to_string(second.path().join("bracket.msh")).unwrap(), "mine");
+    assert_eq!(name(&second.path().join("third.toml")), "../meshes/bracket.msh");
+}

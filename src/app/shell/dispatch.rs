@@ -132,7 +132,13 @@ impl Lab {
                 self.desk.session.show_neighbour(action == Action::Forward);
                 ctx.request_repaint();
             }
-            Action::Reset => self.reset(),
+            Action::Reset => {
+                self.reset();
+                // A card that waits for its steps waits again.
+                if self.lesson.as_ref().is_some_and(|lesson| lesson.learn.waits_for_steps()) {
+                    self.desk.session.set_running(false);
+                }
+            }
             Action::Mark => {
                 let is_marked = self.desk.session.toggle_mark();
                 let text = if is_marked { "Reset now returns to this state" } else { "Reset now returns to the start" };
@@ -197,6 +203,10 @@ impl Lab {
                 // A full study of a motion takes many minutes.
                 let is_quick = self.lesson.is_some() || self.desk.session.is_motion();
                 let extent = if is_quick { Extent::Quick } else { Extent::Full };
+                if self.desk.session.is_motion() {
+                    // A motion that runs beside would take the time that is measured.
+                    self.desk.session.pause();
+                }
                 self.desk.budget.measure(self.desk.session.scene(), extent);
             }
             Action::Measure(false) => self.desk.budget.cancel(),

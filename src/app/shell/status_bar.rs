@@ -12,13 +12,13 @@ use crate::app::language::{fill, filled, percent, tr};
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
-use crate::app::view_options::{Drawer, Toggle, ViewOptions};
+use crate::app::view_options::{Drawer, Mode, Toggle, ViewOptions};
 use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::format::{engineering, grouped, two_digits};
 use crate::scene::MethodKind;
 use crate::scene::Scene;
-use crate::simulation::Motion;
+use crate::simulation::{Motion, Status};
 
 /// In a status bar narrower than this, points, the numbers have no bars.
 const BARS: f32 = 820.0;
@@ -46,7 +46,9 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
             None => of_solve(&palette, input, errors, view.raw),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let has_sections = !input.scene.sections.is_empty() && Drawer::Section.suits(input.scene);
+            let is_open = view.plots() == Some(Drawer::Section);
+            let is_offered = wide && view.mode == Mode::Explore || !input.scene.sections.is_empty() || is_open;
+            let has_sections = is_offered && Drawer::Section.suits(input.scene);
             for drawer in std::iter::once(Drawer::of(input.scene)).chain(has_sections.then_some(Drawer::Section)) {
                 let open = view.plots() == Some(drawer);
                 let (word, tip) = drawer.text();
@@ -148,6 +150,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Bar
     let step = input.scene.dynamics.time_step;
     let clock = &input.playback.clock;
     let drift = motion.ledger().drift_of_input();
+    let has_stopped = matches!(input.simulation.status(), Status::Stopped(_));
     [
         BarNumber {
             name: "STEP",
@@ -171,10 +174,10 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Bar
         },
         BarNumber {
             name: "DRIFT",
-            value: percent(100.0 * drift),
+            value: if has_stopped { UNKNOWN.to_owned() } else { percent(100.0 * drift) },
             word: Cow::default(),
             tip: tr(DRIFT_TIP).to_owned(),
-            color: if drift.abs() > 0.05 { palette.warning } else { palette.text },
+            color: if drift.abs() > 0.05 && !has_stopped { palette.warning } else { palette.text },
             ratio: None,
         },
     ]

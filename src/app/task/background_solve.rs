@@ -1,5 +1,7 @@
 //! Background solve of a large model.
 
+use web_time::{Duration, Instant};
+
 use crate::app::platform::IS_PAGE;
 use crate::app::task::remote_solve::RemoteSolve;
 use crate::app::task::solve::{Model, Phase, Snapshot, SolveOutcome, SolveProgress, SolveRequest, Solved, run};
@@ -25,6 +27,7 @@ pub(crate) enum SolveUpdate {
 pub(crate) struct BackgroundSolve {
     runner: Runner,
     scene: Scene,
+    since: Instant,
     is_new: bool,
     /// `true` once the user has cancelled the solve: its snapshots and its result are not displayed.
     is_discarded: bool,
@@ -52,12 +55,17 @@ impl BackgroundSolve {
             let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
             Runner::Thread(Task::start("solve", work)?)
         };
-        Ok(Self { runner, scene, is_new, is_discarded: false, phase })
+        Ok(Self { runner, scene, since: Instant::now(), is_new, is_discarded: false, phase })
     }
 
     /// Returns the scene that is solved.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Returns the time since the start.
+    pub(crate) fn age(&self) -> Duration {
+        self.since.elapsed()
     }
 
     /// Returns `true` if a new model is meshed.

@@ -1,11 +1,12 @@
 //! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
-use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, vec2};
+use egui::{Align, Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
+use crate::app::widgets::palette::BODY;
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::format::{engineering, round_down, three_digits};
@@ -222,13 +223,15 @@ impl Arrow {
         }
     }
 
-    /// Paints the arrow with its force next to it, as an outline if the body does not have this load.
+    /// Paints the arrow with its force next to it, beside the colour bar `legend`, as an outline if the body does not
+    /// have this load.
     pub(crate) fn paint(
         &self,
         painter: &Painter,
         color: Color32,
         visuals: &Visuals,
         (is_hot, is_outline): (bool, bool),
+        legend: Option<Rect>,
     ) {
         let direction = self.vector.normalized();
         let is_stub = self.magnitude == 0.0;
@@ -240,7 +243,15 @@ impl Arrow {
         };
         paint_grip(painter, tip - direction * 6.0, faint, is_hot);
         let label = engineering(self.magnitude, "N");
-        let (anchor, at) = label_place(tip, direction);
+        let (mut anchor, mut at) = label_place(tip, direction);
+        let size = painter.layout_no_wrap(label.clone(), FontId::proportional(BODY), faint).size();
+        if let Some(legend) = legend.filter(|legend| legend.intersects(anchor.anchor_size(at, size).expand(4.0))) {
+            let is_on_top = legend.center().y < painter.clip_rect().center().y;
+            (anchor, at) = match is_on_top {
+                true => (Align2::LEFT_TOP, pos2(tip.x + 12.0, legend.bottom() + 8.0)),
+                false => (Align2::LEFT_BOTTOM, pos2(tip.x + 12.0, legend.top() - 8.0)),
+            };
+        }
         boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
     }
 

@@ -89,8 +89,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     let names = key(painter, rect, overlay, &palette, visuals);
     let legend = legend(painter, rect, names, overlay, &palette, visuals);
-    let below = legend.filter(|_| has_legend_on_top(rect.height())).map_or(0.0, |frame| frame.bottom() - rect.top());
-    on_body(painter, rect, overlay, visuals, below);
+    on_body(painter, rect, overlay, visuals, legend);
     scale_bar(painter, rect, &overlay.camera, &palette);
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
@@ -114,7 +113,7 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     outlines(painter, rect, overlay, &Palette::new(visuals));
-    on_body(painter, rect, overlay, visuals, 0.0);
+    on_body(painter, rect, overlay, visuals, None);
 }
 
 /// Paints the outlines of the body, of the body at rest, and of other solutions.
@@ -165,9 +164,9 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     }
 }
 
-/// Paints supports, loads, probes and sections; the arrow of gravity is placed under a colour bar that ends `below`
-/// points from the top.
-fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, below: f32) {
+/// Paints supports, loads, probes and sections; labels of forces, and the arrow of gravity, are beside the colour bar
+/// `legend`.
+fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, legend: Option<Rect>) {
     let palette = Palette::new(visuals);
     let Overlay { system, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
@@ -183,7 +182,9 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
     }
     if !overlay.apart {
         supports(painter, &projection, overlay, &palette);
-        loads(painter, &projection, overlay, &palette, visuals);
+        loads(painter, &projection, overlay, &palette, visuals, legend);
+        let on_top = legend.filter(|_| has_legend_on_top(rect.height()));
+        let below = on_top.map_or(0.0, |legend| legend.bottom() - rect.top());
         weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
         probes(painter, &projection, overlay, visuals);
@@ -406,7 +407,14 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+fn loads(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    palette: &Palette,
+    visuals: &Visuals,
+    legend: Option<Rect>,
+) {
     let Overlay { scene, system, positions, time, .. } = *overlay;
     let of =
         |scene| ForceArrows { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
@@ -424,7 +432,7 @@ fn loads(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     let arrows = forces.arrows(projection);
     for arrow in &arrows {
-        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline));
+        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline), legend);
     }
     for arrow in forces.moment_arrows(projection) {
         arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline), &arrows);

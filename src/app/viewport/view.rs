@@ -22,7 +22,7 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
-use crate::scene::{MethodKind, Scene};
+use crate::scene::{Load, MethodKind, Place, Scene};
 use crate::section::Section;
 use crate::simulation::{Field, Simulation, Status};
 use crate::state::largest;
@@ -432,7 +432,13 @@ impl BodyView {
         if content.card.is_some() || content.is_apart() || content.session.is_in_background() {
             self.menu = None;
         } else if response.secondary_clicked() {
-            self.menu = self.pointer.over_body().map(|(point, _)| point);
+            // The tip of a short arrow covers the point where its force acts.
+            let handle = self.pointer.hot_handle().map(|hot| hot.handle.load());
+            let of_handle = handle.and_then(|load| match content.session.scene().loads.get(load)? {
+                Load::Force { place: Place::At(at), .. } => content.mesh().locate((*at).into()),
+                _ => None,
+            });
+            self.menu = self.pointer.over_body().map(|(point, _)| point).or(of_handle);
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
@@ -555,7 +561,7 @@ impl BodyView {
 
     /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
     fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
-        const LARGEST: f64 = 3.0;
+        const LARGEST: f64 = 10.0;
         let (low, high) = content.mesh().bounds();
         let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
         (to - from).norm() < LARGEST * (high - low).norm()

@@ -255,10 +255,12 @@ impl App {
         let Some(texture) = open.acquire()? else {
             return Ok(());
         };
-        self.lab.advance(self.start.elapsed().as_secs_f64());
+        let now = self.start.elapsed().as_secs_f64();
+        self.lab.advance(now);
         self.follow_scene_recording();
         let Some(open) = &mut self.open else { return Ok(()) };
-        let mut input = open.bare.input.take_egui_input(&open.bare.window);
+        let size = [open.graphics.configuration.width, open.graphics.configuration.height];
+        let mut input = open.bare.take_input(&self.ctx, now, size);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);
         open.bare.clipboard.paste(&mut events);
@@ -266,7 +268,6 @@ impl App {
         self.later = clicks::after_first(&mut events);
         input.events = events;
         let mut requests = Vec::new();
-        let now = self.start.elapsed().as_secs_f64();
         let (mut mark, mut cursor) = (Vec::new(), None);
         let mut output = self.ctx.run_ui(input, |ui| {
             requests.extend(self.lab.ui(ui));

@@ -107,6 +107,20 @@ impl BareWindow {
         let input = egui_winit::State::new(ctx, ViewportId::ROOT, &window, Some(scale), window.theme(), None);
         Self { input, clipboard: Clipboard::open(), window }
     }
+
+    /// Takes the input of the next frame, at this time, s, for a surface of this size, pixels.
+    ///
+    /// [`egui_winit::State::take_egui_input`] asks the display for the size of the window, and winit panics where
+    /// another program has just destroyed it.
+    pub(super) fn take_input(&mut self, ctx: &egui::Context, time: f64, size: [u32; 2]) -> egui::RawInput {
+        let size = egui::vec2(size[0] as f32, size[1] as f32) / egui_winit::pixels_per_point(ctx, &self.window);
+        let input = self.input.egui_input_mut();
+        input.time = Some(time);
+        input.screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+        let viewport = input.viewports.entry(ViewportId::ROOT).or_default();
+        viewport.native_pixels_per_point = Some(self.window.scale_factor() as f32);
+        input.take()
+    }
 }
 
 impl OpenWindow {

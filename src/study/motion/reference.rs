@@ -29,7 +29,8 @@ pub struct MotionReference {
     /// Largest distance of the path from its start, m; errors are relative to it.
     pub size: f64,
     /// Own error, percent of the size: a third, according to second-order convergence, of the change of the path with
-    /// steps of twice the length, plus a third of its change with half as many cells in each direction.
+    /// steps of twice the length, plus a third of its change with half as many cells in each direction; of a body that is
+    /// not slender, the whole of that change, because its corners let it converge more slowly.
     pub error_percent: f64,
     /// Time step, s.
     pub time_step: f64,
@@ -111,7 +112,8 @@ impl MotionReference {
         };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
-        reference.error_percent = (of_mesh + of_step) / 3.0;
+        let order_of_mesh = if is_slender(scene) { 3.0 } else { 1.0 };
+        reference.error_percent = of_mesh / order_of_mesh + of_step / 3.0;
         Ok(reference)
     }
 
@@ -157,13 +159,41 @@ struct ReferenceMesh {
     cells: Option<[u32; 2]>,
 }
 
+/// Returns the longer side of a scene's beam relative to the shorter one; `None` for a mesh file.
+fn slenderness(scene: &Scene) -> Option<f64> {
+    let beam = scene.beam.as_ref()?;
+    let ratio = beam.length / beam.height;
+    Some(ratio.max(1.0 / ratio))
+}
+
+/// Returns `true` for a beam whose length is several times its height.
+fn is_slender(scene: &Scene) -> bool {
+    const SLENDER: f64 = 5.0;
+    slenderness(scene).is_some_and(|ratio| ratio >= SLENDER)
+}
+
+/// Returns the cells of the reference's mesh, for a beam at least as many as its shape requires: on one cell across, the
+/// path converges to another one.
+fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
+    /// Smallest number of nodes across, smallest number along per height, and the number along that always suffices.
+    const ACROSS: f64 = 4.0;
+    const PER_HEIGHT: f64 = 8.0;
+    const ALONG: f64 = 80.0;
+    let (own, beam) = (cells(scene, element, factor)?, scene.beam.as_ref()?);
+    let along = (PER_HEIGHT * slenderness(scene)?).min(ALONG);
+    let least = if beam.length >= beam.height { [along, ACROSS] } else { [ACROSS, along] };
+    let pieces = element.entry().degree() as f64;
+    Some([0, 1].map(|i| own[i].max((least[i] / pieces).ceil() as u32)))
+}
+
 /// Returns the mesh with half as many cells in each direction, and the fine mesh.
 fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> {
     let element = finest_element(scene);
-    let with = |factor: f64| {
+    let fine = reference_cells(scene, element, plan.reference_mesh);
+    let with = |cells: Option<[u32; 2]>| {
         let setting = MotionSetting {
             element,
-            cells: cells(scene, element, factor),
+            cells,
             integrator: IntegratorKind::EnergyMomentum,
             method: MethodKind::Newton,
             time_step: scene.dynamics.time_step,
@@ -172,7 +202,8 @@ fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> 
         let scene = setting.apply(scene);
         Ok::<_, StudyError>(ReferenceMesh { system: system_of(&scene)?, scene, cells: setting.cells })
     };
-    let (coarse, mut fine) = (with(0.5 * plan.reference_mesh)?, with(plan.reference_mesh)?);
+    let half = fine.map(|cells| cells.map(|n| n.div_ceil(2)));
+    let (coarse, mut fine) = (with(half)?, with(fine)?);
     if scene.beam.is_none() {
         let mesh: &Mesh = fine.system.mesh();
         if mesh.element_count() > MAX_ELEMENTS {

@@ -117,6 +117,19 @@ impl Measured {
         }
     }
 
+    /// Returns the warning that a setting stops an iteration that does not converge when it runs on.
+    pub(crate) fn runs_away(&self, choice: &Choice) -> Option<String> {
+        match (self, choice) {
+            (Self::Rest(study), Choice::Rest(m)) => runs_away(study, m),
+            _ => None,
+        }
+    }
+
+    /// Returns the fastest of these settings whose iteration converges when it runs on.
+    pub(crate) fn fastest(&self, choices: &[Choice]) -> Option<Choice> {
+        choices.iter().find(|choice| self.runs_away(choice).is_none()).copied()
+    }
+
     /// Describes the unknowns and the parts of the error of a setting.
     pub(crate) fn parts(&self, choice: &Choice) -> String {
         match (self, choice) {

@@ -117,9 +117,13 @@ impl Budget {
         }
     }
 
-    /// Returns the fastest measured setting of a body at rest that meets the limits.
+    /// Returns the fastest measured setting of a body at rest that meets the limits, and whose iteration converges.
     pub(crate) fn chosen(&self) -> Option<Setting> {
-        self.study()?.ranking().meeting(self.limits.into()).first().map(|m| m.setting)
+        let study = self.study.as_ref()?;
+        match study.fastest(&study.meeting(self.limits.into()))? {
+            Choice::Rest(m) => Some(m.setting),
+            Choice::Motion(_) => None,
+        }
     }
 
     /// Sets a study made elsewhere.
@@ -214,7 +218,7 @@ struct BudgetView<'a> {
 }
 
 /// Width of the list, points, and its largest fraction of the width shared with the plot.
-const LIST_WIDTH: f32 = 384.0;
+const LIST_WIDTH: f32 = 480.0;
 const LIST_SHARE: f32 = 0.5;
 /// Smallest width of the list beside the plot, points; in a narrower window the plot is under the list.
 const SIDE_BY_SIDE: f32 = 560.0;
@@ -277,7 +281,7 @@ fn settings(
     let time = NumberField {
         label: "Time ≤",
         tooltip: "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame \
-                  lasts 16 ms).",
+                  lasts 16.7 ms).",
         limit: limits::BUDGET_MS,
         slider: 1e-3..=1e3,
         scale: SliderScale::Logarithmic(1e-3),
@@ -301,15 +305,15 @@ fn settings(
     });
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
-        let best = meeting.first().copied();
+        let best = budget.study.and_then(|study| study.fastest(meeting));
         let apply = ui.add_enabled(best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
-        let apply = apply.on_hover_text(tr("Use the fastest setting that meets both limits")).on_disabled_hover_text(
-            tr(match (budget.study, budget.current) {
+        let apply = apply
+            .on_hover_text(tr("Use the fastest setting that meets both limits, and whose iteration converges"))
+            .on_disabled_hover_text(tr(match (budget.study, budget.current) {
                 (None, _) => "Nothing measured yet: it takes about a minute.",
                 (Some(_), true) => "No measured setting meets both limits",
                 (Some(_), false) => "The body or its load has changed since.",
-            }),
-        );
+            }));
         if let (true, Some(best)) = (apply.clicked(), best) {
             actions.push(best.action(budget.scene));
         }
@@ -318,6 +322,13 @@ fn settings(
             Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
             None if measured > 0 && meeting.is_empty() => {
                 fill!("None of %{measured} settings meets both; nearest:", measured = measured)
+            }
+            None if meeting.iter().any(|m| budget.study.is_some_and(|study| study.runs_away(m).is_some())) => {
+                fill!(
+                    "%{n} of %{measured} settings meet both; *: does not converge",
+                    n = meeting.len(),
+                    measured = measured
+                )
             }
             None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
         });
@@ -333,7 +344,8 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
     let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
     area.show_rows(ui, row_height, listed.len(), |ui, rows| {
         for m in listed.get(rows).unwrap_or_default() {
-            let text = format!("{:>7} {:>7}  {}", milliseconds(m), bound_percent(error(m)), m.text());
+            let mark = budget.study.and_then(|study| study.runs_away(m)).map_or(' ', |_| '*');
+            let text = format!("{:>7} {:>7}{mark} {}", milliseconds(m), bound_percent(error(m)), m.text());
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
@@ -368,12 +380,11 @@ fn place(study: &Measured, m: &Choice) -> [f64; 2] {
     [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
 }
 
-/// Shows the key of colours and shapes in one line, because the plot has no room for a legend.
+/// Shows the key of colours and shapes above the plot, which has no room for a legend.
 fn legend(ui: &mut Ui, moves: bool) {
     let palette = Palette::new(ui.visuals());
-    ui.horizontal(|ui| {
-        ui.add_space(56.0);
-        ui.spacing_mut().item_spacing.x = 10.0;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
         let methods = METHODS.iter().map(|m| (m.id, palette.method(m.kind)));
         let integrators = INTEGRATORS.iter().map(|i| (i.id, palette.integrator(i.kind)));
         let names: Vec<_> = if moves { integrators.collect() } else { methods.collect() };
@@ -382,7 +393,7 @@ fn legend(ui: &mut Ui, moves: bool) {
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
         let text = RichText::new(fill!("%{shapes}; line: Pareto front", shapes = shapes)).small();
-        ui.add(egui::Label::new(text).truncate());
+        ui.label(text);
     });
 }
 
@@ -473,8 +484,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             if let Some(error) = budget.demand.max_error_percent {
                 plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
             }
-            if let Some(best) = budget.meeting.first() {
-                let ring = Points::new(tr("fastest"), vec![place(best)]).color(text).filled(false).radius(8.0);
+            if let Some(best) = budget.study.and_then(|study| study.fastest(&budget.meeting)) {
+                let ring = Points::new(tr("fastest"), vec![place(&best)]).color(text).filled(false).radius(8.0);
                 plot.points(ring);
             }
         });

@@ -245,11 +245,17 @@ impl MotionCompare {
 
     /// Fits the camera to all states of the bodies so far, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &PaneInput<'_>) {
+        /// Distance up to which the camera follows points, in sizes of the body.
+        const LARGEST_REACH: f64 = 3.0;
         let Some(size) = self.panes.common_size() else { return };
         let Some(first) = self.panes().iter().find_map(MotionPane::simulation) else { return };
-        let rest = first.system().mesh().bounds().into();
+        let rest: [Vector2<f64>; 2] = first.system().mesh().bounds().into();
+        // The states of a motion that is about to explode would hide the others.
+        let reach = LARGEST_REACH * (rest[1] - rest[0]).norm();
+        let is_near = |p: &&Vector2<f64>| (*p - rest[0]).norm() < reach;
         let sound = self.panes.list.iter().filter(|pane| pane.motion.is_sound());
-        let swept = sound.flat_map(|pane| pane.display.body_mesh.points()).fold(self.swept.unwrap_or(rest), grow);
+        let points = sound.flat_map(|pane| pane.display.body_mesh.points()).filter(is_near);
+        let swept = points.fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
         let holds = self.panes.holds();
         let controller = self.panes.controller.get_or_insert_with(|| CameraController::new(rest));

@@ -29,16 +29,19 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     }
     let outline =
         shown.input.reference.filter(|_| shown.input.simulation.is_at_rest()).map(|reference| &reference.outline);
-    let exact = outline.map(|lines| {
+    let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
         let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
     });
     row(ui, &palette, "reference", exact, palette.exact);
     let linear = Some(shown.input.simulation).filter(|_| method == MethodKind::Linear).or(shown.input.linear);
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
-        let [angle_text, growth] = [number(three_digits(angle)), percent(100.0 * angle * angle)];
-        let text =
-            fill!("linear: \u{3b8} up to %{angle} rad, \u{3b8}\u{b2} = %{growth}", angle = angle_text, growth = growth);
+        let text = fill!(
+            "linear: \u{3b8} up to %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",
+            angle = number(three_digits(angle)),
+            drawn = number(three_digits(angle.atan().to_degrees())),
+            growth = percent(100.0 * angle * angle)
+        );
         ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
     }
     ui.add_space(6.0);

@@ -174,7 +174,7 @@ pub(crate) const CARDS: &[Card] = &[
         formula: &["A = \u{3a3} R K_{e} R^{T}", "b = \u{3a3} R K_{e} X"],
         symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f with \
                   index int: internal forces, of all triangles; with index e: of one. r: residual, the share of the \
-                  forces that is out of balance; \u{3a3} | f | adds the magnitudes at every node.",
+                  forces that is out of balance; \u{3a3} | f | adds the absolute values of each component at every node.",
         task: "Press \u{201c}Next line\u{201d} (N) and follow the numbers.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),
@@ -197,7 +197,7 @@ pub(crate) const CARDS: &[Card] = &[
                 residual by \u{3c1}.",
         formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
         symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
-                  iteration converges.",
+                  iteration converges from a start that is near enough.",
         task: "Press \u{201c}Step once\u{201d} (N) again and again: after a few steps the points fall along the line.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, NEAR),

@@ -74,10 +74,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked + 1, angle = angle));
     let s = triangle.stretch;
     ui.label(fill!(
-        "strain \u{3b5}: along %{along}, across %{across}, shear %{shear}",
+        "strain \u{3b5}: along %{along}, across %{across}, shear \u{3b3} %{shear}",
         along = signed_percent(s.m11 - 1.0),
         across = signed_percent(s.m22 - 1.0),
-        shear = signed_percent(s.m12),
+        shear = signed_percent(2.0 * s.m12),
     ));
     ui.label(small(tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.")));
 }

@@ -186,6 +186,11 @@ impl Learn {
         (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
+    /// Returns `true` if the card iterates when the user starts it.
+    pub(crate) fn waits_for_steps(&self) -> bool {
+        self.card().setup.start == cards::CardStart::Waiting
+    }
+
     /// Returns `true` if the card shows ρ at the equilibrium.
     pub(crate) fn shows_rho(&self) -> bool {
         self.card().needs == Needs::Rho

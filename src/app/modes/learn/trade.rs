@@ -115,5 +115,5 @@ fn cell(ui: &mut Ui, palette: &Palette, best: Option<&Best>) {
         error = bound_percent(*bound)
     );
     let tip = std::iter::once(tip).chain(runs_away.clone()).collect::<Vec<_>>().join("\n");
-    ui.label(RichText::new(text).color(color)).on_hover_text(tip);
+    ui.add(egui::Label::new(RichText::new(text).color(color)).extend()).on_hover_text(tip);
 }
