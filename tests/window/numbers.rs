@@ -297,7 +297,7 @@ fn settings_have_the_errors_of_study() {
         assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));
         let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
         let bound: f64 = row[column("at_most_percent")].parse().unwrap();
-        (format!("{time:>7} {:>7}  {}", bound_percent(bound), m.setting), bound)
+        (format!("{time:>7} \u{2264} {:>6}  {}", bound_percent(bound), m.setting), bound)
     });
     let texts: Vec<(String, f64)> = texts.collect();
     let mut lab = lab_of("article", scene.clone());

@@ -19,17 +19,17 @@ type MenuEntry = (String, Scene);
 
 /// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the scene that
 /// was chosen. Objects within `near`, m, can be removed; new loads have the usual magnitude of a scene with the loads
-/// `opening`.
+/// `present`.
 pub(crate) fn show(
     response: &Response,
     (scene, system): (&Scene, &System),
     (at, near): (Vector2<f64>, f64),
-    opening: OpeningLoads,
+    present: OpeningLoads,
 ) -> Option<Scene> {
     let mut chosen = None;
     response.context_menu(|ui: &mut Ui| {
         let edge = nearest_edge_for_moment(system, at);
-        let added = additions(scene, system, (at, edge), opening);
+        let added = additions(scene, system, (at, edge), present);
         let entries = added.into_iter().chain(removals(scene, (at, near), edge));
         for (text, edited) in entries {
             if ui.button(text).clicked() {
@@ -90,11 +90,11 @@ fn additions(
     scene: &Scene,
     system: &System,
     (at, edge): (Vector2<f64>, Option<&str>),
-    opening: OpeningLoads,
+    present: OpeningLoads,
 ) -> Vec<MenuEntry> {
     let mesh = system.mesh();
     let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
-    let [usual, _] = force_range(opening, &scene.material, system);
+    let [usual, _] = force_range(present, &scene.material, system);
     let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual]);
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
@@ -105,7 +105,7 @@ fn additions(
     .map(|(text, scene)| (tr(text).to_owned(), scene))
     .to_vec();
     if let Some(edge) = edge {
-        let [usual, _] = moment_range(opening, &scene.material, system);
+        let [usual, _] = moment_range(present, &scene.material, system);
         let text = fill!("Add a moment on %{edge}", edge = tr(edge));
         entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual)))));
     }

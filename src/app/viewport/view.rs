@@ -442,8 +442,8 @@ impl BodyView {
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
-        let opening = OpeningLoads::of(&content.session.document().opened);
-        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), opening)
+        let present = OpeningLoads::of(scene);
+        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), present)
     }
 
     /// Returns the loads of the last frame's arrows.
