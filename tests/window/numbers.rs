@@ -297,7 +297,8 @@ fn settings_have_the_errors_of_study() {
         assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));
         let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
         let bound: f64 = row[column("at_most_percent")].parse().unwrap();
-        (format!("{time:>7} \u{2264} {:>6}  {}", bound_percent(bound), m.setting), bound)
+        let at_most = format!("\u{2264}{}", bound_percent(bound));
+        (format!("{time:>7}  {at_most:>8}  {}", m.setting), bound)
     });
     let texts: Vec<(String, f64)> = texts.collect();
     let mut lab = lab_of("article", scene.clone());
@@ -320,7 +321,7 @@ fn settings_have_the_errors_of_study() {
     let at_most = at_most.map(|bound| bound.trim_end_matches('*')).collect::<Vec<_>>();
     assert!(!at_most.is_empty(), "{:?}", shown.0);
     for bound in at_most {
-        assert!(texts.iter().any(|(text, _)| text.contains(&format!(" {bound}  "))), "{bound}: {texts:?}");
+        assert!(texts.iter().any(|(text, _)| text.contains(&format!("\u{2264}{bound}  "))), "{bound}: {texts:?}");
     }
     let scene = scene.with_method(MethodKind::Newton);
     let own = written.iter().find(|(row, m)| m.is_applied_to(&scene) && row[column("converged")] == "true");

@@ -345,7 +345,8 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
     area.show_rows(ui, row_height, listed.len(), |ui, rows| {
         for m in listed.get(rows).unwrap_or_default() {
             let mark = budget.study.and_then(|study| study.runs_away(m)).map_or(' ', |_| '*');
-            let text = format!("{:>7} \u{2264} {:>6}{mark} {}", milliseconds(m), bound_percent(error(m)), m.text());
+            let bound = format!("\u{2264}{}", bound_percent(error(m)));
+            let text = format!("{:>7}  {bound:>8}{mark} {}", milliseconds(m), m.text());
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
