@@ -637,8 +637,8 @@ fn at(scene: &Scene, factor: f64) -> Scene {
 
 /// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection; the
 /// last result is that at the end, if `solve` has one there. Each solve starts from rest, as `warpbeam solve` does.
-/// `solve` receives the index of the load among `factors`, or `None` for another load. `report` receives the strip so far after
-/// each load.
+/// `solve` receives the index of the load among `factors`, or `None` for another load. `report` receives the strip so far
+/// after each load.
 fn follow(
     mut strip: Strip,
     factors: &[(usize, f64)],
@@ -664,7 +664,8 @@ fn follow(
     Ok(strip)
 }
 
-/// Adds results where the error grows too much between two loads to be interpolated, unless `is_costly` of the larger one.
+/// Adds results where the error grows too much between two loads to be interpolated, unless the reference at the larger
+/// one `is_costly`.
 fn refine(
     mut strip: Strip,
     solve: &dyn Fn(Option<usize>, f64) -> Result<Option<LimitPoint>, StudyError>,
@@ -764,6 +765,35 @@ mod tests {
         let column = column.force("right", [-0.5 * euler, 0.0]).probe("tip", "right");
         let critical = super::critical(&column, &|_| std::ops::ControlFlow::Continue(())).unwrap();
         assert!((0.5 * critical - 1.0).abs() < 0.02, "{critical}");
+    }
+
+    /// Next to buckling the limits of a strip are those of single solves, also of a method that stops to converge there.
+    #[test]
+    fn limits_near_buckling_are_those_of_single_solves() {
+        let euler = std::f64::consts::PI.powi(2) * 1e6 * 0.5f64.powi(3) / 12.0 / 400.0;
+        let column = Scene::beam(10.0, 0.5).with_cells(10, 1).with_element(ElementKind::Q4).clamp("left");
+        let column = column.force("right", [-euler, -1e-3 * euler]).probe("tip", "right");
+        let limits = MethodLimits::of(&column, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+        let error = |strip: &Strip, factor: f64| {
+            let mut scene = at(&column, factor).with_method(strip.method);
+            scene.set_element(strip.element);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            let probe = simulation.probe("tip").unwrap();
+            let reference = Reference::of(&at(&column, factor)).unwrap().first().unwrap();
+            reference.error_bound(error_percent(probe, reference.displacement).unwrap())
+        };
+        let mut checked = 0;
+        for strip in limits.strips.iter().filter(|strip| strip.element == ElementKind::Q4) {
+            let Some(factor) = strip.within(USABLE).filter(|factor| *factor > 0.5) else { continue };
+            let [below, above] = [0.97, 1.03].map(|part| error(strip, part * factor));
+            assert!(below < 1.2 * USABLE && above > USABLE / 1.2, "{:?} {factor}: {below} {above}", strip.method);
+            checked += 1;
+        }
+        assert!(checked >= 1);
+        let warped = limits.strips.iter().find(|strip| strip.method == MethodKind::Warped && strip.ends_at.is_some());
+        let warped = warped.unwrap();
+        assert_eq!(warped.points.last().map(|point| point.factor), warped.ends_at, "the error is known at the end");
     }
 
     /// A strip that is never within 5 % ends with the load up to which the method converges.

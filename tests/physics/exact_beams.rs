@@ -2,7 +2,9 @@
 
 use crate::common::{scene, scene_with};
 use nalgebra::Vector2;
+use warpbeam::Scene;
 use warpbeam::exact_beam::{ClampedBeam, ExactBeam};
+use warpbeam::study::LoadCurve;
 
 /// Returns a beam with ν = 0, unit length and unit bending stiffness.
 fn beam(length_over_height: f64) -> ClampedBeam {
@@ -107,4 +109,15 @@ fn scenes_with_an_exact_solution_are_recognised() {
     }
     // The exact beam has its load at the free end; a load at another place has none.
     assert_eq!(ExactBeam::of(&scene_with("cantilever", &["load.0.edge=top"])), None);
+}
+
+/// The strain along a load curve is that of normal force and bending moment at the clamp.
+#[test]
+fn strains_of_a_curve_count_the_normal_force() {
+    let bar = Scene::beam(10.0, 1.0).clamp("left").force("right", [1e3, -1.0]).probe("tip", "right");
+    let curve = LoadCurve::new(&bar).unwrap();
+    let full = curve.samples.iter().find(|sample| (sample.factor - 1.0).abs() < 1e-9).unwrap();
+    // N/EA = 1e-3; M = 10 N m, less what the tension takes.
+    let bending = 0.5 * 10.0 / (1e6 / 12.0);
+    assert!(full.strain > 1e-3 + 0.5 * bending && full.strain < 1e-3 + bending, "{}", full.strain);
 }

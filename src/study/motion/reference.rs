@@ -112,8 +112,8 @@ impl MotionReference {
         };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
-        let order_of_mesh = if is_slender(scene) { 3.0 } else { 1.0 };
-        reference.error_percent = of_mesh / order_of_mesh + of_step / 3.0;
+        let part_of_mesh = if is_slender(scene) { 1.0 / 3.0 } else { 1.0 };
+        reference.error_percent = part_of_mesh * of_mesh + of_step / 3.0;
         Ok(reference)
     }
 
