@@ -10,7 +10,7 @@ pub mod registry;
 mod required;
 mod rust_code;
 
-#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
+#[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use mesh::built_in_mesh;
 pub use open::{STANDARD_INPUT, Source, locate, open};
 
