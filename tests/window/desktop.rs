@@ -582,18 +582,6 @@ fn edits_survive_a_destroyed_window() {
     assert_ne!(scene().unwrap(), first);
 }
 
-/// Another program destroys the window while it draws one frame after the other.
-#[test]
-fn a_moving_window_can_be_destroyed() {
-    let Some(desktop) = Desktop::start() else { return };
-    for _ in 0..3 {
-        let mut window = Window::open(&desktop, &["run", "jelly"]);
-        desktop.xdotool(&["windowclose", &window.id]);
-        let status = window.process.wait().unwrap();
-        Window::check_end(&(status.code(), window.said()));
-    }
-}
-
 /// Returns the number of pictures of a GIF file and its duration, s; `None` while the file is incomplete.
 fn movie(path: &std::path::Path) -> Option<(usize, f64)> {
     let bytes = std::fs::read(path).ok().filter(|bytes| bytes.last() == Some(&0x3b))?;
