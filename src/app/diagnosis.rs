@@ -15,6 +15,13 @@ use crate::study::{Advice, Claim, FOLDS, Reference, moved_points};
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
                                     initial state, loads and grabs";
 
+/// Returns the energy drift of a motion relative to the energy put in; `None` at rest, and of a motion that has stopped,
+/// whose energies have no meaning.
+pub(crate) fn drift(simulation: &Simulation) -> Option<f64> {
+    let motion = simulation.motion().filter(|_| !matches!(simulation.status(), Status::Stopped(_)))?;
+    Some(motion.ledger().drift_of_input())
+}
+
 /// Main source of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ErrorSource {

@@ -412,7 +412,7 @@ impl MethodLimits {
             .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)));
         let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
         let critical = critical(scene, &|_: Progress<'_>| observe(Progress::at(0.0)));
-        let factors: Vec<(usize, f64)> = factors(critical).into_iter().enumerate().collect();
+        let factors = factors(critical);
         let all = (factors.len() + settings.len()) as f64;
         let so_far = SoFar::new(
             partial,
@@ -420,13 +420,13 @@ impl MethodLimits {
                 range: RANGE,
                 duration: None,
                 critical,
-                reference: factors.iter().map(|&(_, factor)| (factor, None)).collect(),
+                reference: factors.iter().map(|&factor| (factor, None)).collect(),
                 strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
             },
         );
         let references = References { scene, known: Mutex::default() };
         all_done(parallel::map(
-            &factors,
+            &factors.iter().copied().enumerate().collect::<Vec<_>>(),
             |&(i, factor), observe| {
                 let known = references.at(factor, observe)?;
                 let displacement = known.map(|known| known.displacement);
@@ -446,7 +446,7 @@ impl MethodLimits {
                     let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
                     check(flow).map(|()| Some(simulation).filter(|s| *s.status() == Status::Converged))
                 };
-                let point = |_, factor: f64| {
+                let point = |factor: f64| {
                     let Some(solved) = solve(factor)? else { return Ok(None) };
                     let problem = solved.problem();
                     let probe = problem.probes().first();
@@ -477,11 +477,11 @@ impl MethodLimits {
         let study = StepStudy::new(scene, &|progress| {
             observe(Progress { fraction: REFERENCE * progress.fraction, ..progress })
         })?;
-        let (powers, factors): (Vec<i32>, Vec<f64>) = study.steps().into_iter().unzip();
+        let steps = study.steps();
+        let factors: Vec<f64> = steps.iter().map(|&(_, factor)| factor).collect();
         let (Some(&first), Some(&last)) = (factors.first(), factors.last()) else {
             return Err(StudyError::NoReference);
         };
-        let factors: Vec<(usize, f64)> = factors.into_iter().enumerate().collect();
         let strips = INTEGRATORS.iter().map(|entry| Strip { integrator: Some(entry.kind), ..Strip::new(scene) });
         let mut settings: Vec<(usize, (IntegratorKind, Strip))> =
             INTEGRATORS.iter().map(|entry| entry.kind).zip(strips).enumerate().collect();
@@ -499,8 +499,9 @@ impl MethodLimits {
         all_done(parallel::map(
             &settings,
             |(row, (integrator, strip)), observe| {
-                let point = |i: Option<usize>, factor: f64| {
-                    let Some(&power) = i.and_then(|i| powers.get(i)) else { return Ok(None) };
+                // Only paths with steps of powers of two have the samples of the reference.
+                let point = |factor: f64| {
+                    let Some(&(power, _)) = steps.iter().find(|(_, own)| *own == factor) else { return Ok(None) };
                     let solved = study.solve(*integrator, power, observe)?;
                     Ok(solved.map(|StepResult { displacement, error_percent, max_strain, inverted_elements }| {
                         let error_percent = Some(error_percent);
@@ -637,22 +638,21 @@ fn at(scene: &Scene, factor: f64) -> Scene {
 
 /// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection; the
 /// last result is that at the end, if `solve` has one there. Each solve starts from rest, as `warpbeam solve` does.
-/// `solve` receives the index of the load among `factors`, or `None` for another load. `report` receives the strip so far
-/// after each load.
+/// `report` receives the strip so far after each load.
 fn follow(
     mut strip: Strip,
-    factors: &[(usize, f64)],
-    solve: &dyn Fn(Option<usize>, f64) -> Result<Option<LimitPoint>, StudyError>,
+    factors: &[f64],
+    solve: &dyn Fn(f64) -> Result<Option<LimitPoint>, StudyError>,
     converges: &dyn Fn(f64) -> Result<bool, StudyError>,
     report: &dyn Fn(&Strip),
 ) -> Result<Strip, StudyError> {
-    for &(i, factor) in factors {
-        let Some(point) = solve(Some(i), factor)? else {
+    for (i, &factor) in factors.iter().enumerate() {
+        let Some(point) = solve(factor)? else {
             let reached = strip.points.last().map_or(0.0, |point| point.factor);
             let end = end_between([reached, factor], converges)?;
             strip.ends_at = Some(end);
             if end > reached {
-                strip.points.extend(solve(None, end)?);
+                strip.points.extend(solve(end)?);
             }
             break;
         };
@@ -668,7 +668,7 @@ fn follow(
 /// one `is_costly`.
 fn refine(
     mut strip: Strip,
-    solve: &dyn Fn(Option<usize>, f64) -> Result<Option<LimitPoint>, StudyError>,
+    solve: &dyn Fn(f64) -> Result<Option<LimitPoint>, StudyError>,
     is_costly: &dyn Fn(f64) -> bool,
 ) -> Result<Strip, StudyError> {
     for percent in [GOOD, USABLE] {
@@ -677,7 +677,7 @@ fn refine(
             if is_costly(to) {
                 break;
             }
-            let Some(point) = solve(None, (from * to).sqrt())? else { break };
+            let Some(point) = solve((from * to).sqrt())? else { break };
             strip.points.insert(next, point);
         }
     }

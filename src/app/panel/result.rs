@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, equilibrium_text, error_tip, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, equilibrium_text, error_tip, rho, stability};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -200,9 +200,8 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     let joules = |value: f64| engineering(value, "J");
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
-    let has_stopped = matches!(input.simulation.status(), Status::Stopped(_));
-    let drift = if has_stopped { UNKNOWN.to_owned() } else { percent(100.0 * ledger.drift_of_input()) };
-    row("Drift", drift, DRIFT_TIP);
+    let drift = drift(input.simulation);
+    row("Drift", drift.map_or_else(|| UNKNOWN.to_owned(), |drift| percent(100.0 * drift)), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }

@@ -1,6 +1,6 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, error_color, error_tip, is_large, rho, rho_number};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, drift, error_color, error_tip, is_large, rho, rho_number};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,7 +18,6 @@ use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::format::{engineering, grouped, two_digits};
 use crate::scene::MethodKind;
 use crate::scene::Scene;
-use crate::simulation::{Motion, Status};
 
 /// In a status bar narrower than this, points, the numbers have no bars.
 const BARS: f32 = 820.0;
@@ -42,7 +41,7 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {
-            Some(motion) => of_motion(&palette, input, motion).into(),
+            Some(_) => of_motion(&palette, input).into(),
             None => of_solve(&palette, input, errors, view.raw),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -145,12 +144,11 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     entries
 }
 
-fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [BarNumber; 3] {
+fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let clock = &input.playback.clock;
-    let drift = motion.ledger().drift_of_input();
-    let has_stopped = matches!(input.simulation.status(), Status::Stopped(_));
+    let drift = drift(input.simulation);
     [
         BarNumber {
             name: "STEP",
@@ -174,10 +172,10 @@ fn of_motion(palette: &Palette, input: &Readout<'_>, motion: Motion<'_>) -> [Bar
         },
         BarNumber {
             name: "DRIFT",
-            value: if has_stopped { UNKNOWN.to_owned() } else { percent(100.0 * drift) },
+            value: drift.map_or_else(|| UNKNOWN.to_owned(), |drift| percent(100.0 * drift)),
             word: Cow::default(),
             tip: tr(DRIFT_TIP).to_owned(),
-            color: if drift.abs() > 0.05 && !has_stopped { palette.warning } else { palette.text },
+            color: if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text },
             ratio: None,
         },
     ]

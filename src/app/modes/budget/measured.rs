@@ -117,17 +117,17 @@ impl Measured {
         }
     }
 
-    /// Returns the warning that a setting stops an iteration that does not converge when it runs on.
-    pub(crate) fn runs_away(&self, choice: &Choice) -> Option<String> {
+    /// Returns `true` if the iteration of a setting converges when it runs on; a motion does not run on.
+    pub(crate) fn converges(&self, choice: &Choice) -> bool {
         match (self, choice) {
-            (Self::Rest(study), Choice::Rest(m)) => runs_away(study, m),
-            _ => None,
+            (Self::Rest(study), Choice::Rest(m)) => study.converges(m),
+            _ => true,
         }
     }
 
     /// Returns the fastest of these settings whose iteration converges when it runs on.
     pub(crate) fn fastest(&self, choices: &[Choice]) -> Option<Choice> {
-        choices.iter().find(|choice| self.runs_away(choice).is_none()).copied()
+        choices.iter().find(|choice| self.converges(choice)).copied()
     }
 
     /// Describes the unknowns and the parts of the error of a setting.

@@ -163,6 +163,7 @@ impl Budget {
             study,
             choices: study.map(Measured::choices).unwrap_or_default(),
             demand,
+            best: study.and_then(|study| study.fastest(&meeting)),
             nearest: study.filter(|_| meeting.is_empty()).map(|study| study.nearest(demand)).unwrap_or_default(),
             meeting,
             current: self.of.as_ref() == Some(&without_settings(scene)),
@@ -205,6 +206,8 @@ struct BudgetView<'a> {
     demand: Demand,
     /// Settings that meet the demand, fastest first.
     meeting: Vec<Choice>,
+    /// Fastest of them whose iteration converges when it runs on.
+    best: Option<Choice>,
     /// Settings listed if none meets the demand: see [`Measured::nearest`].
     nearest: Vec<Choice>,
     /// `true` if the study belongs to the lab's current body and loads.
@@ -305,8 +308,7 @@ fn settings(
     });
     let meeting = &budget.meeting;
     ui.horizontal(|ui| {
-        let best = budget.study.and_then(|study| study.fastest(meeting));
-        let apply = ui.add_enabled(best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
+        let apply = ui.add_enabled(budget.best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
         let apply = apply
             .on_hover_text(tr("Use the fastest setting that meets both limits, and whose iteration converges"))
             .on_disabled_hover_text(tr(match (budget.study, budget.current) {
@@ -314,7 +316,7 @@ fn settings(
                 (Some(_), true) => "No measured setting meets both limits",
                 (Some(_), false) => "The body or its load has changed since.",
             }));
-        if let (true, Some(best)) = (apply.clicked(), best) {
+        if let (true, Some(best)) = (apply.clicked(), budget.best) {
             actions.push(best.action(budget.scene));
         }
         let measured = budget.choices.len();
@@ -323,7 +325,7 @@ fn settings(
             None if measured > 0 && meeting.is_empty() => {
                 fill!("None of %{measured} settings meets both; nearest:", measured = measured)
             }
-            None if meeting.iter().any(|m| budget.study.is_some_and(|study| study.runs_away(m).is_some())) => {
+            None if meeting.iter().any(|m| budget.study.is_some_and(|study| !study.converges(m))) => {
                 fill!(
                     "%{n} of %{measured} settings meet both; *: does not converge",
                     n = meeting.len(),
@@ -344,7 +346,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
     let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
     area.show_rows(ui, row_height, listed.len(), |ui, rows| {
         for m in listed.get(rows).unwrap_or_default() {
-            let mark = budget.study.and_then(|study| study.runs_away(m)).map_or(' ', |_| '*');
+            let mark = if budget.study.is_none_or(|study| study.converges(m)) { ' ' } else { '*' };
             let bound = format!("\u{2264}{}", bound_percent(error(m)));
             let text = format!("{:>7}  {bound:>8}{mark} {}", milliseconds(m), m.text());
             let label = ui.add_enabled(
@@ -485,7 +487,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             if let Some(error) = budget.demand.max_error_percent {
                 plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
             }
-            if let Some(best) = budget.study.and_then(|study| study.fastest(&budget.meeting)) {
+            if let Some(best) = budget.best {
                 let ring = Points::new(tr("fastest"), vec![place(&best)]).color(text).filled(false).radius(8.0);
                 plot.points(ring);
             }
