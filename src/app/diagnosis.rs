@@ -112,7 +112,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Optio
     if !doubts.is_empty() {
         return Some(doubts.join(" · "));
     }
-    let off = input.reference?.beam_off_by_percent.filter(|_| !is_large(own))?;
+    let off = input.reference?.beam_off_by_percent.filter(|&off| !is_large(own) && error_level(off) > 0)?;
     Some(said(&Claim::BeamTheory { off_by_percent: off }))
 }
 
@@ -199,11 +199,16 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     if simulation.iterations() > 0 {
         add(count(simulation.iterations(), "iteration"));
     }
+    let runs_away = *simulation.status() == Status::Accepted && rho(input).is_some_and(|rho| rho > 1.0);
+    if runs_away {
+        add(tr("diverges if it runs on").to_owned());
+    }
     moved_points(simulation).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         path.claims().for_each(|claim| add(said(&claim)));
     }
-    (text, inside_out || stability(simulation) == Some(false))
+    let is_critical = input.path.and_then(|path| path.critical).is_some_and(|critical| critical.factor <= 1.0);
+    (text, inside_out || is_critical || runs_away || stability(simulation) == Some(false))
 }
 
 /// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
@@ -277,8 +282,8 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
     if *simulation.status() == Status::Accepted {
         lines.push(fill!(
-            "Accepted after %{iterations}, as the scene asks: the relative residual is %{residual}, the tolerance is \
-             %{asked}.",
+            "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is %{residual}, \
+             the tolerance is %{asked}. Reset begins at rest.",
             iterations = count(simulation.iterations(), "iteration"),
             residual = number(two_digits(simulation.residual())),
             asked = number(input.scene.solver.tolerance)
@@ -292,7 +297,9 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         ));
     }
     let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
-    if let Some(rho) = rho.filter(|_| !simulation.status().is_success()) {
+    if let Some(rho) =
+        rho.filter(|rho| !simulation.status().is_success() || *simulation.status() == Status::Accepted && *rho > 1.0)
+    {
         let n = rho_number(rho);
         lines.push(if rho > 1.0 {
             fill!(
@@ -352,12 +359,22 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         );
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }
-    if let Some(elsewhere) = input.path.and_then(|path| path.elsewhere) {
+    // Loading from rest would lead to an unstable equilibrium if the path buckles.
+    let elsewhere = input.path.and_then(|path| path.elsewhere).filter(|elsewhere| elsewhere.buckling.is_none());
+    if let Some(elsewhere) = elsewhere {
         let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
         return Some(Remedy { text, offer, action: Action::Reset });
     }
     let off = errors.own.filter(|&error| is_large(error))?;
     let off = percent(off);
+    if errors.source == Some(ErrorSource::MeshOrIteration) {
+        let mut scene = Box::new(scene.clone());
+        scene.solver.accept_after = 0;
+        let iterations = count(simulation.iterations(), "iteration");
+        let text = fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations);
+        let offer = tr("Iterate to the tolerance").to_owned();
+        return Some(Remedy { text, offer, action: Action::Edit("Accept after", scene) });
+    }
     if errors.source == Some(ErrorSource::Theory) {
         return Some(with_newton(fill!("%{error} error: linear theory holds for small rotations only.", error = off)));
     }

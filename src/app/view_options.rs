@@ -112,6 +112,8 @@ pub(crate) enum Toggle {
     Why,
     /// A mode; toggling the current mode returns to [`Mode::Explore`].
     Mode(Mode),
+    /// Load curve in [`Mode::Limits`].
+    Curve,
     Drawer(Drawer),
 }
 
@@ -119,8 +121,6 @@ pub(crate) enum Toggle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Drawer {
-    /// Load against deflection.
-    Curve,
     /// Energy, tip, phase and spectrum of a motion.
     Motion,
     /// Stress along the sections of the scene, and N, V and M along its beam.
@@ -131,25 +131,19 @@ impl Drawer {
     /// Returns the drawer that suits the analysis of `scene`.
     pub(crate) fn of(scene: &Scene) -> Self {
         match scene.analysis {
-            Analysis::Static => Self::Curve,
+            Analysis::Static => Self::Section,
             Analysis::Dynamic => Self::Motion,
         }
     }
 
     /// Returns `true` if the scene has what the drawer shows.
     pub(crate) fn suits(self, scene: &Scene) -> bool {
-        self == Self::of(scene) || self == Self::Section && scene.analysis == Analysis::Static
-    }
-
-    /// Returns this drawer if it suits a scene, else the one of the scene's analysis.
-    pub(crate) fn suited(self, scene: &Scene) -> Self {
-        if self.suits(scene) { self } else { Self::of(scene) }
+        self == Self::of(scene)
     }
 
     /// Returns the drawer's name and a description of its content.
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
-            Self::Curve => ("Load curve", "Load against deflection (L)"),
             Self::Section => ("Sections", "Stress along the sections, and N, V and M along the beam (Q)"),
             Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
         }
@@ -203,7 +197,9 @@ pub(crate) struct ViewOptions {
     pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
-    /// Quantities of the load curve; `None` means those that show most.
+    /// `true` if Limits shows the load curve in place of the strips.
+    pub curve: bool,
+    /// Quantities of the load curve; `None` means the default ones.
     pub curve_plot: Option<CurvePlot>,
     /// `true` if bars and panel are drawn; images may omit them.
     pub bars: bool,
@@ -235,6 +231,7 @@ impl Default for ViewOptions {
             mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
+            curve: false,
             curve_plot: None,
             bars: true,
             panel: true,
@@ -269,6 +266,10 @@ impl ViewOptions {
                 self.mode = if self.mode == mode { Mode::Explore } else { mode };
                 self.why = false;
             }
+            Toggle::Curve if self.mode == Mode::Limits && self.curve => {
+                (self.mode, self.curve) = (Mode::Explore, false)
+            }
+            Toggle::Curve => (self.mode, self.curve) = (Mode::Limits, true),
             // Plots are shown in Explore only: opening one from another mode switches to it.
             Toggle::Drawer(drawer) => {
                 let open = self.plots() == Some(drawer);
@@ -280,6 +281,11 @@ impl ViewOptions {
     /// Returns the drawer that is visible.
     pub(crate) fn plots(&self) -> Option<Drawer> {
         self.drawer.filter(|_| self.mode == Mode::Explore)
+    }
+
+    /// Returns `true` if the load curve of the scene is visible.
+    pub(crate) fn shows_curve(&self, scene: &Scene) -> bool {
+        self.mode == Mode::Limits && self.curve && scene.analysis == Analysis::Static
     }
 
     /// Returns `true` if the panel is visible.

@@ -58,7 +58,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     };
     let status = simulation.status().clone();
     let mut certify_path = Duration::ZERO;
-    if status == Status::Converged && certifies && !simulation.is_linear() {
+    if status == Status::Converged && certifies {
         let certified = Instant::now();
         path = LoadPath::to_result(&simulation, &|progress| watch.observe(progress));
         certify_path = certified.elapsed();

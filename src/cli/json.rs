@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde_json::{Map, Value, json};
 
 use super::solved::SolvedScene;
-use crate::scene::{Analysis, Place, Scene, Support};
+use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
 use crate::section::{Section, SectionPoint};
 use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
@@ -34,6 +34,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let sums = [("total", spent.solve()), ("wall", spent.wall())];
     let sums = sums.map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
     let time_us: Map<String, Value> = sums.into_iter().chain(parts).collect();
+    // Linear theory follows no path.
+    let followed = path.filter(|_| scene.solver.method != MethodKind::Linear);
     let mut object = json!({
         "scene": scene.name,
         "element": scene.element().id(),
@@ -42,13 +44,14 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "status": solution.status.id(),
         "reason": solution.status.failure(),
         "stable": certificate.stable,
-        "jumped": path.map(|path| path.jump.is_some()),
+        "jumped": followed.map(|path| path.jump.is_some()),
         "jumped_at": path.and_then(|path| path.jump).map(|jump| jump.factor),
         "buckles_at": path.and_then(|path| path.buckling).map(|buckling| buckling.factor),
+        "critical_at": path.and_then(|path| path.critical).map(|critical| critical.factor),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "load_fraction": (scene.analysis == Analysis::Static).then_some(solution.load_factor),
-        "on_path_from_rest": path.map(|path| path.elsewhere.is_none()),
+        "on_path_from_rest": followed.map(|path| path.elsewhere.is_none()),
         "residual": solution.residual,
         "residual_floor": solution.residual_floor,
         "fixed_point_rho": certificate.fixed_point_rho,

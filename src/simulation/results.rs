@@ -221,7 +221,7 @@ impl StressResult {
             // A stress of 0 does not grow with the mesh.
             singularity: largest
                 .filter(|(_, von_mises)| *von_mises > ROUNDING * material.young)
-                .and_then(|(node, _)| Singularity::at(problem, node)),
+                .and_then(|(node, _)| Singularity::near(problem, node)),
             largest: largest.map(|(node, von_mises)| LargestStress {
                 von_mises,
                 node,

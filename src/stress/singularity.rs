@@ -49,6 +49,14 @@ enum SideSupport {
 const CORNER: f64 = 0.6;
 
 impl Singularity {
+    /// Returns the cause of an unbounded stress at a node or at the others of its elements, to which the largest recovered
+    /// stress of a coarse mesh may belong; `None` if the stress is bounded.
+    #[must_use]
+    pub fn near(problem: &Problem, node: u32) -> Option<Self> {
+        let own = problem.system().mesh().elements().filter(|element| element.contains(&node));
+        std::iter::once(node).chain(own.flatten().copied()).find_map(|node| Self::at(problem, node))
+    }
+
     /// Returns the cause of an unbounded stress at a node; `None` if the stress is bounded.
     #[must_use]
     pub fn at(problem: &Problem, node: u32) -> Option<Self> {

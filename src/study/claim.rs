@@ -1,7 +1,7 @@
 //! Claims: the statements that results make, each with the numbers that prove it. Commands, reports and the window take
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
-use super::load_path::{Elsewhere, LoadPath, PathEnd, PathSummary};
+use super::load_path::{CriticalLoad, Elsewhere, LoadPath, PathEnd, PathSummary};
 use super::ranking::{Demand, Ranked, Ranking};
 use super::reference::{ProbeReference, Reference};
 use super::trade::Measurement;
@@ -68,6 +68,8 @@ pub enum Claim {
     Jumps(Jump),
     /// The path from rest loses or regains stability where another path crosses it.
     Buckles(Bifurcation),
+    /// The path from rest loses its stability above the load.
+    Critical(CriticalLoad),
     /// The path from rest leads to another equilibrium.
     Elsewhere(Elsewhere),
     /// The path from rest was not followed to the full load.
@@ -188,6 +190,7 @@ impl From<&Claim> for Sentence {
             Claim::Disturbance { rho, .. } => rho_text(*rho),
             Claim::Jumps(jump) => jump.into(),
             Claim::Buckles(bifurcation) => bifurcation.into(),
+            Claim::Critical(critical) => critical.into(),
             Claim::Elsewhere(elsewhere) => elsewhere.into(),
             Claim::Ends(end) => end.to_string().into(),
             Claim::LimitLoad { motion, reaction, rotates, is_regained } => {
@@ -267,6 +270,7 @@ impl Claim {
             Self::Disturbance { .. } => "disturbance",
             Self::Jumps(_) => "jumps",
             Self::Buckles(_) => "buckles",
+            Self::Critical(_) => "critical",
             Self::Elsewhere(_) => "elsewhere",
             Self::Ends(_) => "ends",
             Self::LimitLoad { .. } => "limit_load",
@@ -411,10 +415,13 @@ impl Claim {
 }
 
 impl PathSummary {
-    /// Returns the claims that the path jumps, buckles, or ends elsewhere than the result.
+    /// Returns the claims that the path jumps, buckles, is about to, or ends elsewhere than the result.
     pub fn claims(&self) -> impl Iterator<Item = Claim> {
-        let (jump, buckling) = (self.jump.map(Claim::Jumps), self.buckling.map(Claim::Buckles));
-        jump.into_iter().chain(buckling).chain(self.elsewhere.map(Claim::Elsewhere))
+        // The claim of another equilibrium has the buckling of the path from rest.
+        let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(Claim::Buckles);
+        let jump = self.jump.map(Claim::Jumps);
+        let critical = self.critical.map(Claim::Critical);
+        jump.into_iter().chain(buckling).chain(critical).chain(self.elsewhere.map(Claim::Elsewhere))
     }
 }
 

@@ -279,22 +279,9 @@ fn kind(load: &Load) -> (&'static str, &'static str, f64) {
     }
 }
 
-/// Returns `true` if displacements go along both axes: their path then says more than one component.
-#[must_use]
-pub fn leaves_the_axes(displacements: impl Iterator<Item = Vector2<f64>>) -> bool {
-    /// Part of the larger component below which the smaller one is not seen.
-    const SEEN: f64 = 0.05;
-    let [x, y] = largest_components(displacements);
-    x.min(y) > SEEN * x.max(y)
-}
-
 /// Returns the axis of the larger component: 0 is x.
 #[must_use]
 pub fn dominant_axis(displacements: impl Iterator<Item = Vector2<f64>>) -> usize {
-    let [x, y] = largest_components(displacements);
+    let [x, y] = displacements.fold([0.0_f64; 2], |[x, y], u| [x.max(u.x.abs()), y.max(u.y.abs())]);
     usize::from(y >= x)
-}
-
-fn largest_components(displacements: impl Iterator<Item = Vector2<f64>>) -> [f64; 2] {
-    displacements.fold([0.0_f64; 2], |[x, y], u| [x.max(u.x.abs()), y.max(u.y.abs())])
 }

@@ -272,6 +272,8 @@ impl Strip {
         let within = |percent: f64| match (self.within(percent), self.last_known()) {
             (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
             (Some(factor), _) => load(factor).into(),
+            // It does not converge beyond.
+            (None, Some((factor, _))) if self.ends_at == Some(factor) => load(factor).into(),
             (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),
             (None, None) => sentence!("not known"),
         };
@@ -286,13 +288,17 @@ impl Strip {
         [within(GOOD), within(USABLE), converges, law]
     }
 
-    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger at the smallest load;
+    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger near the smallest load;
     /// or the one from which it is within 5 %, or else up to which the method converges; `None` if there is no such load.
     /// `range` is that of the limits.
     #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
+        /// Ratio of the loads that are near the smallest one.
+        const NEAR: f64 = 2.0;
+        let is_far = |percent: &f64| self.within(*percent).is_none_or(|factor| factor > NEAR * range[0]);
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
-        let percent = [GOOD, USABLE].into_iter().find(holds);
+        let find = |is_told: &dyn Fn(&f64) -> bool| [GOOD, USABLE].into_iter().find(is_told);
+        let percent = find(&is_far).or_else(|| find(&holds));
         match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at) {
             (Some((percent, factor)), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))

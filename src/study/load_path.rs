@@ -63,6 +63,25 @@ impl std::fmt::Display for PathEnd {
 pub struct Elsewhere {
     /// Largest distance of a node from the result, m.
     pub distance: f64,
+    /// First bifurcation at which the path loses its stability: the result may be the branch that a body takes there.
+    pub buckling: Option<Bifurcation>,
+}
+
+/// Load next to the full load at which the path from rest loses its stability.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
+pub struct CriticalLoad {
+    /// Load factor; above 1 but under linear theory.
+    pub factor: f64,
+    /// Quantities that the load factor refers to.
+    pub drive: Drive,
+}
+
+impl From<&CriticalLoad> for Sentence {
+    fn from(critical: &CriticalLoad) -> Self {
+        let (percent, drive) = (engineering(100.0 * critical.factor, "%"), &critical.drive);
+        sentence!("becomes unstable at %{percent} of %{drive}", percent, drive)
+    }
 }
 
 /// Critical points of the load path from rest, and its end.
@@ -73,20 +92,29 @@ pub struct PathSummary {
     pub jump: Option<Jump>,
     /// First bifurcation at which the path loses its stability.
     pub buckling: Option<Bifurcation>,
+    /// Critical load next to the full load of a path that neither jumps nor buckles below. Linear theory does neither:
+    /// under it, this is the first critical load of the path, and may be below the full load.
+    pub critical: Option<CriticalLoad>,
     /// Work of moving supports, J; `None` if the path was not followed to the full load.
     pub supports_work: Option<f64>,
     /// End of the path, if it is not the result.
     pub elsewhere: Option<Elsewhere>,
 }
 
-displayed!(Elsewhere);
+displayed!(Elsewhere, CriticalLoad);
 
 impl From<&Elsewhere> for Sentence {
     fn from(elsewhere: &Elsewhere) -> Self {
-        sentence!(
-            "loading from rest leads to another equilibrium, %{distance} away",
-            distance = engineering(elsewhere.distance, "m")
-        )
+        let distance = engineering(elsewhere.distance, "m");
+        match &elsewhere.buckling {
+            None => sentence!("loading from rest leads to another equilibrium, %{distance} away", distance),
+            Some(Bifurcation { factor, drive, .. }) => sentence!(
+                "not on the path from rest, which is unstable above %{percent} of %{drive} and ends %{distance} away",
+                percent = engineering(100.0 * factor, "%"),
+                drive,
+                distance
+            ),
+        }
     }
 }
 
@@ -95,23 +123,43 @@ impl PathSummary {
         let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied();
         Self { jump, buckling, ..Self::default() }
     }
+
+    /// Returns the critical load of the path next to the load of a simulation under linear theory.
+    fn of_linear(simulation: &Simulation, observe: Observer<'_>) -> Self {
+        Self { critical: Self::default().critical_load(simulation, observe), ..Self::default() }
+    }
+
+    /// Returns the critical load next to the load of a simulation's scene: `None` if the path jumps or buckles below, or
+    /// cannot be followed to it.
+    fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<CriticalLoad> {
+        if self.jump.is_some() || self.buckling.is_some() {
+            return None;
+        }
+        let beyond = LoadPath::end_of(simulation, NEXT, observe)?.summary;
+        let events = [beyond.jump.map(|jump| jump.factor), beyond.buckling.map(|buckling| buckling.factor)];
+        let factor = NEXT * events.into_iter().flatten().reduce(f64::min)?;
+        (factor > 1.0 || simulation.is_linear())
+            .then(|| CriticalLoad { factor, drive: Drive::of(simulation.problem()) })
+    }
 }
 
 /// Critical points of the load path from rest, and the equilibrium at its end.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PathFromRest {
     summary: PathSummary,
-    /// Displacement of every node at the end, m.
-    end: Vec<Vector2<f64>>,
+    /// Displacement of every node at the end, m; `None` under linear theory, whose result is no equilibrium.
+    end: Option<Vec<Vector2<f64>>>,
 }
 
 impl PathFromRest {
     /// Compares a result, a displacement in m, with the end of the path.
     #[must_use]
     pub fn to(&self, result: &[Vector2<f64>]) -> PathSummary {
-        let distance = largest_distance(&self.end, result);
-        let is_elsewhere = distance > SAME * largest(&self.end).max(largest(result));
-        PathSummary { elsewhere: is_elsewhere.then_some(Elsewhere { distance }), ..self.summary }
+        let Some(end) = &self.end else { return self.summary };
+        let distance = largest_distance(end, result);
+        let is_elsewhere = distance > SAME * largest(end).max(largest(result));
+        let elsewhere = is_elsewhere.then_some(Elsewhere { distance, buckling: self.summary.buckling });
+        PathSummary { elsewhere, critical: self.summary.critical.filter(|_| !is_elsewhere), ..self.summary }
     }
 }
 
@@ -145,6 +193,8 @@ const INTEGRATED: u32 = 60;
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
 pub(super) const MAX_UNKNOWNS: usize = 6000;
+/// Part of the load up to which a critical load counts as next to it.
+const NEXT: f64 = 1.5;
 /// Largest distance between a result and the end of the path, relative to the largest displacement, at which both count
 /// as the same equilibrium.
 const SAME: f64 = 0.02;
@@ -163,20 +213,26 @@ impl LoadPath {
         Tracer::new(&simulation)?.trace(DRAWN, observe)
     }
 
-    /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion, linear
-    /// theory or a result that has not converged, if the model is too large, or if the path cannot be followed.
+    /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion or a
+    /// result that has not converged, if the model is too large, or if the path cannot be followed.
     #[must_use]
     pub fn to_result(simulation: &Simulation, observe: Observer<'_>) -> Option<PathSummary> {
         let search = simulation.equilibrium()?;
-        if !simulation.status().is_success() || simulation.is_linear() {
+        if !simulation.status().is_success() {
             return None;
         }
         let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
+        if simulation.is_linear() {
+            return is_small.then(|| PathSummary::of_linear(simulation, observe));
+        }
         let mut summary = match search.path_events() {
             Some(events) => PathSummary::of(events.jump, &events.bifurcations),
-            None if is_small => Self::end_of(simulation, observe)?.to(simulation.displacement()),
+            None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
             None => return None,
         };
+        if is_small && summary.critical.is_none() && summary.elsewhere.is_none() {
+            summary.critical = summary.critical_load(simulation, observe);
+        }
         if is_small && summary.elsewhere.is_none() && simulation.problem().supports().move_the_body() {
             let path = Tracer::new(simulation).and_then(|tracer| tracer.trace(INTEGRATED, observe));
             summary.supports_work = path.filter(|path| path.end.is_none()).map(|path| path.supports_work);
@@ -184,10 +240,11 @@ impl LoadPath {
         Some(summary)
     }
 
-    /// Follows the load path of a simulation's scene on its mesh; returns its critical points and the displacement at
-    /// its end, m; `None` if the path cannot be followed, or is cancelled.
-    fn end_of(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
+    /// Follows the load path of a simulation's scene on its mesh, to `part` of the load; returns its critical points and
+    /// the displacement at its end, m; `None` if the path cannot be followed, or is cancelled.
+    fn end_of(simulation: &Simulation, part: f64, observe: Observer<'_>) -> Option<PathFromRest> {
         let mut scene = simulation.scene().clone();
+        scene.scale_loads(part);
         scene.solver.method = MethodKind::Newton;
         scene.solver.accept_after = 0;
         scene.solver.max_iterations = MAX_SOLVES;
@@ -201,15 +258,22 @@ impl LoadPath {
         }
         let events = follower.equilibrium()?.path_events()?;
         let summary = PathSummary::of(events.jump, &events.bifurcations);
-        Some(PathFromRest { summary, end: follower.displacement().to_vec() })
+        Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
     }
 
-    /// Follows the load path of a scene to its end; `None` if the path cannot be followed, or is cancelled, or the
-    /// model is too large.
+    /// Follows the load path of a scene to its end; `None` for a motion, if the path cannot be followed, or is cancelled,
+    /// or the model is too large.
     #[must_use]
     pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
-        let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
-        (simulation.system().dofs() <= MAX_UNKNOWNS).then(|| Self::end_of(&simulation, observe))?
+        let simulation = (scene.analysis == Analysis::Static).then(|| Simulation::new(scene).ok())??;
+        let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
+        if simulation.is_linear() {
+            let summary = || PathSummary::of_linear(&simulation, observe);
+            return is_small.then(|| PathFromRest { summary: summary(), end: None });
+        }
+        let mut path = is_small.then(|| Self::end_of(&simulation, 1.0, observe))??;
+        path.summary.critical = path.summary.critical_load(&simulation, observe);
+        Some(path)
     }
 
     /// Summarizes the path.

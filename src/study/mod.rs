@@ -30,7 +30,9 @@ pub use claim::{Advice, Claim};
 pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
+pub use load_path::{
+    CriticalLoad, Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text,
+};
 pub use motion::MotionStudy;
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Ranked, Ranking};

@@ -78,6 +78,7 @@ fn json_has_every_field_of_the_contract() {
             "jumped",
             "jumped_at",
             "buckles_at",
+            "critical_at",
             "iterations",
             "load_steps",
             "load_fraction",

@@ -25,6 +25,24 @@ pub fn window(size: [f32; 2], lab: Lab) -> Harness<'static, Lab> {
     )
 }
 
+/// Runs frames until `done`, with a short sleep after each for background tasks; returns the number of frames.
+pub fn wait(harness: &mut Harness<'_, Lab>, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
+    for frame in 0..6000 {
+        if done(harness.state()) {
+            return frame;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+    }
+    unreachable!("{what}: never")
+}
+
+/// Runs frames until every displayed result is known, and shows it.
+pub fn settle(harness: &mut Harness<'_, Lab>) {
+    wait(harness, "a displayed result", |lab| !lab.is_computing());
+    harness.run_steps(3);
+}
+
 /// Folds of the panel, with the labels of their controls.
 const FOLDS: [(&str, &[&str]); 6] = [
     ("Gravity, moment: ", &["Gravity", "Moment"]),

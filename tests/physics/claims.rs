@@ -73,6 +73,14 @@ impl Claims {
     }
 }
 
+/// Returns the critical load factor next to the load.
+fn critical(claims: &[Claim]) -> Option<f64> {
+    claims.iter().find_map(|claim| match claim {
+        Claim::Critical(critical) => Some(critical.factor),
+        _ => None,
+    })
+}
+
 /// Returns the largest distance of a node between two displacements, m, relative to the largest displacement.
 fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     let largest = a.iter().chain(b).map(|u| u.norm()).fold(f64::MIN_POSITIVE, f64::max);
@@ -254,10 +262,30 @@ fn claims_near_critical_loads_are_true() {
                 for claim in &stated {
                     claims.check_result(claim, seed, &column);
                 }
+                // The same critical load is stated below it and by linear theory, and not far below it.
+                let is_near = |scene: Scene, expected: f64| {
+                    critical(&claims_of(&mut solved(&scene))).is_some_and(|at| (at / expected - 1.0).abs() < 1e-3)
+                };
+                let below = push(0.8 * at, 0.0).with_method(MethodKind::Newton);
+                let linear = push(1.0, 0.0).with_method(MethodKind::Linear);
+                let is_stated = is_near(below, 1.25) && is_near(linear, at);
+                let far = claims_of(&mut newton(push(0.6 * at, 0.0)));
+                claims.check("critical", seed, is_stated && critical(&far).is_none(), || format!("{at}: {far:?}"));
                 let helps = stated.contains(&Claim::Helps(Advice::Imperfection));
                 let mut helped = newton(push(1.0, 1e-4 * euler));
                 let is_stable = claims_of(&mut helped).contains(&Claim::Stable) && smallest_eigenvalue(&helped) > 0.0;
                 claims.check("helps", seed, helps && is_stable, || format!("{stated:?}"));
+                // A body that has buckled has left the path that is said to be unstable.
+                let mut left = Simulation::new(&push(1.0, 0.0).with_method(MethodKind::Newton)).unwrap();
+                left.start_from(helped.displacement()).unwrap();
+                left.solve();
+                if distance(left.displacement(), column.displacement()) > 0.05 && *left.status() == Status::Converged {
+                    let stated = claims_of(&mut left);
+                    let left = |claim: &Claim| matches!(claim, Claim::Elsewhere(path) if path.buckling.is_some());
+                    let buckles = |claim: &Claim| matches!(claim, Claim::Buckles(_));
+                    let is_true = stated.iter().any(left) && !stated.iter().any(buckles);
+                    claims.check("elsewhere", seed, is_true, || format!("{stated:?}"));
+                }
             }
             // Arches, loaded and moved at their crown.
             _ => {
@@ -295,12 +323,14 @@ fn claims_near_critical_loads_are_true() {
                 let below = claims_of(&mut newton(arch.force(crown, [0.0, -0.98 * reaction.abs()])));
                 let none = below.iter().all(|claim| !matches!(claim, Claim::Jumps(_)));
                 claims.check("does not jump", seed, none, || format!("{below:?}"));
+                let is_near = critical(&below).is_some_and(|at| (0.98 * at - 1.0).abs() < 1e-3);
+                claims.check("critical", seed, is_near, || format!("{below:?}"));
             }
         }
     }
     println!("{:?}", claims.checked);
     assert!(claims.wrong.is_empty(), "{:#?}", claims.wrong);
-    for kind in ["buckles", "helps", "unstable", "limit_load", "jumps", "does not jump"] {
+    for kind in ["buckles", "critical", "helps", "elsewhere", "unstable", "limit_load", "jumps", "does not jump"] {
         let checked = claims.checked.get(kind).copied().unwrap_or_default() as usize;
         assert!(checked >= count / 6, "{kind}: {claims:?}");
     }

@@ -94,11 +94,11 @@ fn axis_names(harness: &Harness<'_, Lab>) -> Vec<String> {
 fn the_path_and_both_components_can_be_chosen() {
     let mut harness = with_curve(scene_with("cantilever", &[FORCE]));
     harness.run();
-    assert_eq!(axis_names(&harness), ["u_x of tip", "u_y of tip"]);
-    for (button, expected) in [("u_x", "u_x of tip"), ("u_y", "u_y of tip")] {
+    assert_eq!(axis_names(&harness), ["force", "u_y of tip"]);
+    for (button, x, y) in [("Path", "u_x of tip", "u_y of tip"), ("u_x", "force", "u_x of tip")] {
         harness.get_by_label(button).click();
         harness.run();
-        assert_eq!(axis_names(&harness), ["force", expected]);
+        assert_eq!(axis_names(&harness), [x, y]);
     }
     // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
     let mut harness = with_curve(scene("stretch"));
@@ -232,7 +232,7 @@ fn curves_are_saved_as_files() {
     let svg = std::fs::read_to_string("warpbeam-001.svg").unwrap();
     let document = roxmltree::Document::parse(&svg).unwrap();
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
-    for text in ["Cantilever: Load curve", "u_x of tip, m", "u_y of tip, m", "exact beam", "(0, -2.14) m"] {
+    for text in ["Cantilever: Load curve", "force, N", "u_y of tip, m", "exact beam", "(0, -2.14) m"] {
         assert!(texts.contains(&text), "{text}: {texts:?}");
     }
     assert!(!svg.contains("NaN"));
@@ -264,6 +264,8 @@ fn curves_are_saved_as_files() {
 #[test]
 fn a_press_on_the_path_sets_its_load() {
     let mut harness = compared(scene("cantilever"), "linear,newton");
+    harness.get_by_label("Path").click();
+    harness.run();
     let area = harness.get_by_role_and_label(Role::Image, "Load curve").rect();
     // The numbers on both axes give the position of a displacement.
     let numbers = |harness: &Harness<'_, Lab>, upright: bool| -> Vec<(f64, f32)> {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::common::lab::{settle, wait};
 use crate::common::scene;
 use egui::accesskit::Role;
 use egui::{FontId, Key, Modifiers, Rect};
@@ -46,20 +47,8 @@ fn harness_of(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
 fn settled(id: &str, size: [f32; 2]) -> Harness<'static, Lab> {
     let mut harness = harness_of(id, size);
     harness.run();
-    wait(&mut harness, |lab| !lab.is_computing());
+    settle(&mut harness);
     harness
-}
-
-fn wait(harness: &mut Harness<'_, Lab>, done: impl Fn(&Lab) -> bool) {
-    for _ in 0..6000 {
-        if done(harness.state()) {
-            harness.run();
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-    }
-    unreachable!("waited in vain")
 }
 
 /// Returns every painted text, and every name and value that is given to screen readers.
@@ -434,8 +423,8 @@ fn exploring_is_in_chinese() {
     }
     press(&mut harness, "explain");
     press(&mut harness, "Fixed colour range");
-    press(&mut harness, "Load curve");
-    wait(&mut harness, |lab| !lab.is_computing());
+    press(&mut harness, "Sections");
+    settle(&mut harness);
     assert_tips_are_chinese(&mut harness, "Explore");
     for picker in ["Method", "Element", "Colour", "Force on", "Scene"] {
         harness.get_by_role_and_label(Role::ComboBox, &zh(picker)).click();
@@ -472,8 +461,9 @@ fn scenes_of_every_kind_are_in_chinese() {
     for id in ["jump", "bracket", "cook", "snap"] {
         let mut harness = settled(id, size);
         press(&mut harness, "Details");
+        press(&mut harness, "Limits");
         press(&mut harness, "Load curve");
-        wait(&mut harness, |lab| !lab.is_computing());
+        settle(&mut harness);
         press(&mut harness, "explain");
         assert_tips_are_chinese(&mut harness, id);
     }
@@ -489,7 +479,7 @@ fn motions_are_in_chinese() {
     press(&mut harness, "energy-momentum");
     harness.run_steps(100);
     press(&mut harness, "Pause");
-    wait(&mut harness, |lab| !lab.is_computing());
+    settle(&mut harness);
     for plot in ["Energy", "Tip", "Phase", "Spectrum"] {
         press(&mut harness, plot);
         assert_chinese(&harness, plot);
@@ -502,7 +492,7 @@ fn comparing_is_in_chinese() {
     let mut harness = settled("article", [1280.0, 800.0]);
     harness.state_mut().show_comparison(&parse_panes("linear,warped,newton:t6:10x2,auto").unwrap());
     harness.run();
-    wait(&mut harness, |lab| lab.panes().iter().all(|pane| pane.end().is_some()));
+    wait(&mut harness, "the panes", |lab| lab.panes().iter().all(|pane| pane.end().is_some()));
     assert_tips_are_chinese(&mut harness, "Compare");
     for what in ["method", "element", "mesh"] {
         let picker = format!("{} {}", zh("Pane %{n}").replace("%{n}", "1"), zh(what));
@@ -531,7 +521,7 @@ fn the_limits_are_in_chinese() {
     let mut harness = settled("article", [1280.0, 800.0]);
     harness.key_press(Key::M);
     harness.run_steps(3);
-    wait(&mut harness, |lab| !lab.is_computing());
+    settle(&mut harness);
     assert_tips_are_chinese(&mut harness, "Limits");
 }
 
@@ -541,7 +531,7 @@ fn every_card_is_in_chinese() {
     for card in 1..=warpbeam::app::card_count() {
         harness.state_mut().show_card(card);
         harness.run();
-        wait(&mut harness, |lab| !lab.is_computing());
+        settle(&mut harness);
         assert_tips_are_chinese(&mut harness, &format!("card {card}"));
     }
 }
@@ -556,7 +546,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
             "Run", "Step", "Reset", "Explore", "Learn", "Compare", "Budget", "Limits", "Help", "Theme", "Language",
             "Panel",
         ];
-        for name in names.into_iter().chain(["Load curve", "explain"]) {
+        for name in names.into_iter().chain(["Sections", "explain"]) {
             let rect = harness.get_by_label(&zh(name)).rect();
             assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?} is clipped");
         }

@@ -1,5 +1,6 @@
 //! Tests of the cards of the mode Learn: each sets up its scene, and its numbers are the library's.
 
+use crate::common::lab::{settle, wait};
 use crate::common::solve_json;
 use egui::accesskit::Role;
 use egui::{Key, Pos2, vec2};
@@ -36,20 +37,8 @@ fn at_card(number: usize) -> Harness<'static, Lab> {
     let mut harness = harness([1280.0, 800.0]);
     harness.state_mut().show_card(number);
     harness.run();
-    wait(&mut harness, |lab| !lab.is_computing());
+    settle(&mut harness);
     harness
-}
-
-fn wait(harness: &mut Harness<'_, Lab>, done: impl Fn(&Lab) -> bool) {
-    for _ in 0..6000 {
-        if done(harness.state()) {
-            harness.run();
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-    }
-    unreachable!("waited in vain")
 }
 
 fn texts(harness: &Harness<'_, Lab>) -> Vec<String> {
@@ -397,7 +386,7 @@ fn the_trade_off_is_measured_on_request() {
     harness.get_by_label("Measure").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Cancel").is_some());
-    wait(&mut harness, |lab| !lab.study().1);
+    wait(&mut harness, "the study", |lab| !lab.study().1);
     let study = harness.state().study().0.unwrap().clone();
     let own = study.measurements.iter().filter(|m| m.setting.element == ElementKind::T6 && m.error.bound() <= 1.0);
     let fastest = own.filter(|m| m.setting.method == MethodKind::Newton).min_by_key(|m| m.time.total()).unwrap();
@@ -510,7 +499,7 @@ fn the_camera_does_not_hide_the_growth_of_the_body() {
         let mut harness = harness(size);
         harness.state_mut().show_card(1);
         harness.run();
-        wait(&mut harness, |lab| !lab.is_computing());
+        settle(&mut harness);
         let camera = harness.state().camera();
         let slider = harness.get_by_role_and_label(Role::Slider, "Tip force").rect();
         let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
@@ -531,7 +520,7 @@ fn the_camera_does_not_hide_the_growth_of_the_body() {
         }
         harness.drop_at(at(1.2));
         harness.run();
-        wait(&mut harness, |lab| !lab.is_computing());
+        settle(&mut harness);
         assert_eq!(harness.state().camera(), camera);
         assert!(painted(&harness).iter().any(|text| text == "area, linear"), "the bars say what they are of");
     }

@@ -8,7 +8,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::common::lab::{lab_of, window};
+use crate::common::lab::{lab_of, settle, window};
 use crate::common::{scene, scene_with};
 use warpbeam::app::Lab;
 use warpbeam::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
@@ -19,24 +19,12 @@ fn harness(scene: Scene) -> Harness<'static, Lab> {
     window([1280.0, 800.0], lab_of("scene", scene))
 }
 
-/// Waits until every result is known.
-fn wait(harness: &mut Harness<'_, Lab>) {
-    for _ in 0..6000 {
-        if !harness.state().is_computing() {
-            return harness.run_steps(3);
-        }
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        harness.step();
-    }
-    unreachable!("waited in vain for the limits")
-}
-
 /// Opens Limits, and waits for its strips.
 fn opened(scene: Scene) -> Harness<'static, Lab> {
     let mut harness = harness(scene);
     harness.key_press(Key::M);
     harness.run_steps(3);
-    wait(&mut harness);
+    settle(&mut harness);
     harness
 }
 
@@ -192,7 +180,7 @@ fn an_edit_of_the_body_computes_the_limits_again() {
     longer.beam.as_mut().unwrap().length *= 2.0;
     harness.state_mut().set_scene(longer.clone()).unwrap();
     harness.run_steps(2);
-    wait(&mut harness);
+    settle(&mut harness);
     let limits = MethodLimits::of(&longer, &|_| ControlFlow::Continue(())).unwrap();
     let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
     let usable = linear.words(&LoadAxis::of(&longer), limits.range)[1].to_string();

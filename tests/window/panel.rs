@@ -1,6 +1,6 @@
 //! Tests of the panel, operated by labels, pointer and keys, without a display or a GPU.
 
-use crate::common::lab::{pick, type_into, unfold};
+use crate::common::lab::{pick, type_into, unfold, wait};
 use crate::common::{scene, scene_with, solve_json};
 use crate::ui_interaction::on_body;
 use egui::accesskit::Role;
@@ -510,19 +510,8 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
         }
         let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         for name in [
-            "Pause",
-            "Run",
-            "Step",
-            "Reset",
-            "Explore",
-            "Learn",
-            "Compare",
-            "Budget",
-            "Help",
-            "Theme",
-            "Panel",
-            "Load curve",
-            "explain",
+            "Pause", "Run", "Step", "Reset", "Explore", "Learn", "Compare", "Budget", "Help", "Theme", "Panel",
+            "Limits", "Sections", "explain",
         ] {
             let node = harness.query_by_label(name);
             assert!(node.is_some() || ["Pause"].contains(&name), "{size:?}: no {name}");
@@ -754,18 +743,6 @@ fn the_view_follows_the_body_under_a_resting_pointer() {
     harness.run();
     let after = harness.state().camera();
     assert!(after.scale > 1.1 * before.scale, "{before:?} {after:?}");
-}
-
-/// Runs frames until `done`, with a short sleep after each for background tasks; returns the number of frames.
-fn wait(harness: &mut Harness<'_, Lab>, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
-    for frame in 0..6000 {
-        if done(harness.state()) {
-            return frame;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-    }
-    unreachable!("{what}: never")
 }
 
 fn measured(lab: &Lab) -> usize {

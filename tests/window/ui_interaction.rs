@@ -1,6 +1,6 @@
 //! Tests of pointer interaction with the body, its loads and its values, and of edits, without a display or a GPU.
 
-use crate::common::lab::{lab_of, type_into, unfold, window};
+use crate::common::lab::{lab_of, settle, type_into, unfold, wait, window};
 use crate::common::{scene, solve_json};
 use egui::accesskit::Role;
 use egui::os::OperatingSystem;
@@ -10,7 +10,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::{FOCUS_KEYS, Lab, MOUSE};
 use warpbeam::format::percent;
-use warpbeam::scene::{Analysis, ElementKind, Load, LoadId, MethodKind, Source};
+use warpbeam::scene::{Analysis, ElementKind, Load, LoadId, MethodKind, Place, Source};
 use warpbeam::{Field, PointValues, Simulation, Status};
 
 /// Time between frames, s; short enough for double clicks within a few frames.
@@ -266,13 +266,26 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     let mut lab = lab_of("article", early);
     lab.solve();
     let mut harness = window([1280.0, 800.0], lab);
-    harness.run();
+    harness.run_steps(4);
     harness.get_by_label(&format!("ERROR {} mesh or iteration", percent(error.unwrap())));
     harness.get_by_label("Accepted · 3 iterations");
     assert!(harness.query_by_label_contains("another equilibrium").is_none());
     harness.get_by_label("explain").click();
     harness.run();
-    harness.get_by_label_contains("Accepted after 3 iterations, as the scene asks: the relative residual is 0.02");
+    harness.get_by_label_contains(
+        "Accepted after 3 iterations from the state before, as the scene asks: the relative residual is 0.02",
+    );
+    // The remedy of an early stop is to go on, not a finer mesh.
+    harness.get_by_label("Iterate to the tolerance").click();
+    harness.step();
+    assert_eq!(harness.state().scene().solver.accept_after, 0);
+    wait(&mut harness, "equilibrium", |lab| *lab.simulation().status() == Status::Converged);
+    // The number can be typed; beyond ρ = 1 a result is said to diverge if it runs on.
+    type_into(&mut harness, "Accept after", "3");
+    assert_eq!(harness.state().scene().solver.accept_after, 3);
+    type_into(&mut harness, "Force", "60000");
+    settle(&mut harness);
+    harness.get_by_label("Accepted · 3 iterations · diverges if it runs on");
 }
 
 /// A body that is held is not said to be at another equilibrium than the one to which loading leads.
@@ -991,6 +1004,27 @@ fn loads_and_supports_are_put_on_other_edges() {
     assert_eq!(harness.state().scene().supports[0].place, "right".into());
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().scene(), scene("cantilever"));
+    // A force is added with the size of the present ones, a probe at a point, which can be moved and removed.
+    harness.get_by_role_and_label(Role::Button, "Force").click();
+    harness.run();
+    let [Load::Force { force: first, .. }, Load::Force { force: second, .. }] = &harness.state().scene().loads[..]
+    else {
+        unreachable!("{:?}", harness.state().scene().loads)
+    };
+    assert_eq!(first, second);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    harness.get_by_role_and_label(Role::Button, "Probe").click();
+    harness.run();
+    let place = |harness: &Harness<'_, Lab>| harness.state().scene().probes.get(1).map(|probe| probe.place.clone());
+    assert!(matches!(place(&harness), Some(Place::At(_))), "{:?}", harness.state().scene().probes);
+    harness.get_by_role_and_label(Role::ComboBox, "Probe p1").click();
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "top").click();
+    harness.run();
+    assert_eq!(place(&harness), Some("top".into()));
+    harness.get_by_label("Remove the probe p1").click();
+    harness.run();
     assert_eq!(*harness.state().scene(), scene("cantilever"));
 }
 

@@ -45,7 +45,7 @@ fn the_sentences_of_the_library_are_translated() {
         both(&Jump { factor: 0.5, distance: None, is_on_path: false, drive: Drive::Loads }),
         both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: true, drive: Drive::Supports }),
         both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: false, drive: Drive::Both }),
-        both(&Elsewhere { distance: 0.1 }),
+        both(&Elsewhere { distance: 0.1, buckling: None }),
         both(&crate::stress::strain_warning(0.5).unwrap()),
         both(&crate::stress::inversion_warning(3, 10).unwrap()),
         both(&FORCE.check(-1.0).unwrap_err()),

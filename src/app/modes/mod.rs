@@ -3,5 +3,6 @@
 pub(crate) mod budget;
 pub(crate) mod compare;
 pub(crate) mod explore;
+pub(crate) mod figure;
 pub(crate) mod learn;
 pub(crate) mod limits;

@@ -3,14 +3,16 @@
 use std::cell::RefCell;
 
 use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Ui, WidgetInfo, vec2};
+use nalgebra::Vector2;
 
 use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::viewport::arrow::force_range;
-use crate::app::viewport::menu::{acts_at_point, can_carry_moment, force_by_hand, is_free};
+use crate::app::viewport::menu::{acts_at_point, can_carry_moment, force_by_hand, is_free, with_probe};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
+use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
 use crate::format::{editable, number};
@@ -83,7 +85,7 @@ enum EdgeChange {
 /// highlighted in the view. `more` shows further controls.
 fn row(
     ui: &mut Ui,
-    (label, id, remove): (&'static str, usize, &str),
+    (label, id, remove): (&str, usize, &str),
     (scene, present): (&Scene, &Place),
     places: impl Iterator<Item = (&'static str, Place)>,
     (view, messages): (&mut ViewOptions, &mut Messages),
@@ -91,7 +93,7 @@ fn row(
 ) -> Option<EdgeChange> {
     let mut change = None;
     ui.horizontal(|ui| {
-        let name = ui.label(tr(label));
+        let name = ui.label(label);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
@@ -127,7 +129,7 @@ fn row(
 
 /// Shows the coordinates of a point, m; returns the point that was typed. The reason for which a text is refused becomes
 /// the message of the loads and supports.
-fn coordinates(ui: &mut Ui, id: (&'static str, usize), at: [f64; 2], messages: &mut Messages) -> Option<[f64; 2]> {
+fn coordinates(ui: &mut Ui, id: (&str, usize), at: [f64; 2], messages: &mut Messages) -> Option<[f64; 2]> {
     let mut moved = at;
     let refused = RefCell::new(None);
     ui.push_id(id, |ui| {
@@ -181,7 +183,7 @@ pub(super) fn show(
         let change = if load.is_moment() {
             row(
                 ui,
-                ("Moment on", i, &remove),
+                (tr("Moment on"), i, &remove),
                 (scene, &present),
                 edges(can_carry_moment),
                 (view, &mut state.messages),
@@ -190,7 +192,7 @@ pub(super) fn show(
         } else {
             row(
                 ui,
-                ("Force on", i, &remove),
+                (tr("Force on"), i, &remove),
                 (scene, &present),
                 edges(is_free).chain(points(scene)),
                 (view, &mut state.messages),
@@ -217,7 +219,7 @@ pub(super) fn show(
         let mut fix = support.fix.clone();
         let remove = fill!("Remove support %{n}", n = i + 1);
         let change =
-            row(ui, ("Held at", i, &remove), (scene, &support.place), places, (view, &mut state.messages), |ui| {
+            row(ui, (tr("Held at"), i, &remove), (scene, &support.place), places, (view, &mut state.messages), |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 // The layout runs from right to left.
                 for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
@@ -249,6 +251,19 @@ pub(super) fn show(
         }
         edited = Some(scene);
     }
+    for (i, probe) in scene.probes.iter().enumerate() {
+        let places = edges(|_, _| true).chain(points(scene));
+        let label = fill!("Probe %{name}", name = tr(&probe.name));
+        let remove = fill!("Remove the probe %{name}", name = tr(&probe.name));
+        let change = row(ui, (&label, i, &remove), (scene, &probe.place), places, (view, &mut state.messages), |_| {});
+        let Some(change) = change else { continue };
+        let mut scene = Box::new(scene.clone());
+        match change {
+            EdgeChange::Remove => _ = scene.probes.remove(i),
+            EdgeChange::Move(to) => scene.probes[i].place = to,
+        }
+        edited = Some(scene);
+    }
     ui.horizontal(|ui| {
         ui.label(tr("Add"));
         for (word, tip, added) in ADDITIONS {
@@ -275,7 +290,7 @@ fn refixed(before: &Support, fix: &[Axis]) -> Support {
 
 /// Button that adds a load or support: its name, its tooltip, and the function that returns the extended scene.
 type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
-const ADDITIONS: [Addition; 3] = [
+const ADDITIONS: [Addition; 4] = [
     ("Force", "Add a downward force at a place without one", with_another_force),
     ("Moment", "Add a moment on an edge without one", with_another_moment),
     (
@@ -283,6 +298,7 @@ const ADDITIONS: [Addition; 3] = [
         "Add a support at a place that is not held; x and y select the directions that it fixes",
         with_another_support,
     ),
+    ("Probe", "Add a probe: its displacement is in Details and in the table of Compare", with_another_probe),
 ];
 
 /// Returns the places that can carry a load: free edges, then points of the beam.
@@ -297,7 +313,8 @@ fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
     let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
     if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
-        let [usual, _] = force_range(input.opening, &scene.material, input.simulation.system());
+        let present = OpeningLoads::of(&scene);
+        let [usual, _] = force_range(present, &scene.material, input.simulation.system());
         scene.loads.push(force_by_hand(input.simulation.system().mesh(), place, [0.0, -usual]));
     }
     scene
@@ -310,7 +327,7 @@ fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
     let mut edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
     let first = edge_for_moment(&scene, system).filter(|name| !is_taken(name));
     if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
-        let [usual, _] = moment_range(input.opening, &scene.material, system);
+        let [usual, _] = moment_range(OpeningLoads::of(&scene), &scene.material, system);
         scene.loads.push(Load::moment(&edge, usual));
     }
     scene
@@ -329,4 +346,17 @@ fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
         scene.supports.push(Support::new(place, &[Axis::Y]));
     }
     scene
+}
+
+/// Returns the scene with a probe at a common point of the beam that has none, or in the middle of the body.
+fn with_another_probe(input: &Readout<'_>) -> Box<Scene> {
+    let mesh = input.simulation.system().mesh();
+    let (low, high) = mesh.bounds();
+    let is_free = |place: &Place| input.scene.probes.iter().all(|probe| probe.place != *place);
+    let mut places = points(input.scene).filter_map(|(_, place)| match place {
+        Place::At(at) if is_free(&place) => Some(Vector2::from(at)),
+        _ => None,
+    });
+    let at = places.next().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
+    Box::new(with_probe(input.scene, input.simulation.system(), at))
 }

@@ -12,7 +12,7 @@ use crate::app::language::{spaced, tr};
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::DOWN;
 use crate::app::widgets::buttons::choice;
-use crate::app::widgets::number_field::{Messages, NumberField, show_message};
+use crate::app::widgets::number_field::{Messages, NumberField, SliderScale, show_message};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene};
@@ -103,6 +103,7 @@ pub(super) fn show(
         ui.add_space(4.0);
         method(ui, input, state, actions);
         element(ui, input, state, actions);
+        accept_after(ui, input, state, actions);
         ui.add_space(2.0);
         loads::force(ui, input, state, actions);
         ui.add_space(4.0);
@@ -257,4 +258,21 @@ fn element(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut V
         actions.push(Action::Edit("Element", scene));
     }
     show_message(ui, &state.messages, "Element");
+}
+
+/// Shows the number of iterations after which a result is accepted, if the scene asks for that.
+fn accept_after(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
+    if [input.scene, input.original].iter().all(|scene| scene.solver.accept_after == 0) {
+        return;
+    }
+    let field = NumberField {
+        label: "Accept after",
+        tooltip: "Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.",
+        limit: crate::scene::limits::ACCEPT_AFTER,
+        slider: 0.0..=20.0,
+        scale: SliderScale::Linear,
+        whole: true,
+    };
+    let get = |s: &Scene| f64::from(s.solver.accept_after);
+    number_rows(ui, input, state, actions, [NumberRow { field, get, set: |s, v| s.solver.accept_after = v as u32 }]);
 }

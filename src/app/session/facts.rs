@@ -184,7 +184,9 @@ fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     if scene.analysis != Analysis::Static || scene.unknowns() > MAX_CERTIFIED as u64 {
         return None;
     }
-    let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).ok()?;
+    let mut scene = scene.clone().with_method(MethodKind::Newton);
+    scene.solver.accept_after = 0;
+    let mut simulation = Simulation::new(&scene).ok()?;
     if simulation.solve_watched(&mut |_| observe(Progress::at(0.0))).is_break() {
         return None;
     }

@@ -703,7 +703,7 @@ impl Session {
     /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
     pub(crate) fn lacks_rho(&self) -> bool {
         let is_warped = self.scene.solver.method == MethodKind::Warped && !self.is_motion();
-        is_warped && self.has_ended() && !self.simulation.status().is_success()
+        is_warped && self.has_ended() && *self.simulation.status() != Status::Converged
     }
 
     /// Computes ρ at the equilibrium, and waits for it.

@@ -44,9 +44,9 @@ impl Lab {
         self.intro = Intro::new(self.desk.session.simulation());
     }
 
-    /// Shows the load curve under the body.
+    /// Shows the load curve in the mode Limits.
     pub fn show_curve(&mut self) {
-        self.desk.view.drawer = Some(Drawer::Curve);
+        (self.desk.view.mode, self.desk.view.curve) = (Mode::Limits, true);
     }
 
     /// Shows the plots of the sections under the body.
@@ -282,12 +282,15 @@ impl Lab {
         let Desk { session, view, limits, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
         let plots = match view.drawer {
-            Some(Drawer::Curve) => facts.curve.is_pending(scene),
             Some(Drawer::Motion) => facts.frequency.is_pending(scene),
             Some(Drawer::Section) => self.desk.sections.is_pending(),
             _ => false,
         };
-        let limits = view.mode == Mode::Limits && limits.base().is_none_or(|base| facts.limits.is_pending(base));
+        let limits = match view.mode {
+            Mode::Limits if view.shows_curve(scene) => facts.curve.is_pending(scene),
+            Mode::Limits => limits.base().is_none_or(|base| facts.limits.is_pending(base)),
+            _ => false,
+        };
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
@@ -304,7 +307,7 @@ impl Lab {
         let view = &mut self.desk.view;
         view.panel = settings.panel;
         let scene = self.desk.session.scene();
-        view.drawer = settings.drawer.map(|drawer| drawer.suited(scene));
+        view.drawer = settings.drawer.filter(|drawer| drawer.suits(scene));
         view.color_with(settings.color());
         self.settings = settings;
         if let Some(path) = self.desk.session.document().path() {

@@ -3,12 +3,12 @@
 use crate::app::action::{Action, MAX_ITERATIONS};
 use crate::app::language::{fill, said, tr};
 use crate::app::modes::compare::{Compare, MotionCompare};
-use crate::app::modes::explore::figure;
+use crate::app::modes::figure;
 use crate::app::modes::learn;
 use crate::app::modes::limits::LimitMap;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
-use crate::app::view_options::{Drawer, Magnification, Mode, Toggle};
+use crate::app::view_options::{Magnification, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
@@ -26,7 +26,7 @@ impl Lab {
         if changed.scene {
             self.intro = None;
             let scene = session.simulation().scene();
-            view.drawer = view.drawer.map(|drawer| drawer.suited(scene));
+            view.drawer = view.drawer.filter(|drawer| drawer.suits(scene));
         }
         let mesh = session.simulation().system().mesh();
         if changed.mesh {
@@ -157,8 +157,10 @@ impl Lab {
             }
             // The drawer of the other kind of scene does not exist here.
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
+            // A motion has no load curve.
+            Action::Toggle(Toggle::Curve) if self.desk.session.is_motion() => {}
             // Compare has a load curve of its own.
-            Action::Toggle(Toggle::Drawer(Drawer::Curve)) if self.desk.view.mode == Mode::Compare => {
+            Action::Toggle(Toggle::Curve) if self.desk.view.mode == Mode::Compare => {
                 self.desk.compare.toggle_trace();
                 ctx.request_repaint();
             }

@@ -71,13 +71,14 @@ impl Desk {
     /// `true` if a card of Learn shows ρ.
     pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
         let Self { session, view, limits, .. } = self;
+        let shows_curve = view.shows_curve(session.scene());
         let shows_limits = view.mode == Mode::Limits;
         if shows_limits {
             limits.turn_to(session.scene());
         }
-        let limits_of = limits.base().filter(|_| shows_limits);
+        let limits_of = limits.base().filter(|_| shows_limits && !shows_curve);
         session.turn_limits_to(limits_of);
-        (session, ShownFacts { curve: view.drawer == Some(Drawer::Curve), rho: learns_rho, limits_of })
+        (session, ShownFacts { curve: shows_curve, rho: learns_rho, limits_of })
     }
 
     /// Returns the common input of the panes of Compare.

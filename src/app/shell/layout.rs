@@ -6,7 +6,7 @@ use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{self, spaced, tr};
 use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
-use crate::app::modes::explore::{load_curve, motion_plot};
+use crate::app::modes::explore::motion_plot;
 use crate::app::modes::learn::{self, Shown};
 use crate::app::panel::{self, PANEL_WIDTH, edges};
 use crate::app::readout::Readout;
@@ -73,8 +73,10 @@ impl Lab {
             Mode::Limits => {
                 let mut limits = std::mem::take(&mut self.desk.limits);
                 let shown = self.readout().shown;
-                drawer_panel(ui, LIMITS_HEIGHT).show(ui, |ui| limits.show(ui, &self.desk.session, shown, &mut actions));
-                self.desk.limits = limits;
+                let mut view = self.desk.view.clone();
+                let session = &self.desk.session;
+                drawer_panel(ui, LIMITS_HEIGHT).show(ui, |ui| limits.show(ui, session, shown, &mut view, &mut actions));
+                (self.desk.limits, self.desk.view) = (limits, view);
             }
         }
         let mut requests = Vec::new();
@@ -209,15 +211,6 @@ impl Lab {
         let Some(drawer) = view.drawer else { return };
         let facts = session.facts();
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
-            Drawer::Curve => {
-                load_curve::show(
-                    ui,
-                    facts.curve.latest(),
-                    (!facts.curve.is_pending(session.scene()), facts.curve.failure(session.scene())),
-                    view.curve_plot,
-                    actions,
-                );
-            }
             Drawer::Section => {
                 let shown = viewport.shown_of(session);
                 if sections.request(shown) {

@@ -4,7 +4,7 @@
 use crate::app::modes::learn::{self, CardStart, Learn};
 use crate::app::session::Session;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
-use crate::app::view_options::{Drawer, Mode, ViewOptions};
+use crate::app::view_options::{Mode, ViewOptions};
 use crate::simulation::Simulation;
 
 impl Lab {
@@ -42,7 +42,7 @@ impl Lab {
         let view = &mut self.desk.view;
         view.mode = mode;
         // A drawer opened from a card stays open.
-        view.drawer = drawer.map(|_| Drawer::of(self.desk.session.scene())).or(view.drawer);
+        view.drawer = drawer.filter(|drawer| drawer.suits(self.desk.session.scene())).or(view.drawer);
     }
 
     /// Goes to card number `card`, from 0.

@@ -3,7 +3,8 @@
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::de::IntoDeserializer;
+use serde::{Deserialize, Deserializer, Serialize};
 use toml::Table;
 
 use crate::app::ThemeChoice;
@@ -31,7 +32,7 @@ pub struct Settings {
     /// `true` if the panel is shown.
     pub panel: bool,
     /// Drawer that is open under the body.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "known_drawer")]
     pub(crate) drawer: Option<Drawer>,
     /// Name of the field that colours the body.
     color: String,
@@ -163,6 +164,13 @@ impl Settings {
     }
 }
 
+/// Reads the name of a drawer; `None` if another version of the program wrote it.
+fn known_drawer<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Drawer>, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let drawer: Result<Drawer, serde::de::value::Error> = Drawer::deserialize(name.into_deserializer());
+    Ok(drawer.ok())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,7 +190,11 @@ mod tests {
         assert_eq!(settings.recent().len(), MAX_RECENT);
         assert!(settings.recent()[0].ends_with("scene-25.toml") && settings.recent()[1].ends_with("scene-29.toml"));
         settings.save(&Settings::default(), &file).unwrap();
-        assert_eq!(Settings::load(&file), (settings, None));
+        assert_eq!(Settings::load(&file), (settings.clone(), None));
+        // An earlier version had the load curve in a drawer.
+        let text = std::fs::read_to_string(&file).unwrap().replace("\"motion\"", "\"curve\"");
+        std::fs::write(&file, text).unwrap();
+        assert_eq!(Settings::load(&file), (Settings { drawer: None, ..settings }, None));
     }
 
     #[test]

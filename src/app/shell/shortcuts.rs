@@ -63,7 +63,7 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),
     key(Key::Num4, "Colour: rotation angle", || Action::Color(Field::RotationAngle)),
     key(Key::Num5, "Colour: mesh error", || Action::Color(Field::MeshError)),
-    key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Drawer(Drawer::Curve))),
+    key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Curve)),
     key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
         Action::Toggle(Toggle::Drawer(Drawer::Section))
     }),

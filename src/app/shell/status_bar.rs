@@ -45,11 +45,10 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
             None => of_solve(&palette, input, errors, view.raw),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let is_open = view.plots() == Some(Drawer::Section);
-            let is_offered = wide && view.mode == Mode::Explore || !input.scene.sections.is_empty() || is_open;
-            let has_sections = is_offered && Drawer::Section.suits(input.scene);
-            for drawer in std::iter::once(Drawer::of(input.scene)).chain(has_sections.then_some(Drawer::Section)) {
-                let open = view.plots() == Some(drawer);
+            let drawer = Drawer::of(input.scene);
+            let open = view.plots() == Some(drawer);
+            let is_offered = view.mode == Mode::Explore || !input.scene.sections.is_empty() || open;
+            if is_offered || drawer == Drawer::Motion {
                 let (word, tip) = drawer.text();
                 let (word, tip) = (tr(word), tr(tip));
                 let icon = if open { Icon::Close } else { Icon::Open };

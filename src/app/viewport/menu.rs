@@ -167,7 +167,7 @@ fn removals(scene: &Scene, (at, near): (Vector2<f64>, f64), edge: Option<&str>) 
     };
     let is_near_force = |load: &Load| matches!(load, Load::Force { place, .. } if is_near(place));
     let probes = scene.probes.iter().enumerate().filter(|(_, probe)| is_near(&probe.place)).map(|(i, probe)| {
-        let text = fill!("Remove the probe %{name}", name = probe.name.as_str());
+        let text = fill!("Remove the probe %{name}", name = tr(&probe.name));
         (text, edited(scene, |scene| _ = scene.probes.remove(i)))
     });
     let forces = scene.loads.iter().enumerate().filter(|(_, load)| is_near_force(load));

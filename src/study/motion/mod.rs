@@ -99,7 +99,7 @@ impl From<&MotionSetting> for Sentence {
             method => method.id(),
         };
         sentence!(
-            "%{mesh}, %{integrator}, %{step}, %{solves}, %{theory}",
+            "%{mesh}, %{theory}, %{integrator}, %{step}, %{solves}",
             mesh = mesh_text(setting.element, setting.cells),
             integrator = setting.integrator.id(),
             step = step_text(setting.time_step),

@@ -6,10 +6,10 @@ use nalgebra::Vector2;
 
 use super::path;
 use super::plan::Samples;
-use super::reference::MotionReference;
+use super::reference::{MotionReference, fine_path};
 use crate::assembly::System;
 use crate::progress::Observer;
-use crate::scene::{IntegratorKind, Scene};
+use crate::scene::{IntegratorKind, MethodKind, Scene};
 use crate::simulation::{Deformation, Simulation, Status};
 use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
@@ -25,14 +25,16 @@ pub(in crate::study) struct StepStudy {
     system: Arc<System>,
     samples: Samples,
     reference: MotionReference,
+    /// Path of the first probe on the scene's mesh, with the reference's steps.
+    exact: Vec<Vector2<f64>>,
 }
 
 /// Motion with a time step.
 pub(in crate::study) struct StepResult {
     /// Displacement of the first probe at the end, m.
     pub displacement: Vector2<f64>,
-    /// Largest distance of its path from the reference, percent of the size of the reference's path, the reference's own
-    /// error included.
+    /// Sum of the errors of the mesh and of the time steps, as in [`PathError::bound`](super::PathError::bound), percent
+    /// of the size of the reference's path, the reference's own error included.
     pub error_percent: f64,
     /// Largest strain at the samples.
     pub max_strain: f64,
@@ -48,7 +50,10 @@ impl StepStudy {
     pub fn new(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         let reference = MotionReference::new(scene, Extent::Quick, observe)?;
         let samples = Samples::of(scene, Extent::Quick.plan())?;
-        let mut study = Self { scene: scene.clone(), system: system_of(scene)?, samples, reference };
+        let system = system_of(scene)?;
+        let steps = Extent::Quick.plan().reference_steps();
+        let exact = fine_path(scene, MethodKind::Newton, &system, samples, steps, observe)?;
+        let mut study = Self { scene: scene.clone(), system, samples, reference, exact };
         // All motions end at the same time.
         let longest = study.steps().iter().map(|(power, _)| 1_u32 << (*power).max(0)).max().unwrap_or(1);
         study.samples.count -= study.samples.count % longest;
@@ -97,10 +102,11 @@ impl StepStudy {
             return Ok(None);
         }
         let every = apart as usize;
-        let reference: Vec<_> = self.reference.path.iter().skip(every - 1).step_by(every).copied().collect();
-        let [distance, _] = self.reference.distance(&path, &reference);
+        let exact: Vec<_> = self.exact.iter().skip(every - 1).step_by(every).copied().collect();
+        let [of_steps, _] = self.reference.distance(&path, &exact);
+        let [of_mesh, _] = self.reference.distance(&self.exact, &self.reference.path);
         let displacement = path.last().copied().unwrap_or_default();
-        let error_percent = distance + self.reference.error_percent;
+        let error_percent = of_mesh + of_steps + self.reference.error_percent;
         Ok(Some(StepResult { displacement, error_percent, max_strain, inverted_elements }))
     }
 

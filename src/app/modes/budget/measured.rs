@@ -6,6 +6,7 @@ use egui::Color32;
 use crate::app::language::{count, fill, percent, said, tr};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
+use crate::format::{engineering, three_digits};
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::motion::{MotionMeasurement, MotionSetting, PathError};
@@ -143,14 +144,15 @@ impl Measured {
                 );
                 [Some(parts), runs_away(study, m)].into_iter().flatten().collect::<Vec<_>>().join(" ")
             }
-            (_, Choice::Motion(m)) => {
+            (Self::Motion(study), Choice::Motion(m)) => {
                 let part = |of: fn(&PathError) -> f64| percent(m.error.as_ref().map_or(0.0, of));
                 fill!(
-                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift %{drift} of the largest kinetic energy.",
+                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the largest kinetic energy.",
                     unknowns = count(m.dofs as u64, "unknown"),
                     mesh = part(|e| e.discretization),
                     steps = part(|e| e.integration),
                     theory = part(|e| e.model),
+                    duration = engineering(three_digits(study.duration), "s"),
                     drift = percent(m.drift_percent)
                 )
             }

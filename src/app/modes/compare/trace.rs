@@ -8,8 +8,8 @@ use super::pane::Pane;
 use super::setting::PaneSetting;
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
-use crate::app::modes::explore::figure::{self, Parts};
-use crate::app::modes::explore::load_curve::{axes, displacement_text, pair, quantities, usual};
+use crate::app::modes::figure::{self, Parts};
+use crate::app::modes::limits::load_curve::{axes, displacement_text, pair, quantities};
 use crate::app::session::compared_solve::Activity;
 use crate::app::session::facts::without_settings;
 use crate::app::task::keyed::{Keyed, facts};
@@ -20,7 +20,7 @@ use crate::format::{engineering, three_digits};
 use crate::progress::Observer;
 use crate::scene::limits::{self, Limit};
 use crate::scene::{Load, MethodKind, Place, Scene};
-use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, Mark};
+use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, Mark, dominant_axis};
 use crate::study::{LoadCurve, Reference};
 
 /// Largest number of dots per setting.
@@ -284,7 +284,7 @@ impl Trace {
         });
     }
 
-    /// Returns the most informative quantities of the curve, chosen once, when the first results are known.
+    /// Returns the default quantities of the curve, chosen once, when the first results are known.
     fn usual(&mut self, axis: TraceAxis) -> CurvePlot {
         let known: Vec<Vector2<f64>> = self.exact_at(axis.magnitude).into_iter().collect();
         let curved = |s: &&(PaneSetting, Vec<Dot>)| s.0.method != Some(MethodKind::Linear);
@@ -292,7 +292,7 @@ impl Trace {
             self.series.iter().filter(curved).flat_map(|(_, dots)| dots).filter(|dot| dot.good).map(|dot| dot.u);
         let known: Vec<Vector2<f64>> = known.into_iter().chain(answers).collect();
         if self.usual.is_none() && !known.is_empty() {
-            self.usual = Some(usual(known.iter().copied()));
+            self.usual = Some(CurvePlot::component(dominant_axis(known.iter().copied())));
         }
         self.usual.unwrap_or(CurvePlot::Y)
     }

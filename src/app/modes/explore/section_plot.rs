@@ -4,7 +4,7 @@ use egui::{Ui, UiBuilder};
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
-use crate::app::modes::explore::figure::{self, Parts};
+use crate::app::modes::figure::{self, Parts};
 use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;

@@ -1,6 +1,8 @@
 //! Mode Limits: up to which load each method and element holds, with the load of the scene on the same axis; in motion up
 //! to which time step each integrator does.
 
+pub(crate) mod load_curve;
+
 use egui::{
     Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
@@ -10,6 +12,7 @@ use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::session::Session;
 use crate::app::session::facts::without_methods;
+use crate::app::view_options::ViewOptions;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
@@ -88,16 +91,40 @@ impl LimitMap {
     }
 
     /// Shows the limits of the lab's scene.
-    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        shown: &Simulation,
+        view: &mut ViewOptions,
+        actions: &mut Vec<Action>,
+    ) {
         let scene = session.scene();
+        let shows_curve = view.shows_curve(scene);
         let facts = &session.facts().limits;
-        let message = |ui: &mut Ui, text: &str| _ = ui.centered_and_justified(|ui| ui.weak(text));
         let Some(base) = self.base.clone() else { return };
-        if let Some(reason) = facts.failure(&base) {
-            return message(ui, &said(reason));
-        }
+        let limits = facts.so_far(&base);
         let progress = facts.progress().map(|done| done as f32);
-        let Some(limits) = facts.so_far(&base) else {
+        let moves = scene.analysis == Analysis::Dynamic;
+        let has_one_row = ui.available_width() >= ONE_ROW;
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            self.views(ui, scene, view);
+            if limits.is_some() && !shows_curve {
+                progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
+                if has_one_row {
+                    legend(ui, moves);
+                }
+            }
+        });
+        if shows_curve {
+            return load_curve::show(ui, session, first_probe(shown), view.curve_plot, actions);
+        }
+        if let Some(reason) = facts.failure(&base) {
+            ui.centered_and_justified(|ui| ui.weak(said(reason)));
+            return;
+        }
+        let Some(limits) = limits else {
             ui.add_space(0.3 * ui.available_height());
             ui.vertical_centered(|ui| {
                 ui.weak(match scene.analysis {
@@ -110,25 +137,16 @@ impl LimitMap {
             });
             return;
         };
-        let whole = ui.available_rect_before_wrap();
-        let moves = limits.duration.is_some();
-        let has_one_row = whole.width() >= ONE_ROW;
-        ui.horizontal(|ui| {
-            ui.add_space(8.0);
-            self.scales(ui);
-            progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
-            if has_one_row {
-                legend(ui, moves);
-            }
-        });
-        if !has_one_row {
+        // In a low window the strips take the room of the key.
+        let strips = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
+        if !has_one_row && ui.available_height() >= strips + 2.0 * LINE {
             ui.horizontal(|ui| {
                 ui.add_space(8.0);
                 ui.horizontal_wrapped(|ui| legend(ui, moves));
             });
         }
         let axis = limits::axis(&base);
-        let below = Rect::from_min_max(pos2(whole.left(), ui.cursor().top()), whole.max);
+        let below = ui.available_rect_before_wrap();
         let chart = StripChart::new(ui, below, limits, &axis, self.scale);
         let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
@@ -143,17 +161,24 @@ impl LimitMap {
         }
         let factor = load.unwrap_or(self.factor);
         if limits.contains(factor) {
-            chart.load_line(ui, factor, first_probe(shown));
+            chart.load_line(ui, factor, first_probe(shown).map(|u| u.norm()));
         }
     }
 
-    /// Shows the choice of the scale.
-    fn scales(&mut self, ui: &mut Ui) {
-        for (scale, name) in [(AxisScale::Logarithmic, "logarithmic axis"), (AxisScale::Linear, "linear axis")] {
+    /// Shows the choice of the scale of the strips, and the load curve.
+    fn views(&mut self, ui: &mut Ui, scene: &Scene, view: &mut ViewOptions) {
+        let shows_curve = view.shows_curve(scene);
+        let mut option = |is_chosen, name| {
             let text = RichText::new(tr(name)).size(SMALL);
-            if ui.add(option_button(self.scale == scale, text)).clicked() {
-                self.scale = scale;
+            ui.add(option_button(is_chosen, text)).clicked()
+        };
+        for (scale, name) in [(AxisScale::Logarithmic, "logarithmic axis"), (AxisScale::Linear, "linear axis")] {
+            if option(self.scale == scale && !shows_curve, name) {
+                (self.scale, view.curve) = (scale, false);
             }
+        }
+        if scene.analysis == Analysis::Static && option(shows_curve, "Load curve") {
+            view.curve = true;
         }
     }
 }
@@ -163,10 +188,10 @@ fn progress_bar(done: f32) -> ProgressBar {
     ProgressBar::new(done).show_percentage()
 }
 
-/// Returns the length of the displacement of the first probe, m, at an equilibrium.
-fn first_probe(shown: &Simulation) -> Option<f64> {
+/// Returns the displacement of the first probe, m, at an equilibrium.
+fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
     let probe = shown.problem().probes().first().filter(|_| shown.status().is_success())?;
-    Some(probe.mean(shown.displacement()).norm())
+    Some(probe.mean(shown.displacement()))
 }
 
 /// Shows the key of the colours; a line breaks between entries.

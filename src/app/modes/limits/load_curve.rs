@@ -1,38 +1,41 @@
 //! Load curve. For a cantilever it shows linear theory, the exact beam, the result of every method, and the loads at
 //! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
-use crate::app::session::facts::Curve;
 use egui::{Align2, Ui, UiBuilder};
 use nalgebra::Vector2;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
-use crate::app::modes::explore::figure::{self, Parts};
+use crate::app::modes::figure::{self, Parts};
+use crate::app::session::Session;
+use crate::app::session::facts::Curve;
 use crate::app::view_options::CurvePlot;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::{MethodKind, Scene};
-use crate::sentence::{Sentence, sentence};
+use crate::sentence::sentence;
 use crate::simulation::Status;
 use crate::study::figure::{
-    Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, LoadAxis, Mark, dominant_axis, leaves_the_axes,
+    Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, LoadAxis, Mark, dominant_axis,
 };
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 
 /// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
-/// being computed, or the scene has none.
+/// being computed, or the scene has none. `body` is the displacement of the first probe of the drawn equilibrium, m.
 pub(crate) fn show(
     ui: &mut Ui,
-    curve: Option<&Curve>,
-    (looked_for, failure): (bool, Option<&Sentence>),
+    session: &Session,
+    body: Option<Vector2<f64>>,
     chosen: Option<CurvePlot>,
     actions: &mut Vec<Action>,
 ) {
+    let (scene, fact) = (session.scene(), &session.facts().curve);
+    let looked_for = !fact.is_pending(scene);
     let whole = ui.available_rect_before_wrap();
-    let Some(curve) = curve else {
+    let Some(curve) = fact.latest() else {
         ui.centered_and_justified(|ui| {
-            ui.weak(match failure {
+            ui.weak(match fact.failure(scene) {
                 Some(reason) => said(reason),
                 None if looked_for => tr("No load curve: in linear theory it is a straight line.").to_owned(),
                 None => tr("The load curve is computed after the solve.").to_owned(),
@@ -42,7 +45,10 @@ pub(crate) fn show(
     };
     let offered = curve.offered();
     let shown = chosen.filter(|plot| offered.contains(plot)).unwrap_or_else(|| curve.usual());
-    let drawn = curve.figure(shown);
+    let mut drawn = curve.figure(shown);
+    if let Some(body) = body.filter(|_| looked_for) {
+        move_scene(&mut drawn, body);
+    }
     let parts = Parts::of(whole);
     ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn, None));
     ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
@@ -69,17 +75,15 @@ impl Curve {
         }
     }
 
-    /// Returns the most informative quantities: where linear theory departs from the exact beam, or where a path turns
-    /// back.
+    /// Returns the default quantities: the reaction of a moving support, else the larger component of the displacement
+    /// over the load, where a result has another value than the exact beam at the same load.
     fn usual(&self) -> CurvePlot {
-        match self {
-            Self::Beam(of) => usual(of.0.samples.iter().map(|s| s.exact)),
-            Self::Path(of) if of.0.driven.is_some() => CurvePlot::Reaction,
-            Self::Path(of) => {
-                let tip = |state: &PathState| state.probes.first().copied();
-                CurvePlot::component(dominant_axis(of.0.states.iter().filter_map(tip)))
-            }
-        }
+        let tip = |state: &PathState| state.probes.first().copied();
+        CurvePlot::component(match self {
+            Self::Path(of) if of.0.driven.is_some() => return CurvePlot::Reaction,
+            Self::Beam(of) => dominant_axis(of.0.samples.iter().map(|s| s.exact)),
+            Self::Path(of) => dominant_axis(of.0.states.iter().filter_map(tip)),
+        })
     }
 
     fn figure(&self, shown: CurvePlot) -> Figure {
@@ -87,15 +91,6 @@ impl Curve {
             Self::Beam(of) => beam(&of.0, &of.1.0, shown),
             Self::Path(of) => path(&of.0, &of.1.0, shown),
         }
-    }
-}
-
-/// Returns the default plot: the path (u_x, u_y) if both components are large, else the larger component over the load.
-pub(crate) fn usual(displacements: impl Iterator<Item = Vector2<f64>> + Clone) -> CurvePlot {
-    if leaves_the_axes(displacements.clone()) {
-        CurvePlot::Path
-    } else {
-        CurvePlot::component(dominant_axis(displacements))
     }
 }
 
@@ -135,6 +130,14 @@ fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
         CurvePlot::Y => Ordinate::Component(0, 1),
     };
     Figure { title: curve_title(scene), ..path_chart::figure(path, scene, &ordinate, &|name| said(name)) }
+}
+
+/// Moves the mark of the scene from the end of the path to the displacement of the body, which may be at rest elsewhere.
+fn move_scene(figure: &mut Figure, body: Vector2<f64>) {
+    let marks = figure.series.iter_mut().filter(|series| series.ink == Ink::Scene);
+    for [_, x, y] in marks.flat_map(|series| &mut series.points).filter_map(|point| point.values.first_chunk_mut()) {
+        (*x, *y) = (Some(body.x), Some(body.y));
+    }
 }
 
 fn curve_title(scene: &Scene) -> String {
