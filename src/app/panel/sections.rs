@@ -16,10 +16,7 @@ use crate::study::section_chart;
 
 /// Returns a summary: the number of sections, or the forces of a single one.
 pub(super) fn summary(input: &Readout<'_>) -> String {
-    match input.scene.sections[..] {
-        [line] => forces(input, line),
-        ref lines => lines.len().to_string(),
-    }
+    input.scene.sections.len().to_string()
 }
 
 /// Returns the forces of a section of the drawn state, or the reason why there are none.

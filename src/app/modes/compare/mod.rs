@@ -396,24 +396,20 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
 /// Largest number of probes in a header, so that the bodies keep their room.
 const MAX_PROBES: usize = 3;
 
-/// Returns `true` if headers show the probes at a place: those of edges are in the table of the load curve.
-fn is_in_header(place: &Place) -> bool {
-    matches!(place, Place::At(_))
-}
-
-/// Returns the number of probes that a header shows.
+/// Returns the number of probes that a header shows, the first of the scene: none if all are on edges, because the table
+/// of the load curve has the first one.
 fn shown_probes(scene: &Scene) -> usize {
-    scene.probes.iter().filter(|probe| is_in_header(&probe.place)).count().min(MAX_PROBES)
+    let has_point = scene.probes.iter().any(|probe| matches!(probe.place, Place::At(_)));
+    if has_point { scene.probes.len().min(MAX_PROBES) } else { 0 }
 }
 
-/// Shows the displacements of the probes at points.
+/// Shows the displacements of the probes.
 fn kept_probes(ui: &mut Ui, pane: &Pane) {
     let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
-    let probes = simulation.problem().probes().iter().filter(|probe| is_in_header(&probe.place));
-    for probe in probes.take(MAX_PROBES) {
+    for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene())) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
-        let text = RichText::new(format!("{}: u = {u}", probe.name)).size(SMALL);
+        let text = RichText::new(format!("{}: u = {u}", tr(&probe.name))).size(SMALL);
         ui.add(egui::Label::new(text).truncate());
     }
 }
