@@ -92,8 +92,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
     rows.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
         let [value, of_stress] =
             [&section.forces, &section.stress_forces].map(|forces| within.engineering(three_digits(of(forces)), unit));
-        let name = sentence!("%{symbol} (of the drawn stress: %{value})", symbol = *symbol, value = of_stress);
-        row(render(&name), Ink::Scene, Mark::Disc, value)
+        row((*symbol).to_owned(), Ink::Scene, Mark::Disc, format!("{value} ({of_stress})"))
     }));
     let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
     Figure {
@@ -102,6 +101,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
         axes: [0, 1],
         series,
         rows,
+        head: [String::new(), render(&"in the cut (of the drawn stress)".into()), String::new()],
         ..Figure::default()
     }
 }

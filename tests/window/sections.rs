@@ -91,7 +91,7 @@ fn the_plots_have_the_values_of_the_library() {
     let section = simulation.section(harness.state().scene().sections[0]).unwrap();
     let within = section_chart::contexts(std::slice::from_ref(&section), simulation);
     let rows = section_chart::stress(&section, harness.state().scene(), &within, &ToString::to_string).rows;
-    let row = rows.iter().find(|row| row.name.starts_with("M (")).unwrap();
+    let row = rows.iter().find(|row| row.name == "M").unwrap();
     assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
     let along = simulation.sections(41).unwrap();
     let row = section_chart::forces(&along, harness.state().scene(), &within, &ToString::to_string)[2].rows[0].clone();
@@ -116,7 +116,7 @@ fn a_body_without_axis_has_its_own_sections_only() {
     let node = harness.state().simulation().mesh().nodes()[0];
     choose(&mut harness, node.into(), "Add a section here");
     assert!(!has_none(&harness));
-    assert!(harness.query_by_label_contains("M (of the drawn stress:").is_some());
+    assert!(harness.query_by_label_contains("in the cut (of the drawn stress)").is_some());
     assert!(harness.query_by_role_and_label(Role::Button, "N").is_none());
     assert_eq!(harness.state().scene().sections.len(), 1);
     // Without the menu: a section through the middle of the body.
