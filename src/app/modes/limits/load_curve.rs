@@ -206,3 +206,26 @@ fn departure_text(departures: &[Departure]) -> Option<(String, String)> {
     (!departures.is_empty())
         .then(|| (fill!("linear error %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Source, open};
+
+    /// The mark of the scene is at the displacement of the body, also where the path from rest ends elsewhere.
+    #[test]
+    fn the_mark_of_the_scene_is_at_the_body() {
+        let scene = open(&Source { name: "jump".into(), assignments: Vec::new() }).unwrap();
+        let followed = LoadPath::of(&scene).unwrap();
+        let before = path(&followed, &scene, CurvePlot::Y);
+        let mut after = before.clone();
+        move_scene(&mut after, Vector2::new(1.0, 2.0));
+        for (before, after) in before.series.iter().zip(&after.series) {
+            match before.ink {
+                Ink::Scene => assert_eq!(after.points[0].values[1..3], [Some(1.0), Some(2.0)]),
+                _ => assert_eq!(before, after),
+            }
+        }
+        assert_eq!(after.series.iter().filter(|series| series.ink == Ink::Scene).count(), 1);
+    }
+}
