@@ -372,11 +372,17 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         scene.solver.accept_after = 0;
         let iterations = count(simulation.iterations(), "iteration");
         let text = fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations);
-        let offer = tr("Iterate to the tolerance").to_owned();
-        return Some(Remedy { text, offer, action: Action::Edit("Accept after", scene) });
+        let (offer, label) = match rho(input).is_some_and(|rho| rho > 1.0) {
+            true => {
+                scene.solver.method = MethodKind::Newton;
+                (tr("Use newton"), "Method")
+            }
+            false => (tr("Iterate to the tolerance"), "Accept after"),
+        };
+        return Some(Remedy { text, offer: offer.to_owned(), action: Action::Edit(label, scene) });
     }
     if errors.source == Some(ErrorSource::Theory) {
-        return Some(with_newton(fill!("%{error} error: linear theory holds for small rotations only.", error = off)));
+        return Some(with_newton(fill!("%{error} error of linear theory.", error = off)));
     }
     if scene.element() == ElementKind::T3 {
         let better = [ElementKind::T6, ElementKind::Q4].into_iter().find(|e| scene.elements().any(|own| own == *e))?;

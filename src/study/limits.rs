@@ -431,16 +431,32 @@ impl MethodLimits {
             },
         );
         let references = References { scene, known: Mutex::default() };
-        all_done(parallel::map(
-            &factors.iter().copied().enumerate().collect::<Vec<_>>(),
-            |&(i, factor), observe| {
-                let known = references.at(factor, observe)?;
-                let displacement = known.map(|known| known.displacement);
-                so_far.change(|limits| _ = limits.reference.get_mut(i).map(|(_, u)| *u = displacement));
-                Ok(known)
-            },
-            |done| observe(Progress { fraction: done as f64 / all, now: Some(&now[0]) }),
-        ))?;
+        let solve_references = |factors: &[f64], before: usize| {
+            let found = parallel::map(
+                factors,
+                |&factor, observe| {
+                    let displacement = references.at(factor, observe)?.map(|known| known.displacement);
+                    so_far.change(|limits| {
+                        let known = limits.reference.iter_mut().find(|(own, _)| *own == factor);
+                        let _ = known.map(|(_, u)| *u = displacement);
+                    });
+                    Ok(())
+                },
+                |done| observe(Progress { fraction: ((before + done) as f64 / all).min(1.0), now: Some(&now[0]) }),
+            );
+            all_done(found)
+        };
+        solve_references(&factors, 0)?;
+        let added = steep(&so_far.reference());
+        so_far.change(|limits| {
+            limits.reference.extend(added.iter().map(|&factor| (factor, None)));
+            limits.reference.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        });
+        solve_references(&added, factors.len())?;
+        let mut factors = factors;
+        factors.extend(added);
+        factors.sort_by(f64::total_cmp);
+        let all = (factors.len() + settings.len()) as f64;
         settings.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
         });
@@ -592,6 +608,11 @@ impl<'a> SoFar<'a> {
         self.change(|limits| _ = limits.strips.get_mut(row).map(|old| old.clone_from(strip)));
     }
 
+    /// Returns the reference displacements.
+    fn reference(&self) -> Vec<(f64, Option<Vector2<f64>>)> {
+        self.limits.lock().unwrap_or_else(PoisonError::into_inner).reference.clone()
+    }
+
     fn end(self) -> MethodLimits {
         self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
@@ -622,6 +643,25 @@ fn factors(critical: Option<f64>) -> Vec<f64> {
     let mut all: Vec<f64> = spaced.chain(near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor))).collect();
     all.sort_by(f64::total_cmp);
     all
+}
+
+/// Returns further parts of the load, between those at which the reference displacement grows much faster than the load,
+/// as next to buckling with an imperfection: there the errors have a peak.
+fn steep(reference: &[(f64, Option<Vector2<f64>>)]) -> Vec<f64> {
+    /// Power of the load above which a displacement grows fast.
+    const FAST: f64 = 2.0;
+    /// Number of parts of an interval of loads.
+    const PARTS: i32 = 4;
+    let grows_fast = |pair: &&[(f64, Option<Vector2<f64>>)]| {
+        let [(from, a), (to, b)] = [pair[0], pair[1]];
+        let ratio = b.zip(a).map_or(1.0, |(b, a)| b.norm() / a.norm());
+        ratio.ln() > FAST * (to / from).ln()
+    };
+    let between = |pair: &[(f64, Option<Vector2<f64>>)]| {
+        let [from, to] = [pair[0].0, pair[1].0];
+        (1..PARTS).map(move |part| from * (to / from).powf(f64::from(part) / f64::from(PARTS)))
+    };
+    reference.windows(2).filter(grows_fast).flat_map(between).collect()
 }
 
 /// Returns the part of the load at which the load path from rest buckles or jumps, if it does so in the range.
@@ -670,7 +710,7 @@ fn follow(
     Ok(strip)
 }
 
-/// Adds results where the error grows too much between two loads to be interpolated, unless the reference at the larger
+/// Adds results where the error grows too much between two loads to be interpolated, and beside a peak, unless the reference at the larger
 /// one `is_costly`.
 fn refine(
     mut strip: Strip,
@@ -678,6 +718,14 @@ fn refine(
     is_costly: &dyn Fn(f64) -> bool,
 ) -> Result<Strip, StudyError> {
     for percent in [GOOD, USABLE] {
+        for _ in 0..REFINEMENTS {
+            let Some(between) = peak_below(&strip, percent) else { break };
+            for [from, to] in between {
+                let point = if is_costly(to) { None } else { solve((from * to).sqrt())? };
+                strip.points.extend(point);
+            }
+            strip.points.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        }
         for _ in 0..REFINEMENTS {
             let Some((next, [from, to])) = coarse_crossing(&strip, percent) else { break };
             if is_costly(to) {
@@ -688,6 +736,19 @@ fn refine(
         }
     }
     Ok(strip)
+}
+
+/// Returns the intervals of loads beside the largest error before the first one above `percent`, if it may exceed that
+/// between them.
+fn peak_below(strip: &Strip, percent: f64) -> Option<[[f64; 2]; 2]> {
+    /// Part of the limit from which on a measured peak may belong to one above the limit.
+    const CLOSE: f64 = 0.5;
+    let known: Vec<(f64, f64)> = strip.known().take_while(|(_, error)| *error <= percent).collect();
+    let peak = known.windows(3).find(|near| {
+        let [before, peak, after] = [near[0].1, near[1].1, near[2].1];
+        peak > CLOSE * percent && before < peak && after < peak
+    })?;
+    Some([[peak[0].0, peak[1].0], [peak[1].0, peak[2].0]])
 }
 
 /// Returns the two loads between which the error first exceeds `percent`, and the index of the second result, if the
@@ -716,6 +777,7 @@ fn end_between(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::reference::first_probe;
 
     fn point(factor: f64, error_percent: Option<f64>, max_strain: f64) -> LimitPoint {
         LimitPoint { factor, displacement: Vector2::zeros(), error_percent, max_strain, inverted_elements: 0 }
@@ -800,6 +862,31 @@ mod tests {
         let warped = limits.strips.iter().find(|strip| strip.method == MethodKind::Warped && strip.ends_at.is_some());
         let warped = warped.unwrap();
         assert_eq!(warped.points.last().map(|point| point.factor), warped.ends_at, "the error is known at the end");
+    }
+
+    /// Next to the buckling load of a column with an imperfection the error has a peak, which is not missed: single solves
+    /// there are within the limits of their strip.
+    #[test]
+    fn the_peak_of_the_error_of_an_imperfect_column_is_found() {
+        let source = crate::scene::Source { name: "column".into(), assignments: Vec::new() };
+        let column = crate::scene::open(&source).unwrap();
+        let limits = MethodLimits::of(&column, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+        for factor in [0.68, 500.0 / 700.0, 0.73] {
+            let reference = Reference::of(&at(&column, factor)).unwrap().first().unwrap();
+            for element in [ElementKind::T6, ElementKind::Q4] {
+                let mut scene = at(&column, factor);
+                scene.set_element(element);
+                let mut simulation = Simulation::new(&scene).unwrap();
+                simulation.solve();
+                let probe = first_probe(&simulation).unwrap();
+                let error = reference.error_bound(error_percent(probe, reference.displacement).unwrap());
+                let is_own = |strip: &&Strip| strip.element == element && strip.method == MethodKind::Newton;
+                let strip = limits.strips.iter().find(is_own).unwrap();
+                let piece = strip.pieces(RANGE).into_iter().find(|piece| factor < piece.range[1]).unwrap();
+                let stated = if piece.rating == Rating::Good { GOOD } else { USABLE };
+                assert!(error < 1.1 * stated, "{element:?} at {factor}: {error} %, {piece:?}");
+            }
+        }
     }
 
     /// A strip that is never within 5 % ends with the load up to which the method converges.

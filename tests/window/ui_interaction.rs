@@ -286,6 +286,9 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     type_into(&mut harness, "Force", "60000");
     settle(&mut harness);
     harness.get_by_label("Accepted · 3 iterations · diverges if it runs on");
+    harness.get_by_label("Use newton").click();
+    wait(&mut harness, "equilibrium", |lab| *lab.simulation().status() == Status::Converged);
+    assert_eq!(harness.state().scene().solver.accept_after, 0);
 }
 
 /// A body that is held is not said to be at another equilibrium than the one to which loading leads.

@@ -264,7 +264,7 @@ pub(super) fn show(
         }
         edited = Some(scene);
     }
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(tr("Add"));
         for (word, tip, added) in ADDITIONS {
             if ui.add(option_button(false, tr(word))).on_hover_text(tr(tip)).clicked() {
@@ -353,10 +353,10 @@ fn with_another_probe(input: &Readout<'_>) -> Box<Scene> {
     let mesh = input.simulation.system().mesh();
     let (low, high) = mesh.bounds();
     let is_free = |place: &Place| input.scene.probes.iter().all(|probe| probe.place != *place);
-    let mut places = points(input.scene).filter_map(|(_, place)| match place {
+    let places = points(input.scene).filter_map(|(_, place)| match place {
         Place::At(at) if is_free(&place) => Some(Vector2::from(at)),
         _ => None,
     });
-    let at = places.next().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
+    let at = places.last().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
     Box::new(with_probe(input.scene, input.simulation.system(), at))
 }

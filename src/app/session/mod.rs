@@ -716,9 +716,7 @@ impl Session {
     pub(crate) fn keep_converged(&mut self) {
         let simulation = &self.simulation;
         let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
-        if matches!(simulation.status(), Status::Converged | Status::Accepted)
-            && !self.converged.as_ref().is_some_and(is_kept)
-        {
+        if *simulation.status() == Status::Converged && !self.converged.as_ref().is_some_and(is_kept) {
             self.converged = simulation.equilibrium().map(Equilibrium::snapshot);
         } else if matches!(simulation.status(), Status::Diverged(_)) && self.converged().is_none() {
             let mut scene = self.scene.clone();
