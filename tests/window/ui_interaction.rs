@@ -1017,7 +1017,9 @@ fn loads_and_supports_are_put_on_other_edges() {
     };
     assert_eq!(first, second);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
-    harness.get_by_role_and_label(Role::Button, "Probe").click();
+    let button = harness.get_by_role_and_label(Role::Button, "Probe");
+    assert!(button.rect().right() < 1270.0, "{:?} widens the panel", button.rect());
+    button.click();
     harness.run();
     let place = |harness: &Harness<'_, Lab>| harness.state().scene().probes.get(1).map(|probe| probe.place.clone());
     assert!(matches!(place(&harness), Some(Place::At(_))), "{:?}", harness.state().scene().probes);
