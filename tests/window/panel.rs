@@ -438,7 +438,7 @@ fn remedies_are_one_click_away() {
     let mut harness = self::harness("cook");
     wait(&mut harness, "the truth", |lab| !lab.is_computing());
     harness.run();
-    assert!(harness.query_by_label_contains("holds for small rotations only").is_some(), "{:?}", texts(&harness));
+    assert!(harness.query_by_label_contains("error of linear theory").is_some(), "{:?}", texts(&harness));
 }
 
 /// The window says that a force acts on another point than the one of the scene, and that an error is unknown; an
