@@ -199,8 +199,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     if simulation.iterations() > 0 {
         add(count(simulation.iterations(), "iteration"));
     }
-    let runs_away = *simulation.status() == Status::Accepted && rho(input).is_some_and(|rho| rho > 1.0);
-    if runs_away {
+    if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
     }
     moved_points(simulation).iter().for_each(|point| add(said(point)));
@@ -208,7 +207,7 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
         path.claims().for_each(|claim| add(said(&claim)));
     }
     let is_critical = input.path.and_then(|path| path.critical).is_some_and(|critical| critical.factor <= 1.0);
-    (text, inside_out || is_critical || runs_away || stability(simulation) == Some(false))
+    (text, inside_out || is_critical || runs_away(input) || stability(simulation) == Some(false))
 }
 
 /// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
@@ -221,6 +220,13 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
 pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
     let own = || input.simulation.equilibrium().filter(|_| input.simulation.status().is_success());
     input.equilibrium_rho.or_else(|| own()?.certificate()?.fixed_point_rho)
+}
+
+/// Returns `true` if a result was accepted of a warped iteration that diverges if it runs on.
+fn runs_away(input: &Readout<'_>) -> bool {
+    let is_accepted = *input.simulation.status() == Status::Accepted;
+    let is_warped = input.scene.solver.method == MethodKind::Warped;
+    is_accepted && is_warped && rho(input).is_some_and(|rho| rho > 1.0)
 }
 
 /// Describes the last equilibrium that is drawn in place of a state that diverges: its load, and the load that was
@@ -297,9 +303,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         ));
     }
     let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
-    if let Some(rho) =
-        rho.filter(|rho| !simulation.status().is_success() || *simulation.status() == Status::Accepted && *rho > 1.0)
-    {
+    if let Some(rho) = rho.filter(|_| !simulation.status().is_success() || runs_away(input)) {
         let n = rho_number(rho);
         lines.push(if rho > 1.0 {
             fill!(
@@ -372,7 +376,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         scene.solver.accept_after = 0;
         let iterations = count(simulation.iterations(), "iteration");
         let text = fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations);
-        let (offer, label) = match rho(input).is_some_and(|rho| rho > 1.0) {
+        let (offer, label) = match runs_away(input) {
             true => {
                 scene.solver.method = MethodKind::Newton;
                 (tr("Use newton"), "Method")

@@ -453,9 +453,7 @@ impl MethodLimits {
             limits.reference.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         });
         solve_references(&added, factors.len())?;
-        let mut factors = factors;
-        factors.extend(added);
-        factors.sort_by(f64::total_cmp);
+        let factors: Vec<f64> = so_far.reference().into_iter().map(|(factor, _)| factor).collect();
         let all = (factors.len() + settings.len()) as f64;
         settings.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
@@ -670,8 +668,7 @@ fn critical(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
         return None;
     }
     let path = LoadPath::observed(&at(scene, RANGE[1]).with_method(MethodKind::Newton), observe)?;
-    let events = [path.jump.map(|jump| jump.factor), path.summary().buckling.map(|buckling| buckling.factor)];
-    events.into_iter().flatten().reduce(f64::min).map(|factor| RANGE[1] * factor)
+    path.summary().first_event().map(|factor| RANGE[1] * factor)
 }
 
 /// Returns the scene under a part of its loads and prescribed displacements.
@@ -710,8 +707,8 @@ fn follow(
     Ok(strip)
 }
 
-/// Adds results where the error grows too much between two loads to be interpolated, and beside a peak, unless the reference at the larger
-/// one `is_costly`.
+/// Adds results where the error grows too much between two loads to be interpolated, and beside a peak, unless the
+/// reference at the larger load `is_costly`.
 fn refine(
     mut strip: Strip,
     solve: &dyn Fn(f64) -> Result<Option<LimitPoint>, StudyError>,

@@ -124,6 +124,12 @@ impl PathSummary {
         Self { jump, buckling, ..Self::default() }
     }
 
+    /// Returns the load factor at which the path first jumps or buckles.
+    pub(super) fn first_event(&self) -> Option<f64> {
+        let events = [self.jump.map(|jump| jump.factor), self.buckling.map(|buckling| buckling.factor)];
+        events.into_iter().flatten().reduce(f64::min)
+    }
+
     /// Returns the critical load of the path next to the load of a simulation under linear theory.
     fn of_linear(simulation: &Simulation, observe: Observer<'_>) -> Self {
         Self { critical: Self::default().critical_load(simulation, observe), ..Self::default() }
@@ -132,12 +138,10 @@ impl PathSummary {
     /// Returns the critical load next to the load of a simulation's scene: `None` if the path jumps or buckles below, or
     /// cannot be followed to it.
     fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<CriticalLoad> {
-        if self.jump.is_some() || self.buckling.is_some() {
+        if self.first_event().is_some() {
             return None;
         }
-        let beyond = LoadPath::end_of(simulation, NEXT, observe)?.summary;
-        let events = [beyond.jump.map(|jump| jump.factor), beyond.buckling.map(|buckling| buckling.factor)];
-        let factor = NEXT * events.into_iter().flatten().reduce(f64::min)?;
+        let factor = NEXT * LoadPath::end_of(simulation, NEXT, observe)?.summary.first_event()?;
         (factor > 1.0 || simulation.is_linear())
             .then(|| CriticalLoad { factor, drive: Drive::of(simulation.problem()) })
     }
@@ -230,7 +234,7 @@ impl LoadPath {
             None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
             None => return None,
         };
-        if is_small && summary.critical.is_none() && summary.elsewhere.is_none() {
+        if is_small && summary.elsewhere.is_none() {
             summary.critical = summary.critical_load(simulation, observe);
         }
         if is_small && summary.elsewhere.is_none() && simulation.problem().supports().move_the_body() {

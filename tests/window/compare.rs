@@ -1,8 +1,6 @@
 //! Tests of the mode Compare, operated by pointer, keys and labels.
 
-use std::time::{Duration, Instant};
-
-use crate::common::lab::pick;
+use crate::common::lab::{self, pick};
 use crate::common::pictures::{distance, pixel};
 use crate::common::{scene, scene_with};
 use egui::Key;
@@ -33,14 +31,8 @@ fn harness_of(id: &str, scene: Scene) -> Harness<'static, Lab> {
 
 /// Draws frames until a condition holds.
 fn wait(harness: &mut Harness<'_, Lab>, what: &str, holds: impl Fn(&Lab) -> bool) {
-    let start = Instant::now();
-    while !holds(harness.state()) {
-        assert!(start.elapsed() < Duration::from_secs(120), "waiting for {what}");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.step();
-    }
-    harness.step();
-    harness.step();
+    lab::wait(harness, what, holds);
+    harness.run_steps(2);
 }
 
 fn have_ended(lab: &Lab) -> bool {

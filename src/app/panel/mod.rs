@@ -15,7 +15,7 @@ use crate::app::widgets::buttons::choice;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale, show_message};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::method::METHODS;
-use crate::scene::{Analysis, Scene};
+use crate::scene::{Analysis, Scene, limits};
 
 mod body;
 pub(crate) mod edges;
@@ -268,7 +268,7 @@ fn accept_after(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, action
     let field = NumberField {
         label: "Accept after",
         tooltip: "Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.",
-        limit: crate::scene::limits::ACCEPT_AFTER,
+        limit: limits::ACCEPT_AFTER,
         slider: 0.0..=20.0,
         scale: SliderScale::Linear,
         whole: true,

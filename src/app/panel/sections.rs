@@ -14,7 +14,7 @@ use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Scene, SectionLine, limits};
 use crate::study::section_chart;
 
-/// Returns a summary: the number of sections, or the forces of a single one.
+/// Returns a summary: the number of sections.
 pub(super) fn summary(input: &Readout<'_>) -> String {
     input.scene.sections.len().to_string()
 }
