@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::Palette;
+use crate::exact_beam::error_percent;
 use crate::format::{self, engineering, number, three_digits, two_digits};
 use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
@@ -50,7 +51,17 @@ pub(crate) struct Errors {
     /// The error with the largest error of the reference added.
     pub bound: Option<f64>,
     pub linear: Option<f64>,
+    /// Error of a solve from rest that is accepted early, if it differs from the state's own: iterations from another
+    /// state are closer or farther.
+    pub from_rest: Option<f64>,
     pub source: Option<ErrorSource>,
+}
+
+impl Errors {
+    /// Returns the larger one of the bound of the error and the error from rest.
+    pub(crate) fn worst(&self) -> Option<f64> {
+        self.bound.map(|bound| self.from_rest.map_or(bound, |from_rest| from_rest.max(bound)))
+    }
 }
 
 /// Compares the state, and the state of linear theory, with the reference solution. Returns no errors while the body
@@ -83,7 +94,10 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     });
     let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
-    Errors { own, bound: own.map(|error| first.error_bound(error)), linear, source }
+    let accepted = input.from_rest.filter(|_| *simulation.status() == Status::Accepted);
+    let from_rest = accepted.and_then(|solve| error_percent(solve.displacement?, first.displacement));
+    let from_rest = from_rest.filter(|error| own.is_some_and(|own| percent(own) != percent(*error)));
+    Errors { own, bound: own.map(|error| first.error_bound(error)), linear, from_rest, source }
 }
 
 /// Errors above this value, percent, are large: they need a remedy.
@@ -97,7 +111,7 @@ const COARSE: f64 = 0.25;
 ///
 /// `is_raw` is `true` if the field is drawn as it is in the elements: its largest strain is not the recovered one.
 pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Option<String> {
-    let own = errors.own.filter(|_| *input.simulation.status() == Status::Converged)?;
+    let own = errors.own.filter(|_| input.simulation.status().is_success())?;
     if input.quality.is_inside_out(input.simulation) {
         return Some(tr("inverted elements").to_owned());
     }
@@ -108,7 +122,8 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Optio
     let known = input.reference.and_then(Reference::first);
     let known = known.filter(|first| is_hidden || is_large(own) && first.own_error_percent > COARSE * own);
     let coarse = known.map(|first| fill!("reference ± %{own}", own = percent(first.own_error_percent)));
-    let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();
+    let from_rest = errors.from_rest.map(|error| fill!("from rest %{error}", error = percent(error)));
+    let doubts: Vec<String> = from_rest.into_iter().chain(strained).chain(coarse).collect();
     if !doubts.is_empty() {
         return Some(doubts.join(" · "));
     }
@@ -171,7 +186,8 @@ pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converge
 }
 
 /// Returns the status in one line, such as `Converged · stable · 21 iterations`, and `true` if it needs attention.
-pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
+/// `remedy` stands beside it: its sentence is not repeated.
+pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, bool) {
     let simulation = input.simulation;
     let (mut text, bad) = status_text(simulation, input.running, input.shows_converged);
     if bad {
@@ -204,7 +220,8 @@ pub(crate) fn summary(input: &Readout<'_>) -> (String, bool) {
     }
     moved_points(simulation).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
-        path.claims().for_each(|claim| add(said(&claim)));
+        let is_new = |text: &String| remedy.is_none_or(|remedy| remedy.text != sentence(text));
+        path.claims().map(|claim| said(&claim)).filter(is_new).for_each(&mut add);
     }
     let is_critical = input.path.and_then(|path| path.critical).is_some_and(|critical| critical.factor <= 1.0);
     (text, inside_out || is_critical || runs_away(input) || stability(simulation) == Some(false))
@@ -369,13 +386,19 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
         return Some(Remedy { text, offer, action: Action::Reset });
     }
-    let off = errors.own.filter(|&error| is_large(error))?;
-    let off = percent(off);
-    if errors.source == Some(ErrorSource::MeshOrIteration) {
+    let own = errors.own.filter(|&error| is_large(error));
+    let from_rest = errors.from_rest.filter(|&error| is_large(error) && own.is_none_or(|own| error > own));
+    let off = percent(from_rest.or(own)?);
+    if from_rest.is_some() || errors.source == Some(ErrorSource::MeshOrIteration) {
         let mut scene = Box::new(scene.clone());
         scene.solver.accept_after = 0;
         let iterations = count(simulation.iterations(), "iteration");
-        let text = fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations);
+        let text = match from_rest {
+            Some(_) => {
+                fill!("%{error} error from rest, accepted after %{iterations}.", error = off, iterations = iterations)
+            }
+            None => fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations),
+        };
         let (offer, label) = match runs_away(input) {
             true => {
                 scene.solver.method = MethodKind::Newton;

@@ -7,7 +7,7 @@ use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::Scene;
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
-use crate::study::{PathSummary, Reference};
+use crate::study::{PathSummary, Reference, SolveFromRest};
 use crate::timings::Timings;
 
 /// State of the model and of its results that the toolbar, the panel and the status bar show.
@@ -34,8 +34,8 @@ pub(crate) struct Readout<'a> {
     pub iterations: u32,
     /// Time of the iterations made for the last displayed frame.
     pub timings: &'a Timings,
-    /// Time of a solve from rest; `None` until it has been measured.
-    pub solve_time: Option<&'a Timings>,
+    /// Time and result of a solve from rest; `None` until it has been measured.
+    pub from_rest: Option<&'a SolveFromRest>,
     /// Residual after every iteration since the last change.
     pub residuals: &'a [f64],
     pub can_undo: bool,

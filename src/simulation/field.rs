@@ -176,6 +176,8 @@ impl Field {
             let points = problem.system().elements().points_per_element();
             let own = error.elements.iter().flat_map(|&v| std::iter::repeat_n(v.is_finite().then_some(v), points));
             values.extend(own);
+            // The mesh is too coarse for an estimate.
+            values.resize(problem.system().elements().point_count(), None);
             return;
         }
         if self.is_of_displacement() {

@@ -31,7 +31,8 @@ pub struct ErrorEstimate {
     /// the range of f64.
     pub percent: Option<f64>,
     /// Distribution over the elements: the root of each element's η² per area, relative to that of ‖u‖² per area of the
-    /// body, percent. Its mean square over the body is the square of [`Self::percent`].
+    /// body, percent. Its mean square over the body is the square of [`Self::percent`]. Empty for a single row of
+    /// four-node elements.
     pub elements: Vec<f64>,
 }
 
@@ -87,7 +88,11 @@ impl ErrorEstimate {
         let whole = energy + error;
         let known = whole > 0.0 && whole.is_finite();
         let percent = |share: f64| if known { 100.0 * (share / whole).sqrt() } else { 0.0 };
-        self.percent = (known && !(one_rotation && is_a_single_row(mesh))).then(|| percent(error));
+        if one_rotation && is_a_single_row(mesh) {
+            (self.percent, self.elements) = (None, Vec::new());
+            return;
+        }
+        self.percent = known.then(|| percent(error));
         self.elements.iter_mut().for_each(|density| *density = percent(*density * area));
     }
 }

@@ -96,7 +96,7 @@ pub struct LimitPoint {
     /// Displacement of the first probe, m; of a motion at its end.
     pub displacement: Vector2<f64>,
     /// Largest error against the reference solution, percent of its displacement, its own error included; `None` if the
-    /// reference solution is not known.
+    /// reference solution is not known, or is too inaccurate to tell if the error is within [`USABLE`].
     pub error_percent: Option<f64>,
     /// Largest strain, of a motion over its time.
     pub max_strain: f64,
@@ -175,6 +175,14 @@ impl Strip {
     #[must_use]
     pub fn last_known(&self) -> Option<(f64, f64)> {
         self.known().last()
+    }
+
+    /// Returns the last load with a known error, and the error, if errors at larger loads in the range are not known although
+    /// the method converges there.
+    fn ends_early(&self, range: [f64; 2]) -> Option<(f64, f64)> {
+        let end = self.ends_at.unwrap_or(range[1]);
+        self.last_known()
+            .filter(|(last, _)| *last < end && self.points.last().is_some_and(|point| point.factor > *last))
     }
 
     /// Returns the loads with their errors up to the first load at which the error is not known.
@@ -306,6 +314,12 @@ impl Strip {
             (None, _) if let (None, Some(from)) = (percent, self.usable_from(range)) => {
                 Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = load_text(axis, from)))
             }
+            // Beyond, the error is not known.
+            (None, _) if let (Some(percent), Some((factor, _))) = (percent, self.ends_early(range)) => Some(sentence!(
+                "%{percent} % to at least %{load}",
+                percent = number(percent),
+                load = load_text(axis, factor)
+            )),
             (None, None) if percent.is_none() => Some(sentence!("not within %{percent} %", percent = number(USABLE))),
             (None, Some(0.0)) if self.integrator.is_some() => {
                 Some(sentence!("not at %{load}", load = load_text(axis, range[0])))
@@ -474,8 +488,7 @@ impl MethodLimits {
                     let Deformation { max_strain, inverted_elements, .. } =
                         Deformation::of(problem, solved.state(), &solved.nodal_stress());
                     let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
-                    let error_percent = known
-                        .and_then(|known| Some(known.error_bound(error_percent(displacement, known.displacement)?)));
+                    let error_percent = known.and_then(|known| known_error(&known, displacement));
                     Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
                 };
                 let converges = |factor: f64| Ok(solve(factor)?.is_some());
@@ -614,6 +627,14 @@ impl<'a> SoFar<'a> {
     fn end(self) -> MethodLimits {
         self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Returns the largest error of a displacement, percent; `None` if the reference's own error hides if it is usable.
+fn known_error(reference: &ProbeReference, displacement: Vector2<f64>) -> Option<f64> {
+    let distance = error_percent(displacement, reference.displacement)?;
+    let bound = reference.error_bound(distance);
+    let is_hidden = reference.own_error_percent > GOOD && distance <= USABLE && bound > USABLE;
+    (!is_hidden).then_some(bound)
 }
 
 /// Returns the load between two loads with values at which the value is `level`: values are powers of the load in
@@ -811,13 +832,34 @@ mod tests {
         let points = vec![point(1.0, Some(3.0), 1e-3), point(2.0, None, 1e-3), point(4.0, Some(7.0), 1e-3)];
         let strip = Strip { points, done: 1.0, ..Strip::new(&scene) };
         assert_eq!((strip.within(USABLE), strip.last_known()), (None, Some((1.0, 3.0))));
+        let end = |strip: &Strip| strip.end(&axis(&scene), [1.0, 8.0]).unwrap().to_string();
+        assert_eq!(end(&strip), "5 % to at least 1 kN");
         let unknown = strip.pieces([1.0, 8.0]).into_iter().find(|piece| piece.rating == Rating::Unknown).unwrap();
         assert_eq!(unknown.range, [1.0, 4.0]);
         // An error that falls is within 5 % from where it does.
         let falling = vec![point(1.0, Some(9.0), 1e-3), point(4.0, Some(1.0), 1e-3)];
         let strip = Strip { points: falling, done: 1.0, ..Strip::new(&scene) };
-        let end = strip.end(&axis(&scene), [1.0, 8.0]).unwrap().to_string();
-        assert!(end.starts_with("5 % from 1.4"), "{end}");
+        assert!(end(&strip).starts_with("5 % from 1.4"), "{}", end(&strip));
+    }
+
+    /// Where a fine mesh folds, the reference of `article` is inaccurate: the error of a good element is not known there,
+    /// that of one that locks is large all the same.
+    #[test]
+    fn an_inaccurate_reference_ends_what_is_known() {
+        let source = crate::scene::Source { name: "article".into(), assignments: Vec::new() };
+        let article = at(&crate::scene::open(&source).unwrap(), 74.0 / 30.0);
+        let reference = Reference::of(&article).unwrap();
+        let first = reference.first().unwrap();
+        assert!(reference.folds && first.own_error_percent > USABLE, "{first:?}");
+        let error = |element: ElementKind| {
+            let mut scene = article.clone().with_method(MethodKind::Newton);
+            scene.set_element(element);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.solve();
+            known_error(&first, first_probe(&simulation).unwrap())
+        };
+        assert_eq!(error(ElementKind::T6), None);
+        assert!(error(ElementKind::T3).is_some_and(|error| error > USABLE));
     }
 
     /// A column buckles at Euler's load; a beam that is bent does not.

@@ -42,6 +42,6 @@ pub(crate) use reference::MAX_CERTIFIED;
 pub(crate) use reference::{FOLDS, is_known_unstable};
 pub use reference::{ProbeReference, Reference, ReferenceSource};
 pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
-pub use timing::{time_from_rest, times_from_rest};
+pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
 pub use trade::{ErrorSplit, Measurement, Setting, Study};
 pub use tune::Tuning;

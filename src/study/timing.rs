@@ -3,8 +3,11 @@
 use std::ops::RangeInclusive;
 use std::sync::{Mutex, PoisonError};
 
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use web_time::{Duration, Instant};
 
+use super::reference::first_probe;
 use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::simulation::{Simulation, Status};
@@ -27,12 +30,22 @@ const COARSE_CLOCK: Option<Duration> =
 /// Held while solves are timed: two timed at once would slow each other down.
 static TIMED: Mutex<()> = Mutex::new(());
 
-/// Returns the time of a solve of a scene from rest, the median of repeated solves; `None` for a motion, and if the
-/// scene cannot be solved or the computation is cancelled.
+/// Time and result of a solve from rest.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct SolveFromRest {
+    /// Median times of repeated solves.
+    pub timings: Timings,
+    /// Displacement of the first probe at the end, m; `None` if the scene has no probe.
+    pub displacement: Option<Vector2<f64>>,
+}
+
+/// Times the solve of a scene from rest; returns `None` for a motion, and if the scene cannot be solved or the
+/// computation is cancelled.
 #[must_use]
-pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<Timings> {
+pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
-    times_from_rest(&mut simulation, u32::MAX, observe)?.pop()
+    let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop()?;
+    Some(SolveFromRest { timings, displacement: first_probe(&simulation).ok() })
 }
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::rotation::Rotation;
 use warpbeam::study::Reference;
-use warpbeam::{Axis, ElementKind, Load, Material, Mesh, Plane, Scene, Simulation, Status};
+use warpbeam::{Axis, ElementKind, Field, Load, Material, Mesh, Plane, Scene, Simulation, Status};
 
 /// Young's modulus of all scenes in this file, Pa.
 const YOUNG: f64 = 1e6;
@@ -308,6 +308,21 @@ fn the_mesh_error_is_about_the_true_one() {
                 assert!((0.5..2.0).contains(&effectivity), "{text}");
             }
         }
+    }
+}
+
+/// Where the mesh is too coarse for an estimate, its field has no values either.
+#[test]
+fn the_field_of_the_mesh_error_is_known_where_the_error_is() {
+    let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1e3]).with_element(ElementKind::Q4);
+    for (across, is_known) in [(1, false), (2, true)] {
+        let simulation = crate::common::solved(&scene.clone().with_cells(10, across));
+        let error = simulation.mesh_error(&simulation.nodal_stress());
+        let mut values = Vec::new();
+        simulation.field(Field::MeshError, &mut values);
+        assert_eq!(values.len(), 4 * simulation.mesh().element_count());
+        assert_eq!(error.percent.is_some(), is_known);
+        assert!(values.iter().all(|value| value.is_some() == is_known), "{values:?}");
     }
 }
 

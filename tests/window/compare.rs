@@ -259,9 +259,9 @@ fn bodies_are_drawn(harness: &mut Harness<'_, Lab>, magnification: f64) {
     let drawn = picture(&gpu, harness.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     let lab = harness.state();
     let background = lab.frame().background;
-    for pane in lab.panes() {
-        let place = pane.place().unwrap();
-        let simulation = pane.simulation().unwrap();
+    let at_rest = lab.panes().iter().map(|pane| (pane.place(), pane.simulation()));
+    let moving = lab.motion_panes().iter().map(|pane| (pane.place(), pane.simulation()));
+    for (place, simulation) in at_rest.chain(moving).filter_map(|(place, simulation)| place.zip(simulation)) {
         let mesh = simulation.system().mesh();
         let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
         let mut seen = 0;
@@ -271,7 +271,7 @@ fn bodies_are_drawn(harness: &mut Harness<'_, Lab>, magnification: f64) {
             let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
             seen += u32::from(distance(pixel, background) > 8);
         }
-        assert_eq!(seen as usize, mesh.element_count(), "{}: the body is elsewhere", pane.setting());
+        assert_eq!(seen as usize, mesh.element_count(), "{place}: the body is elsewhere");
     }
 }
 
@@ -293,6 +293,37 @@ fn panes_magnify_the_displacement() {
         let factor = factor(text);
         bodies_are_drawn(&mut harness, factor);
     }
+}
+
+/// Panes of motions magnify the displacement, and say so; the automatic factor is that of the largest displacement so far.
+#[test]
+fn panes_of_motions_magnify_the_displacement() {
+    let mut weak = scene("chime");
+    weak.scale_loads(0.05);
+    let mut harness = harness_of("chime", weak);
+    harness.step();
+    harness.key_press(Key::K);
+    wait(&mut harness, "motions", |lab| lab.motion_panes().iter().all(|pane| pane.simulation().is_some()));
+    let moves = |lab: &Lab| {
+        let bodies = lab.motion_panes().iter().filter_map(|pane| pane.simulation());
+        bodies.flat_map(|body| body.displacement()).any(|u| u.norm() > 1e-5)
+    };
+    wait(&mut harness, "a displacement", moves);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let mut shown = |magnification: Magnification| {
+        harness.state_mut().magnify(magnification);
+        harness.run_steps(60);
+        let texts = painted(&harness, "displacement × ");
+        let [(_, text)] = texts.as_slice() else {
+            panic!("{texts:?} {:?} {:?}", painted(&harness, ""), labels(&harness))
+        };
+        let factor = text.trim_start_matches("displacement × ").parse::<f64>().unwrap();
+        bodies_are_drawn(&mut harness, factor);
+        factor
+    };
+    assert_eq!(shown(Magnification::Factor(10.0)), 10.0);
+    assert!(shown(Magnification::Automatic) > 2.0);
 }
 
 /// All panes share one camera: a pan in one moves the body in all of them, to where it is drawn.

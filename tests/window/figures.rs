@@ -78,7 +78,7 @@ fn a_wrong_displacement_of_the_right_length_has_an_error() {
 
     let mut harness = with_curve(cantilever);
     harness.run();
-    assert_eq!(label(&harness, "linear theory: "), "linear theory: (0, -2.23) m");
+    assert_eq!(label(&harness, "linear beam theory: "), "linear beam theory: (0, -2.23) m");
     assert!(label(&harness, "exact beam: ").starts_with("exact beam: (-0.27"));
 }
 
@@ -225,7 +225,7 @@ fn curves_are_saved_as_files() {
     let own: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.exact.x, s.exact.y]).collect();
     assert_eq!(points(&rows, "exact beam"), own);
     let linear: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.linear.x, s.linear.y]).collect();
-    assert_eq!(points(&rows, "linear theory"), linear);
+    assert_eq!(points(&rows, "linear beam theory"), linear);
     assert_eq!(points(&rows, "linear error 3, 5, 10 %").len(), 3);
 
     export(&mut harness, "SVG");

@@ -787,13 +787,23 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     // A study of another load has no setting for this one.
     assert!(harness.query_by_label_contains("The body or its load has changed since").is_some());
     type_into(&mut harness, "Error ≤", "5");
+    type_into(&mut harness, "Time ≤", "1e5");
     assert!(harness.get_by_label("Apply the fastest").accesskit_node().is_disabled());
+    let is_offered_in_compare = |harness: &mut Harness<'_, Lab>| {
+        harness.key_press(Key::K);
+        harness.run_steps(2);
+        let is_disabled = harness.get_by_label("current | budget").accesskit_node().is_disabled();
+        harness.key_press(Key::B);
+        harness.run_steps(2);
+        !is_disabled
+    };
+    assert!(!is_offered_in_compare(&mut harness), "Compare offers the setting of another load");
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
     harness.run();
     assert_eq!(force(harness.state()), before);
     assert!(harness.query_by_label_contains("The body or its load has changed since").is_none());
+    assert!(is_offered_in_compare(&mut harness));
 
-    type_into(&mut harness, "Time ≤", "1e5");
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) };
     let meeting = study.ranking().meeting(demand);
     assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());

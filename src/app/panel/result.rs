@@ -11,7 +11,7 @@ use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::MethodKind;
-use crate::simulation::{Motion, Simulation, Status, energy};
+use crate::simulation::{Motion, Simulation, energy};
 use crate::study::{Claim, Reference};
 
 /// Width of the names of the rows, points.
@@ -130,7 +130,7 @@ fn probe_row(row: &mut ResultRow<'_>, simulation: &Simulation) {
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
-    let known = *input.simulation.status() == Status::Converged;
+    let known = input.simulation.status().is_success();
     let quality = input.quality;
     let error = quality.mesh_error_percent.filter(|_| known);
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));

@@ -14,8 +14,9 @@ use crate::scene::{Analysis, DynamicsSettings, MethodKind, Scene, SolverSettings
 use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
-use crate::study::{Effort, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, StudyError, time_from_rest};
-use crate::timings::Timings;
+use crate::study::{
+    Effort, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, SolveFromRest, StudyError, time_from_rest,
+};
 
 /// Load–displacement curve of a scene.
 #[derive(Debug, Serialize, Deserialize)]
@@ -40,8 +41,8 @@ facts! {
         };
     /// Spectral radius ρ of the warped iteration at the equilibrium.
     RhoFact by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
-    /// Time of a solve from rest.
-    TimeFact = "time": Timings, |scene, observe| Ok(time_from_rest(scene, observe));
+    /// Time and result of a solve from rest.
+    TimeFact = "time": SolveFromRest, |scene, observe| Ok(time_from_rest(scene, observe));
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, observe| Ok(natural_frequency(scene, observe));
 }
@@ -87,7 +88,7 @@ pub(crate) struct Facts {
     pub limits: Keyed<LimitsFact>,
     /// Spectral radius ρ of the warped iteration at the equilibrium.
     pub rho: Keyed<RhoFact>,
-    /// Time of a solve from rest.
+    /// Time and result of a solve from rest.
     pub time: Keyed<TimeFact>,
     /// Lowest natural frequency, Hz.
     pub frequency: Keyed<FrequencyFact>,

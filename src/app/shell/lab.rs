@@ -351,7 +351,7 @@ impl Lab {
             frequency: facts.frequency.latest().copied(),
             iterations: session.iterations(),
             timings: session.timings(),
-            solve_time: facts.time.get(session.scene()),
+            from_rest: facts.time.get(session.scene()),
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),

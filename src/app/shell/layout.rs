@@ -44,7 +44,7 @@ impl Lab {
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
         language::speak(self.settings.language);
-        let mut actions = Vec::new();
+        let (mut actions, mut requests) = (Vec::new(), Vec::new());
         self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
         self.desk.panel.fade_messages(ui.ctx());
@@ -58,6 +58,7 @@ impl Lab {
         let was_typing = ui.ctx().text_edit_focused();
         if self.desk.view.bars {
             self.bars(ui, &mut actions);
+            self.show_banners(ui, &mut actions, &mut requests);
         }
         if !self.has_dialog() && !was_typing {
             actions.extend(shortcuts::actions(ui.ctx()));
@@ -79,7 +80,6 @@ impl Lab {
                 (self.desk.limits, self.desk.view) = (limits, view);
             }
         }
-        let mut requests = Vec::new();
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
@@ -95,7 +95,6 @@ impl Lab {
         if view.bars && view.narrow && view.sheet && self.view_rect().width() >= 160.0 {
             self.sheet(ui, &mut actions);
         }
-        self.show_banners(ui.ctx(), &mut actions, &mut requests);
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
         }
@@ -266,7 +265,7 @@ impl Lab {
             reference: session.facts().reference.get(session.scene()),
             reference_failure: session.facts().reference.failure(session.scene()),
             running: session.is_running(),
-            chosen: budget.chosen(),
+            chosen: budget.chosen(session.scene()),
         };
         (compare, input)
     }
@@ -384,8 +383,13 @@ impl Lab {
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
-        let (text, bad) = diagnosis::summary(&input);
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
+        let (status, bad) = diagnosis::summary(&input, None);
+        let reasoned = remedy.as_ref().map(|remedy| {
+            let (status, _) = diagnosis::summary(&input, Some(remedy));
+            format!("{} {status}", remedy.text)
+        });
+        let color = if bad { palette.error } else { palette.text };
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -394,7 +398,11 @@ impl Lab {
                     actions.extend(remedy_button(ui, &remedy));
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let text = egui::RichText::new(text).color(if bad { palette.error } else { palette.text });
+                    let font = egui::TextStyle::Body.resolve(ui.style());
+                    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), color).size().x;
+                    // The button has the reason too.
+                    let reasoned = reasoned.filter(|text| width(text.clone()) <= ui.available_width());
+                    let text = egui::RichText::new(reasoned.unwrap_or(status)).color(color);
                     ui.add(egui::Label::new(text).truncate());
                 });
             });
@@ -426,7 +434,8 @@ impl Lab {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let narrow = rect.width() < STATUS_WIDTH;
-        let (text, bad) = diagnosis::summary(&input);
+        let remedy = self.remedy(&input, errors);
+        let (text, bad) = diagnosis::summary(&input, remedy.as_ref());
         // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
         let shows_reasons = self.desk.view.why;
@@ -452,7 +461,7 @@ impl Lab {
             if has_line {
                 return;
             }
-            if let Some(remedy) = self.remedy(&input, errors) {
+            if let Some(remedy) = remedy {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.text);

@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use egui::{Align2, Painter, Rect, Sense, Ui};
+use egui::{Align2, Painter, Panel, Rect, Sense, Ui};
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::session::Notice;
 use crate::app::shell::lab::{Lab, Request};
-use crate::app::shell::toolbar;
 use crate::app::task::thread::POLL;
-use crate::app::view_options::Mode;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
 
@@ -34,21 +32,15 @@ impl Lab {
         is_new
     }
 
-    /// Shows warnings and offers, over the body or over the plots of Compare.
-    pub(super) fn show_banners(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
-        let width = ctx.content_rect().width();
-        let banner_width = (width - 24.0).max(0.0);
-        // Compare has its tabs and pickers under the toolbar.
-        let (align, offset) = match self.desk.view.mode {
-            Mode::Compare => (Align2::CENTER_BOTTOM, -8.0),
-            _ => (Align2::CENTER_TOP, toolbar::height(width) + 8.0),
-        };
-        let area = egui::Area::new(egui::Id::unique("banners"))
-            .default_width(banner_width)
-            .anchor(align, egui::vec2(0.0, offset));
-        area.show(ctx, |ui| {
-            // While there was nothing to show, the area had no width.
-            ui.set_max_width(banner_width);
+    /// Shows warnings and offers in rows under the toolbar, if there are any.
+    pub(super) fn show_banners(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+        let has_warning = self.warnings.len() > self.closed_warnings;
+        let offers_unsaved = self.offers_unsaved() && self.lesson.is_none();
+        if !(has_warning || offers_unsaved || self.desk.session.is_outdated()) {
+            return;
+        }
+        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 4));
+        Panel::top("banners").resizable(false).frame(frame).show(ui, |ui| {
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
                 let is_closed = banner(ui, |ui| {
@@ -141,5 +133,5 @@ impl Lab {
 
 /// Shows a message with its answers in a row.
 pub(super) fn banner<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    egui::Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_wrapped(contents).inner).inner
+    ui.horizontal_wrapped(contents).inner
 }

@@ -74,14 +74,14 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Vec<BarNumber> {
     let simulation = input.simulation;
-    let time = input.solve_time.filter(|_| simulation.status().is_success());
-    let seconds = time.map_or(0.0, |time| time.total().as_secs_f64());
+    let time = input.from_rest.filter(|_| simulation.status().is_success());
+    let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let doubt = doubt(input, errors, is_raw);
     let is_without_reference =
         input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
-    let color = match error_color(palette, errors.bound) {
+    let color = match error_color(palette, errors.worst()) {
         color if doubt.is_some() && color == palette.good => palette.warning,
         color => color,
     };

@@ -444,8 +444,11 @@ fn loads(
 
 /// Paints the arrows of gravity in a corner, under a colour bar that ends `below` points from the top.
 fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
-    /// Length of the arrow, which shows the direction only, points.
+    /// Length of the arrow, which shows the direction only, and its shortest length in a low view, points.
     const WEIGHT: f32 = 58.0;
+    const SHORTEST: f32 = 18.0;
+    /// Height of the label and of the time line under the arrow, points.
+    const UNDER: f32 = 56.0;
     for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
         let direction = vec2(*x as f32, -*y as f32).normalized();
@@ -454,7 +457,7 @@ fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, pal
         }
         // An arrow that points up begins where one that points down ends.
         let top = if below > 0.0 { below + 8.0 } else { 30.0 };
-        let vector = direction * WEIGHT;
+        let vector = direction * WEIGHT.min(rect.height() - top - UNDER).max(SHORTEST);
         let from = rect.right_top() + vec2(-64.0, top + (-vector.y).max(0.0));
         let tip = arrow::paint_arrow(painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");

@@ -117,13 +117,18 @@ impl Budget {
         }
     }
 
-    /// Returns the fastest measured setting of a body at rest that meets the limits, and whose iteration converges.
-    pub(crate) fn chosen(&self) -> Option<Setting> {
-        let study = self.study.as_ref()?;
+    /// Returns the fastest setting that was measured of a scene at rest, meets the limits, and whose iteration converges.
+    pub(crate) fn chosen(&self, scene: &Scene) -> Option<Setting> {
+        let study = self.study.as_ref().filter(|_| self.is_of(scene))?;
         match study.fastest(&study.meeting(self.limits.into()))? {
             Choice::Rest(m) => Some(m.setting),
             Choice::Motion(_) => None,
         }
+    }
+
+    /// Returns `true` if the study is of a scene, whatever its settings.
+    fn is_of(&self, scene: &Scene) -> bool {
+        self.of.as_ref() == Some(&without_settings(scene))
     }
 
     /// Sets a study made elsewhere.
@@ -166,7 +171,7 @@ impl Budget {
             best: study.and_then(|study| study.fastest(&meeting)),
             nearest: study.filter(|_| meeting.is_empty()).map(|study| study.nearest(demand)).unwrap_or_default(),
             meeting,
-            current: self.of.as_ref() == Some(&without_settings(scene)),
+            current: self.is_of(scene),
             is_partial: self.is_partial,
             progress: self.background.as_ref().map(BackgroundStudy::progress),
             error: self.error.as_ref(),

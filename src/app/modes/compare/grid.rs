@@ -130,6 +130,19 @@ pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()
 }
 
+/// Paints the factor of the drawn displacement at the left end of the key, unless it is 1; returns the left end of the
+/// rest.
+pub(super) fn magnification_key(ui: &Ui, rect: Rect, magnification: f64) -> f32 {
+    let left = rect.left() + 12.0;
+    if magnification == 1.0 {
+        return left;
+    }
+    let (at, font) = (pos2(left, rect.center().y), FontId::proportional(SMALL));
+    let text = overlay::magnified(magnification);
+    let color = Palette::new(ui.visuals()).text;
+    ui.painter_at(rect).text(at, Align2::LEFT_CENTER, text, font, color).right() + 16.0
+}
+
 /// Paints the common colour bar at the right end of the key, with its title if there is room for it to the right of
 /// `left`.
 pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, range: [f64; 2]) {

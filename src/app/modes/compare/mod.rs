@@ -472,21 +472,18 @@ fn key(ui: &Ui, rect: Rect, view: &ViewOptions, (range, magnification): ([f64; 2
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(SMALL);
     let middle = rect.center().y;
-    let mut x = rect.left() + 12.0;
-    let mut entry = |text: &str, mark: Option<LegendMark>, color: Color32| {
-        mark.inspect(|mark| mark.paint(&painter, pos2(x, middle), color));
-        let at = pos2(if mark.is_some() { x + LegendMark::WIDTH + 6.0 } else { x }, middle);
+    let mut x = grid::magnification_key(ui, rect, magnification);
+    let mut entry = |text: &str, mark: LegendMark, color: Color32| {
+        mark.paint(&painter, pos2(x, middle), color);
+        let at = pos2(x + LegendMark::WIDTH + 6.0, middle);
         let place = painter.text(at, Align2::LEFT_CENTER, text, font.clone(), palette.secondary);
         x = place.right() + 16.0;
     };
-    if magnification != 1.0 {
-        entry(&overlay::magnified(magnification), None, palette.text);
-    }
     if view.exact {
-        entry(tr("reference"), Some(LegendMark::Dashes), palette.exact);
+        entry(tr("reference"), LegendMark::Dashes, palette.exact);
     }
     if view.rest_outline {
-        entry(tr("rest"), Some(LegendMark::Outline), palette.rest);
+        entry(tr("rest"), LegendMark::Outline, palette.rest);
     }
     grid::color_key(ui, rect, x, view, range);
 }

@@ -19,6 +19,7 @@ use crate::format::{engineering, three_digits, two_digits};
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, Scene};
 use crate::simulation::{Motion, Simulation};
+use crate::state::largest;
 
 /// Motion with settings of its own.
 #[derive(Debug)]
@@ -92,13 +93,21 @@ pub(crate) struct MotionCompare {
     pub clock: RealTimeClock,
     /// Bounding box of all states of the bodies so far, m.
     swept: Option<[Vector2<f64>; 2]>,
+    /// Largest displacement of the bodies so far, m: an automatic magnification that followed a motion would hide it.
+    largest_displacement: f64,
     /// Playing time, s: longer than the simulated time in slow motion.
     played: f64,
 }
 
 impl Default for MotionCompare {
     fn default() -> Self {
-        Self { panes: Panes::new(&integrators()), clock: RealTimeClock::default(), swept: None, played: 0.0 }
+        Self {
+            panes: Panes::new(&integrators()),
+            clock: RealTimeClock::default(),
+            swept: None,
+            largest_displacement: 0.0,
+            played: 0.0,
+        }
     }
 }
 
@@ -129,7 +138,7 @@ impl MotionCompare {
     /// Restarts all motions.
     pub(crate) fn reset(&mut self) {
         self.motions().for_each(ComparedMotion::reset);
-        self.swept = None;
+        (self.swept, self.largest_displacement) = (None, 0.0);
         self.clock.rest();
     }
 
@@ -223,11 +232,12 @@ impl MotionCompare {
 
     /// Shows the panes; returns the pointer's interaction with their load.
     pub(crate) fn show(&mut self, ui: &mut Ui, input: &PaneInput<'_>) -> Interaction {
+        self.magnify(input);
         let mut known = vec![input.own.clone()];
         for MotionPane { motion, display, .. } in &mut self.panes.list {
             known.extend(motion.equations());
             if let Some(simulation) = motion.simulation() {
-                display.update(simulation, (input.view, None), 1.0, Some(self.played), &known);
+                display.update(simulation, (input.view, None), self.panes.magnification, Some(self.played), &known);
                 known.extend(display.equations(simulation.scene()));
             }
             display.body_mesh.color(ui.visuals(), input.view.field);
@@ -238,9 +248,22 @@ impl MotionCompare {
         self.fit_camera(ui, input);
         let interaction =
             self.panes.show(ui, &layout, (input, &[]), |panes, ui, number| header(panes, ui, number, input));
-        grid::color_key(ui, layout.key, layout.key.left(), input.view, range);
+        let left = grid::magnification_key(ui, layout.key, self.panes.magnification);
+        grid::color_key(ui, layout.key, left, input.view, range);
         ui.advance_cursor_after_rect(whole);
         interaction
+    }
+
+    /// Sets the common factor of the drawn displacement; the largest displacement of all sound motions so far counts.
+    fn magnify(&mut self, input: &PaneInput<'_>) {
+        let sound = self.panes.list.iter().filter(|pane| pane.motion.is_sound());
+        let bodies = sound.filter_map(MotionPane::simulation);
+        let now = bodies.map(|body| largest(body.displacement())).fold(0.0, f64::max);
+        self.largest_displacement = self.largest_displacement.max(now);
+        let factor = input.view.magnification.factor(input.own.system().size(), self.largest_displacement);
+        if self.panes.magnification != factor {
+            (self.panes.magnification, self.swept) = (factor, None);
+        }
     }
 
     /// Fits the camera to all states of the bodies so far, unless the user has moved it.

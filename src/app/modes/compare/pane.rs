@@ -57,7 +57,7 @@ impl Pane {
     /// Returns the time of the solve from rest, s; `None` until it has been measured.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
-        Some(self.time.get(&self.timed_scene()?)?.total().as_secs_f64())
+        Some(self.time.get(&self.timed_scene()?)?.timings.total().as_secs_f64())
     }
 
     /// Returns the scene whose solve is timed: it ends after the setting's number of iterations.

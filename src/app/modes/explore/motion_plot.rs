@@ -1,15 +1,15 @@
 //! Plots of a motion: energy by kind, displacement of the first probe over time, its phase diagram, and its spectrum.
 
 use crate::app::view_options::MotionPlot;
-use egui::{Color32, Ui};
-use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, VLine};
+use egui::{Color32, FontId, Rect, Role, Sense, Ui, WidgetInfo};
+use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 use realfft::RealFftPlanner;
 
 use crate::app::language::{fill, tr};
 use crate::app::session::history::{History, MotionSample};
 use crate::app::session::playback::Playback;
 use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::palette::Palette;
+use crate::app::widgets::palette::{Palette, SMALL};
 use crate::app::widgets::plot::still;
 use crate::format::engineering;
 use crate::scene::IntegratorKind;
@@ -23,8 +23,6 @@ const PLOTS: [(MotionPlot, &str, &str); 4] = [
 
 /// Duration that is shown, s.
 const SHOWN: f64 = 12.0;
-/// Space for the legend to the right of the data, as a fraction of the data's width.
-const LEGEND_ROOM: f64 = 0.22;
 /// Largest number of points of a line; longer lines are thinned.
 const MAX_POINTS: usize = 1000;
 /// Largest number of samples of the spectrum; a power of two.
@@ -32,7 +30,23 @@ const LONGEST_SPECTRUM: usize = 4096;
 /// Smallest number of samples of a spectrum.
 const SHORTEST_SPECTRUM: usize = 64;
 
-/// Shows the chosen plot; `frequency` is the lowest natural frequency, Hz.
+/// Named line of a plot.
+struct Curve {
+    name: String,
+    color: Color32,
+    width: f32,
+    points: Vec<PlotPoint>,
+}
+
+/// Lines and axes of a plot.
+struct Curves<'a> {
+    id: &'a str,
+    /// Name and unit of each axis.
+    axes: [(&'a str, &'static str); 2],
+    lines: Vec<Curve>,
+}
+
+/// Shows the chosen plot, with the names of its lines above it; `frequency` is the lowest natural frequency, Hz.
 pub(crate) fn show(
     ui: &mut Ui,
     chosen: &mut MotionPlot,
@@ -40,54 +54,105 @@ pub(crate) fn show(
     integrator: IntegratorKind,
     frequency: Option<f64>,
 ) {
-    ui.horizontal(|ui| {
+    let palette = Palette::new(ui.visuals());
+    // One line per motion.
+    let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
+    let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
+    let axis = playback.history.axis();
+    let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
+    let lines = |points: &dyn Fn(&History) -> Vec<PlotPoint>| -> Vec<Curve> {
+        let line = |&(kind, history): &(IntegratorKind, &History)| Curve {
+            name: tr(kind.id()).to_owned(),
+            color: palette.integrator(kind),
+            width: 1.5,
+            points: points(history),
+        };
+        motions.iter().map(line).collect()
+    };
+    let time = (tr("time"), "s");
+    let curves = match chosen {
+        MotionPlot::Energy => {
+            Curves { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, &palette) }
+        }
+        MotionPlot::Tip => {
+            let lines = lines(&|history| thinned(history, |s| [s.time, s.displacement[axis]]));
+            Curves { id: "tip", axes: [time, (&name, "m")], lines }
+        }
+        MotionPlot::Phase => {
+            let lines = lines(&|history| thinned(history, |s| [s.displacement[axis], s.velocity[axis]]));
+            Curves { id: "phase", axes: [(&name, "m"), (tr("velocity"), "m/s")], lines }
+        }
+        MotionPlot::Spectrum => {
+            let mut lines =
+                lines(&|history| spectrum(history, axis).into_iter().map(|[x, y]| PlotPoint::new(x, y)).collect());
+            cut_spectra(&mut lines, frequency);
+            Curves { id: "spectrum", axes: [(tr("frequency"), "Hz"), (tr("amplitude"), "m")], lines }
+        }
+    };
+    let own = if *chosen == MotionPlot::Spectrum { frequency } else { None };
+    let own = own.map(|frequency| {
+        let name = fill!("\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}", frequency = engineering(frequency, "Hz"));
+        (frequency, name)
+    });
+    ui.horizontal_wrapped(|ui| {
         for (plot, word, tip) in PLOTS {
             if ui.add(option_button(*chosen == plot, tr(word))).on_hover_text(tr(tip)).clicked() {
                 *chosen = plot;
             }
+        }
+        let shown = curves.lines.iter().filter(|line| !line.points.is_empty());
+        let names = shown.map(|line| (line.name.as_str(), line.color));
+        for (name, color) in names.chain(own.iter().map(|(_, name)| (name.as_str(), palette.secondary))) {
+            key(ui, name, color);
         }
     });
     if playback.history.samples().is_empty() {
         ui.centered_and_justified(|ui| ui.weak(tr("No time step yet: press Run or Step.")));
         return;
     }
-    let palette = Palette::new(ui.visuals());
-    // One line per motion.
-    let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
-    let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
-    let axis = playback.history.axis();
+    if curves.lines.iter().all(|line| line.points.is_empty()) {
+        ui.centered_and_justified(|ui| ui.weak(fill!("A spectrum needs %{n} time steps.", n = SHORTEST_SPECTRUM)));
+        return;
+    }
+    let Curves { id, axes: [x, y], lines } = curves;
+    let plot = still(&palette, id, x, y);
+    let plot = if *chosen == MotionPlot::Spectrum { plot.include_y(0.0) } else { plot };
     // Displayed moment, if it is not the latest.
     let cursor = playback.shown_time();
-    let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
-    match chosen {
-        MotionPlot::Energy => energy(ui, &playback.history, &motions, cursor),
-        MotionPlot::Tip => {
-            let lines =
-                motions.iter().map(|(kind, history)| (*kind, thinned(history, |s| [s.time, s.displacement[axis]])));
-            let plot = over_time(plot(&palette, "tip", (tr("time"), "s"), (&name, "m")), &playback.history);
-            plot.show(ui, |plot| {
-                curves(plot, lines, &palette);
-                time_cursor(plot, cursor, &palette);
-            });
+    plot.show(ui, |plot| {
+        for Curve { name, color, width, points } in lines {
+            plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(width));
         }
-        MotionPlot::Phase => {
-            let lines = motions
-                .iter()
-                .map(|(kind, history)| (*kind, thinned(history, |s| [s.displacement[axis], s.velocity[axis]])));
-            plot(&palette, "phase", (&name, "m"), (tr("velocity"), "m/s")).show(ui, |plot| {
-                curves(plot, lines, &palette);
-                if let Some(sample) = cursor.and_then(|time| playback.history.at(time)) {
+        if let Some((frequency, name)) = own {
+            plot.vline(VLine::new(name, frequency).color(palette.secondary).style(LineStyle::dashed_dense()));
+        }
+        match (chosen, cursor) {
+            (MotionPlot::Energy | MotionPlot::Tip, Some(time)) => {
+                plot.vline(VLine::new("", time).color(palette.text).width(1.0));
+            }
+            (MotionPlot::Phase, Some(time)) => {
+                if let Some(sample) = playback.history.at(time) {
                     let at = Points::new("", [sample.displacement[axis], sample.velocity[axis]]);
                     plot.points(at.color(palette.text).radius(4.0));
                 }
-            });
+            }
+            _ => {}
         }
-        MotionPlot::Spectrum => spectra(ui, &motions, axis, frequency, &palette),
-    }
+    });
 }
 
-fn plot<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
-    still(palette, id, x, y).legend(Legend::default().position(Corner::LeftTop).follow_insertion_order(true))
+/// Shows the name of a line after a sample of its colour.
+fn key(ui: &mut Ui, name: &str, color: Color32) {
+    const SAMPLE: egui::Vec2 = egui::vec2(14.0, 3.0);
+    const GAP: f32 = 5.0;
+    let text = Palette::new(ui.visuals()).text;
+    let galley = ui.painter().layout_no_wrap(name.to_owned(), FontId::proportional(SMALL), text);
+    let size = egui::vec2(SAMPLE.x + 3.0 * GAP + galley.size().x, galley.size().y);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+    let sample = rect.left_center() + egui::vec2(GAP, -0.5 * SAMPLE.y);
+    ui.painter().rect_filled(Rect::from_min_size(sample, SAMPLE), 1.0, color);
+    ui.painter().galley(rect.left_top() + egui::vec2(SAMPLE.x + 2.0 * GAP, 0.0), galley, text);
 }
 
 fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
@@ -97,33 +162,11 @@ fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<
     kept.map(|s| PlotPoint::from(point(s))).collect()
 }
 
-/// Adds space for the legend to the right of the data.
-fn over_time<'a>(plot: Plot<'a>, history: &History) -> Plot<'a> {
-    let first = history.last(SHOWN).next().map_or(0.0, |s| s.time);
-    let last = history.samples().back().map_or(0.0, |s| s.time);
-    plot.include_x(last + LEGEND_ROOM * (last - first).max(1e-9))
-}
-
-/// Marks the displayed moment.
-fn time_cursor(plot: &mut PlotUi<'_>, time: Option<f64>, palette: &Palette) {
-    if let Some(time) = time {
-        plot.vline(VLine::new("", time).color(palette.text).width(1.0));
-    }
-}
-
-fn curves(plot: &mut PlotUi<'_>, lines: impl Iterator<Item = (IntegratorKind, Vec<PlotPoint>)>, palette: &Palette) {
-    for (kind, points) in lines {
-        let line = Line::new(tr(kind.id()), PlotPoints::Owned(points));
-        plot.line(line.color(palette.integrator(kind)).width(1.5));
-    }
-}
-
 /// Name of a kind of energy, its colour, and the function that returns its value, J.
 type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
 
-fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)], cursor: Option<f64>) {
-    let palette = Palette::new(ui.visuals());
-    let sum = palette.text;
+/// Returns the energies of a motion by kind, and their sum; of several motions only the sum of each, for comparison.
+fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<Curve> {
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
     let kinds: [EnergyKind; 6] = [
         ("kinetic", kinetic, |s| s.ledger.kinetic),
@@ -133,27 +176,26 @@ fn energy(ui: &mut Ui, history: &History, motions: &[(IntegratorKind, &History)]
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
-    over_time(plot(&palette, "energy", (tr("time"), "s"), (tr("energy"), "J")), history).show(ui, |plot| {
-        // With several motions only the total energy of each is shown, for comparison.
-        let shown = if motions.len() == 1 { &kinds[..] } else { &[] };
-        for (name, color, value) in shown {
-            // Energies that are always zero have no line.
-            if history.samples().iter().any(|s| value(s) != 0.0) {
-                let points = thinned(history, |s| [s.time, value(s)]);
-                plot.line(Line::new(tr(name), PlotPoints::Owned(points)).color(*color).width(1.5));
-            }
-        }
-        for (kind, history) in motions {
-            let points = thinned(history, |s| [s.time, s.ledger.total()]);
-            let (name, color) = if motions.len() == 1 {
-                (tr("total").to_owned(), sum)
-            } else {
-                (fill!("total, %{integrator}", integrator = tr(kind.id())), palette.integrator(*kind))
-            };
-            plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(2.5));
-        }
-        time_cursor(plot, cursor, &palette);
-    });
+    let total = |history: &History| thinned(history, |s| [s.time, s.ledger.total()]);
+    if let [(_, history)] = motions {
+        // Energies that are always zero have no line.
+        let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
+        let parts = shown.map(|(name, color, value)| Curve {
+            name: tr(name).to_owned(),
+            color,
+            width: 1.5,
+            points: thinned(history, |s| [s.time, value(s)]),
+        });
+        let sum = Curve { name: tr("total").to_owned(), color: palette.text, width: 2.5, points: total(history) };
+        return parts.chain([sum]).collect();
+    }
+    let sum = |&(kind, history): &(IntegratorKind, &History)| Curve {
+        name: fill!("total, %{integrator}", integrator = tr(kind.id())),
+        color: palette.integrator(kind),
+        width: 2.5,
+        points: total(history),
+    };
+    motions.iter().map(sum).collect()
 }
 
 /// Returns the amplitude, m, of every frequency, Hz, of the probe's displacement along an axis; empty if there are too
@@ -187,34 +229,13 @@ fn spectrum(history: &History, axis: usize) -> Vec<[f64; 2]> {
     amplitudes.iter().enumerate().map(|(i, a)| [i as f64 * bin, a.norm() * scale]).collect()
 }
 
-fn spectra(
-    ui: &mut Ui,
-    motions: &[(IntegratorKind, &History)],
-    axis: usize,
-    frequency: Option<f64>,
-    palette: &Palette,
-) {
-    /// The plot ends at the highest frequency whose amplitude exceeds this fraction of the largest one.
-    const SEEN: f64 = 1e-3;
-    let all: Vec<_> = motions.iter().map(|(kind, history)| (*kind, spectrum(history, axis))).collect();
-    if all.iter().all(|(_, s)| s.is_empty()) {
-        ui.centered_and_justified(|ui| ui.weak(fill!("A spectrum needs %{n} time steps.", n = SHORTEST_SPECTRUM)));
-        return;
-    }
-    let largest = all.iter().flat_map(|(_, s)| s).map(|p| p[1]).fold(0.0, f64::max);
-    let seen = all.iter().flat_map(|(_, s)| s).filter(|p| p[1] > SEEN * largest).map(|p| p[0]).fold(0.0, f64::max);
+/// Ends spectra at the highest frequency whose amplitude is visible, or at three times the lowest natural frequency, Hz.
+fn cut_spectra(spectra: &mut [Curve], frequency: Option<f64>) {
+    /// Fraction of the largest amplitude that is visible.
+    const VISIBLE: f64 = 1e-3;
+    let points = || spectra.iter().flat_map(|spectrum| &spectrum.points);
+    let largest = points().map(|p| p.y).fold(0.0, f64::max);
+    let seen = points().filter(|p| p.y > VISIBLE * largest).map(|p| p.x).fold(0.0, f64::max);
     let end = seen.max(3.0 * frequency.unwrap_or(0.0));
-    plot(palette, "spectrum", (tr("frequency"), "Hz"), (tr("amplitude"), "m")).include_y(0.0).show(ui, |plot| {
-        for (kind, spectrum) in all {
-            let points: Vec<[f64; 2]> = spectrum.into_iter().take_while(|p| p[0] <= end).collect();
-            let line = Line::new(tr(kind.id()), PlotPoints::from(points));
-            plot.line(line.color(palette.integrator(kind)).width(1.5));
-        }
-        if let Some(frequency) = frequency {
-            let name =
-                fill!("\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}", frequency = engineering(frequency, "Hz"));
-            let color = palette.secondary;
-            plot.vline(VLine::new(name, frequency).color(color).style(LineStyle::dashed_dense()));
-        }
-    });
+    spectra.iter_mut().for_each(|spectrum| spectrum.points.retain(|p| p.x <= end));
 }

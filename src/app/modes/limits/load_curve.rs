@@ -153,11 +153,11 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     };
     let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
     let mut all = vec![
-        series(tr("linear theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
+        series(tr("linear beam theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
         series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.exact)),
     ];
     let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.exact)).collect();
-    let departs = departure_text(&curve.departures);
+    let departs = departure_text(&curve.departures, (full, unit));
     if let Some((name, _)) = &departs {
         all.push(series(name.clone(), linear, Mark::Ring, false, departures));
     }
@@ -171,7 +171,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     }
     let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
     let value = |series: &FigureSeries| match series.mark {
-        Mark::Ring => departs.as_ref().map(|(_, angles)| angles.clone()),
+        Mark::Ring => departs.as_ref().map(|(_, loads)| loads.clone()),
         Mark::Cross => Some(tr("not converged").to_owned()),
         Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.exact } else { s.linear })),
         _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
@@ -197,14 +197,13 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     }
 }
 
-/// Returns the name and the position of the loads at which linear theory departs from the exact beam: errors in
-/// percent, and rotations.
-fn departure_text(departures: &[Departure]) -> Option<(String, String)> {
+/// Returns the errors in percent at which linear theory departs from the exact beam, and the loads.
+fn departure_text(departures: &[Departure], (full, unit): (f64, &str)) -> Option<(String, String)> {
     let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
     let percent = each(&|departure| departure.percent.to_string());
-    let angles = each(&|departure| format!("{:.1}°", departure.at.rotation.to_degrees().abs()));
+    let loads = each(&|departure| engineering(three_digits(departure.at.factor * full), unit));
     (!departures.is_empty())
-        .then(|| (fill!("linear error %{percent} %", percent = percent), fill!("at %{angles}", angles = angles)))
+        .then(|| (fill!("linear error %{percent} %", percent = percent), fill!("at %{load}", load = loads)))
 }
 
 #[cfg(test)]
