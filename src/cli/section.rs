@@ -55,9 +55,9 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     })?;
     outputs.write_picture(|| {
         Ok(match along {
-            None => Drawing::stacked(sections.iter().map(|cut| {
+            None => Drawing::stacked(sections.iter().flat_map(|cut| {
                 let within = section_chart::contexts(std::slice::from_ref(cut), &simulation);
-                plot::figure(&section_chart::stress(cut, &scene, &within, &ToString::to_string))
+                section_chart::stress(cut, &scene, &within, &ToString::to_string).map(|figure| plot::figure(&figure))
             })),
             Some(_) => {
                 let within = section_chart::contexts(&sections, &simulation);

@@ -57,16 +57,33 @@ pub fn text_of(section: &Section, simulation: &Simulation) -> String {
 /// Number of points of a curve of beam theory, whose shear stress is a parabola.
 const BEAM_POINTS: u32 = 25;
 
-/// Draws the stress along a cut of a scene: recovered and by beam theory, against the distance from the middle; the
-/// forces have these contexts, and `render` translates the names.
+/// Names of the stresses on a cut, with their symbols: recovered and of beam theory.
+pub const STRESSES: [(&str, &str, [&str; 2]); 2] = [
+    ("\u{3c3}", "normal stress", ["normal stress, recovered", "normal stress, beam theory"]),
+    ("\u{3c4}", "shear stress", ["shear stress, recovered", "shear stress, beam theory"]),
+];
+
+/// Draws the normal stress and the shear stress along a cut of a scene: recovered and by beam theory, against the distance
+/// from the middle; the forces have these contexts, and `render` translates the names.
 #[must_use]
-pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> Figure {
-    let recovered = |i: usize| section.points.iter().map(move |p| (p.stress.map(|stress| stress[i]), p.along));
+pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 2] {
+    [0, 1].map(|component| stress_of(component, section, scene, contexts, render))
+}
+
+fn stress_of(
+    component: usize,
+    section: &Section,
+    scene: &Scene,
+    contexts: &[Context; 3],
+    render: Render<'_>,
+) -> Figure {
+    let (_, name, names) = STRESSES[component];
+    let recovered = section.points.iter().map(|p| (p.stress.map(|stress| stress[component]), p.along)).collect();
     let ends = [section.points.first(), section.points.last()].map(|point| point.filter(|point| point.beam.is_some()));
-    let beam = |i: usize| -> Vec<(Option<f64>, f64)> {
+    let beam = || -> Vec<(Option<f64>, f64)> {
         let [Some(first), Some(last)] = ends else { return Vec::new() };
         let along = |k: u32| first.along + (last.along - first.along) * f64::from(k) / f64::from(BEAM_POINTS - 1);
-        let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[i];
+        let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[component];
         (0..BEAM_POINTS).map(|k| (Some(stress(along(k))), along(k))).collect()
     };
     let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| FigureSeries {
@@ -80,12 +97,8 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
             .collect(),
     };
     let method = Ink::Method(scene.solver.method);
-    let mut series = vec![
-        series("normal stress, recovered", method, Mark::Line, recovered(0).collect()),
-        series("normal stress, beam theory", Ink::Scene, Mark::Dashes, beam(0)),
-        series("shear stress, recovered", method, Mark::Dots, recovered(1).collect()),
-        series("shear stress, beam theory", Ink::Scene, Mark::Dots, beam(1)),
-    ];
+    let mut series =
+        vec![series(names[0], method, Mark::Line, recovered), series(names[1], Ink::Scene, Mark::Dashes, beam())];
     series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();
@@ -97,7 +110,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
     let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
     Figure {
         title: format!("{}: {}", render(&scene.name.as_str().into()), render(&"stress in a cut".into())),
-        quantities: vec![quantity("stress", "Pa"), quantity("distance from the middle", "m")],
+        quantities: vec![quantity(name, "Pa"), quantity("distance from the middle", "m")],
         axes: [0, 1],
         series,
         rows,
@@ -152,7 +165,7 @@ mod tests {
         beam.solve();
         let section = beam.section(SectionLine { at: nalgebra::Vector2::new(5.0, 0.0), angle: 0.0 }).unwrap();
         let within = contexts(std::slice::from_ref(&section), &beam);
-        let figure = stress(&section, &scene, &within, &ToString::to_string);
+        let [_, figure] = stress(&section, &scene, &within, &ToString::to_string);
         let series = figure.series.iter().find(|series| series.name == "shear stress, beam theory").unwrap();
         let peak = series.points.iter().filter_map(|point| point.values[0]).map(f64::abs).fold(0.0, f64::max);
         let area = (section.ends[1] - section.ends[0]).norm() * scene.material.thickness;

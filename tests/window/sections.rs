@@ -90,10 +90,15 @@ fn the_plots_have_the_values_of_the_library() {
     let simulation = harness.state().simulation();
     let section = simulation.section(harness.state().scene().sections[0]).unwrap();
     let within = section_chart::contexts(std::slice::from_ref(&section), simulation);
-    let rows = section_chart::stress(&section, harness.state().scene(), &within, &ToString::to_string).rows;
-    let row = rows.iter().find(|row| row.name == "M").unwrap();
-    assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
-    let along = simulation.sections(41).unwrap();
+    let stresses = section_chart::stress(&section, harness.state().scene(), &within, &ToString::to_string);
+    for (symbol, stress) in ["\u{3c3}", "\u{3c4}"].into_iter().zip(&stresses) {
+        harness.get_by_label(symbol).click();
+        harness.run_steps(2);
+        let row = stress.rows.iter().find(|row| row.name == "M").unwrap();
+        assert!(harness.query_by_label(&format!("{}: {}", row.name, row.value)).is_some(), "{row:?}");
+        assert!(harness.query_by_label_contains(&stress.series[0].name).is_some(), "{:?}", stress.series[0].name);
+    }
+    let along = harness.state().simulation().sections(41).unwrap();
     let row = section_chart::forces(&along, harness.state().scene(), &within, &ToString::to_string)[2].rows[0].clone();
     harness.get_by_label("M").click();
     harness.run_steps(4);

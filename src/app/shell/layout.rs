@@ -301,6 +301,9 @@ impl Lab {
         if has_line {
             self.status_line(ui, actions);
         }
+        if self.desk.view.bars && self.desk.view.why {
+            self.explanation(ui);
+        }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect();
@@ -370,13 +373,28 @@ impl Lab {
                 free.max.x -= PANEL_WIDTH;
             }
             if free.width() >= 160.0 && free.height() >= 90.0 {
-                self.status(ui, free, &errors, has_line, actions);
+                if !has_line {
+                    self.status(ui, free, &errors, actions);
+                }
                 self.show_work(ui, free, actions);
             }
         }
         self.report_crossing(ui);
         self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
+    }
+
+    /// Explains the status in lines under the body.
+    fn explanation(&self, ui: &mut Ui) {
+        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(14, 6));
+        let highest = DRAWER_SHARE * ui.available_height();
+        Panel::bottom("explanation").resizable(false).frame(frame).show(ui, |ui| {
+            egui::ScrollArea::vertical().max_height(highest).auto_shrink([false, true]).show(ui, |ui| {
+                for line in diagnosis::explanation(&self.readout()) {
+                    ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
+                }
+            });
+        });
     }
 
     /// Shows the status in a line under a low view, with a remedy.
@@ -425,9 +443,8 @@ impl Lab {
         diagnosis::remedy(input, errors).filter(|_| offers)
     }
 
-    /// Shows the explanation of the status over the body; if the status has no line of its own, also the status and a
-    /// remedy.
-    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, has_line: bool, actions: &mut Vec<Action>) {
+    /// Shows the status and a remedy beside the body.
+    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
         const WIDEST: f32 = 460.0;
         /// Width next to a small body.
         const WIDEST_NARROW: f32 = 250.0;
@@ -438,9 +455,8 @@ impl Lab {
         let (text, bad) = diagnosis::summary(&input, remedy.as_ref());
         // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
-        let shows_reasons = self.desk.view.why;
         let is_good = !(bad || diagnosis::is_stale(&input));
-        if !shows_reasons && (has_line || is_tight && is_good) {
+        if is_tight && is_good {
             return;
         }
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
@@ -451,16 +467,6 @@ impl Lab {
         let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             ui.set_max_width(width);
-            if shows_reasons {
-                chip(palette.panel).show(ui, |ui| {
-                    for line in diagnosis::explanation(&input) {
-                        ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
-                    }
-                });
-            }
-            if has_line {
-                return;
-            }
             if let Some(remedy) = remedy {
                 chip(palette.error_chip).show(ui, |ui| {
                     ui.horizontal_wrapped(|ui| {

@@ -3,7 +3,7 @@
 use egui::{Ui, UiBuilder};
 
 use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
+use crate::app::language::{said, tr};
 use crate::app::modes::figure::{self, Parts};
 use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
@@ -16,7 +16,7 @@ use crate::section::{Section, SectionError};
 use crate::simulation::{Equilibrium, Simulation};
 use crate::state::State;
 use crate::study::figure::Figure;
-use crate::study::section_chart::{self, COMPONENTS};
+use crate::study::section_chart::{self, COMPONENTS, STRESSES};
 
 /// Sections of one equilibrium.
 #[derive(Debug)]
@@ -70,8 +70,8 @@ impl Cuts {
 /// Figure of the sections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum SectionFigure {
-    /// Stress along the section of the scene with this index.
-    Stress(usize),
+    /// Stress along the section of the scene with the first index, as the second index of [`STRESSES`].
+    Stress(usize, usize),
     /// Component along the beam, as an index of [`COMPONENTS`].
     Along(usize),
 }
@@ -140,7 +140,7 @@ impl SectionPlot {
         let count = self.cuts_of(simulation).map_or(self.count, |cuts| cuts.own.len());
         if std::mem::replace(&mut self.count, count) < count {
             // A new section is shown.
-            self.shown = Some(SectionFigure::Stress(count - 1));
+            self.shown = Some(SectionFigure::Stress(count - 1, 0));
         }
         let cuts = self.cuts_of(simulation);
         let offered = cuts.map(Cuts::offered).unwrap_or_default();
@@ -163,7 +163,7 @@ impl SectionPlot {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
                 for &figure in &offered {
-                    let (word, tip) = figure.text(offered.contains(&SectionFigure::Stress(1)));
+                    let (word, tip) = figure.text(offered.contains(&SectionFigure::Stress(1, 0)));
                     if ui.add(option_button(Some(figure) == shown, &word)).on_hover_text(tr(tip)).clicked() {
                         self.shown = Some(figure);
                     }
@@ -191,29 +191,34 @@ impl SectionFigure {
     /// Returns the words of the choice and a description; stresses are numbered if there are several.
     fn text(self, is_numbered: bool) -> (String, &'static str) {
         match self {
-            Self::Stress(i) if is_numbered => (fill!("Stress %{n}", n = i + 1), Self::STRESS),
-            Self::Stress(_) => (tr("Stress").to_owned(), Self::STRESS),
+            Self::Stress(i, component) => {
+                let (symbol, tip) =
+                    (STRESSES[component.min(1)].0, "Stress along the section, recovered and of beam theory");
+                (if is_numbered { format!("{symbol} {}", i + 1) } else { symbol.to_owned() }, tip)
+            }
             Self::Along(i) => {
                 let symbol = COMPONENTS.get(i).map_or("", |component| component.symbol);
                 (symbol.to_owned(), "Along the beam, in sections normal to its axis; the slope of M is \u{2212}V")
             }
         }
     }
-
-    const STRESS: &'static str = "Normal and shear stress along the section, recovered and of beam theory";
 }
 
 impl Cuts {
     fn offered(&self) -> Vec<SectionFigure> {
         let along = if self.along.is_empty() { 0 } else { COMPONENTS.len() };
-        (0..self.own.len()).map(SectionFigure::Stress).chain((0..along).map(SectionFigure::Along)).collect()
+        let stresses = (0..self.own.len()).flat_map(|i| [0, 1].map(|component| SectionFigure::Stress(i, component)));
+        stresses.chain((0..along).map(SectionFigure::Along)).collect()
     }
 
     fn figure(&self, shown: SectionFigure) -> Result<Figure, SectionError> {
         let scene = &self.of.1;
         match shown {
-            SectionFigure::Stress(i) => match self.own.get(i) {
-                Some(Ok(section)) => Ok(section_chart::stress(section, scene, &self.contexts, &|name| said(name))),
+            SectionFigure::Stress(i, component) => match self.own.get(i) {
+                Some(Ok(section)) => section_chart::stress(section, scene, &self.contexts, &|name| said(name))
+                    .into_iter()
+                    .nth(component)
+                    .ok_or(SectionError::Missed),
                 Some(Err(error)) => Err(*error),
                 None => Err(SectionError::Missed),
             },
