@@ -10,7 +10,7 @@ use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support
 use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::stress::strain_warning;
-use crate::study::{Advice, Claim, FOLDS, Reference, moved_points};
+use crate::study::{Advice, Claim, FOLDS, ProbeReference, Reference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -111,24 +111,33 @@ const COARSE: f64 = 0.25;
 ///
 /// `is_raw` is `true` if the field is drawn as it is in the elements: its largest strain is not the recovered one.
 pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Option<String> {
-    let own = errors.own.filter(|_| input.simulation.status().is_success())?;
+    if !input.simulation.status().is_success() || input.simulation.motion().is_some() {
+        return None;
+    }
     if input.quality.is_inside_out(input.simulation) {
-        return Some(tr("inverted elements").to_owned());
+        // The status has it too.
+        return errors.own.map(|_| tr("inverted elements").to_owned());
     }
     let strain = input.quality.max_strain;
     let strained =
         strain_warning(strain).filter(|_| !is_raw).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
-    let is_hidden = errors.bound.is_some_and(|bound| error_level(bound) > error_level(own));
-    let known = input.reference.and_then(Reference::first);
-    let known = known.filter(|first| is_hidden || is_large(own) && first.own_error_percent > COARSE * own);
-    let coarse = known.map(|first| fill!("reference ± %{own}", own = percent(first.own_error_percent)));
+    let known = errors.own.zip(input.reference.and_then(Reference::first));
+    let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
     let from_rest = errors.from_rest.map(|error| fill!("from rest %{error}", error = percent(error)));
     let doubts: Vec<String> = from_rest.into_iter().chain(strained).chain(coarse).collect();
     if !doubts.is_empty() {
         return Some(doubts.join(" · "));
     }
-    let off = input.reference?.beam_off_by_percent.filter(|&off| !is_large(own) && error_level(off) > 0)?;
+    let small = errors.own.filter(|&own| !is_large(own));
+    let off = input.reference.filter(|_| small.is_some())?.beam_off_by_percent.filter(|&off| error_level(off) > 0)?;
     Some(said(&Claim::BeamTheory { off_by_percent: off }))
+}
+
+/// Returns the reference's own error in words if it hides how large an error, percent, is.
+pub(crate) fn coarse_text(own: f64, reference: &ProbeReference) -> Option<String> {
+    let is_hidden = error_level(reference.error_bound(own)) > error_level(own);
+    let is_coarse = is_hidden || is_large(own) && reference.own_error_percent > COARSE * own;
+    is_coarse.then(|| fill!("reference ± %{own}", own = percent(reference.own_error_percent)))
 }
 
 /// Returns `true` for an error, percent, that needs a remedy.
@@ -211,9 +220,12 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
-    // Without a load, or after a step back in the history, none was needed.
-    if simulation.iterations() > 0 {
-        add(count(simulation.iterations(), "iteration"));
+    match input.from_rest.filter(|_| simulation.status().is_success()) {
+        Some(solve) if !solve.is_solved => add(tr("not reached from rest").to_owned()),
+        // From a state under another load, fewer or more may have been needed.
+        Some(solve) if solve.iterations > 0 => add(count(solve.iterations, "iteration")),
+        None if simulation.iterations() > 0 => add(count(simulation.iterations(), "iteration")),
+        _ => {}
     }
     if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
@@ -304,13 +316,27 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     }
     lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
     if *simulation.status() == Status::Accepted {
-        lines.push(fill!(
-            "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is %{residual}, \
-             the tolerance is %{asked}. Reset begins at rest.",
-            iterations = count(simulation.iterations(), "iteration"),
-            residual = number(two_digits(simulation.residual())),
-            asked = number(input.scene.solver.tolerance)
-        ));
+        let residual = number(two_digits(simulation.residual()));
+        let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));
+        let displacement = probe_results(simulation.problem(), simulation.state()).first().map(|probe| probe.u);
+        let is_from_rest = input.from_rest.is_some_and(|solve| solve.displacement == displacement);
+        lines.push(if is_from_rest {
+            fill!(
+                "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
+                 tolerance is %{asked}.",
+                iterations = iterations,
+                residual = residual,
+                asked = asked
+            )
+        } else {
+            fill!(
+                "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is \
+                 %{residual}, the tolerance is %{asked}. Reset begins at rest.",
+                iterations = iterations,
+                residual = residual,
+                asked = asked
+            )
+        });
     }
     if !simulation.status().is_success() {
         lines.push(fill!(
@@ -339,7 +365,11 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     // The status has the others.
     let explains = |claim: &&Claim| {
         use Claim::{Converged, Disturbance, Helps, Stable, Unstable};
-        matches!(claim, Converged { .. } | Stable | Unstable | Disturbance { .. } | Helps(Advice::Imperfection))
+        match claim {
+            // An iterate that was accepted early is no equilibrium.
+            Disturbance { .. } => *simulation.status() == Status::Converged,
+            _ => matches!(claim, Converged { .. } | Stable | Unstable | Helps(Advice::Imperfection)),
+        }
     };
     lines.extend(claims.iter().filter(explains).map(|claim| sentence(&said(claim))));
     lines
@@ -392,12 +422,9 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     if from_rest.is_some() || errors.source == Some(ErrorSource::MeshOrIteration) {
         let mut scene = Box::new(scene.clone());
         scene.solver.accept_after = 0;
-        let iterations = count(simulation.iterations(), "iteration");
         let text = match from_rest {
-            Some(_) => {
-                fill!("%{error} error from rest, accepted after %{iterations}.", error = off, iterations = iterations)
-            }
-            None => fill!("%{error} error, accepted after %{iterations}.", error = off, iterations = iterations),
+            Some(_) => fill!("%{error} error from rest: the iteration is stopped early.", error = off),
+            None => fill!("%{error} error: the iteration is stopped early.", error = off),
         };
         let (offer, label) = match runs_away(input) {
             true => {

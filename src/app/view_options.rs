@@ -296,8 +296,8 @@ impl ViewOptions {
     /// Colours the body with `field`; a fixed colour range is dropped if the field changes.
     pub(crate) fn color_with(&mut self, field: Field) {
         if self.field != field {
-            // A range of stresses holds for another stress, not for a strain.
-            if self.field.unit() != field.unit() {
+            // A range of stresses holds for another stress, not for a strain, and not for one with a sign.
+            if self.field.unit() != field.unit() || self.field.has_sign() != field.has_sign() {
                 self.fixed_range = None;
             }
             self.field = field;

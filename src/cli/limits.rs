@@ -51,12 +51,16 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
     let head = [format!("within {GOOD} %"), format!("within {USABLE} %"), ends.into(), "strains > 10 %".into()];
     let names: Vec<String> = limits.strips.iter().map(|strip| strip.name(str::to_owned)).collect();
     let width = names.iter().map(String::len).fold(11, usize::max);
-    let _ = write!(text, "{:<width$}", "");
-    head.iter().for_each(|head| _ = write!(text, "  {head:>15}"));
-    text.push('\n');
-    for (strip, name) in limits.strips.iter().zip(names) {
+    let rows: Vec<[String; 4]> =
+        limits.strips.iter().map(|strip| strip.words(&axis, limits.range).map(|cell| cell.to_string())).collect();
+    let widths: [usize; 4] = std::array::from_fn(|i| {
+        let cells = rows.iter().map(|row| row[i].chars().count());
+        cells.fold(head[i].len(), usize::max).max(15)
+    });
+    let names = std::iter::once(String::new()).chain(names);
+    for (name, row) in names.zip(std::iter::once(&head).chain(&rows)) {
         let _ = write!(text, "{name:<width$}");
-        strip.words(&axis, limits.range).iter().for_each(|cell| _ = write!(text, "  {:>15}", cell.to_string()));
+        row.iter().zip(widths).for_each(|(cell, width)| _ = write!(text, "  {cell:>width$}"));
         text.push('\n');
     }
     text
@@ -66,12 +70,14 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
 fn table(limits: &MethodLimits, scene: &Scene) -> String {
     let first = if limits.duration.is_some() { "integrator,time_step" } else { "element,method,load_factor" };
     let mut text = format!("{first},displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n");
-    for Strip { element, method, integrator, points, .. } in &limits.strips {
+    for strip in &limits.strips {
+        let Strip { element, integrator, points, .. } = strip;
+        let method = strip.method_name(str::to_owned);
         for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements } in points {
             let error = error_percent.map_or_else(String::new, |error| error.to_string());
             let first = match integrator {
                 Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),
-                None => format!("{},{},{factor}", element.id(), method.id()),
+                None => format!("{},{method},{factor}", element.id()),
             };
             let [x, y] = [displacement.x, displacement.y];
             let _ = writeln!(text, "{first},{x},{y},{error},{max_strain},{inverted_elements}");
@@ -86,10 +92,12 @@ fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
         let mut object = json!({
             "element": strip.element.id(),
             "method": strip.method.id(),
+            "accept_after": strip.accept_after,
             "within_1_percent": strip.within(GOOD),
             "within_5_percent": strip.within(USABLE),
             "error_known_to": strip.last_known().map(|(factor, _)| factor),
-            "converges_to": strip.ends_at,
+            "converges_to": strip.ends_at(),
+            "converges_again_from": strip.converges_again_from(limits.range),
             "law_ends_at": strip.law_ends_at(),
         });
         // Equilibria have no integrator.

@@ -4,7 +4,6 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
 use crate::assembly::{Forces, Kinematics, Problem};
-use crate::rotation::polar;
 use crate::scene::Place;
 use crate::section::Wrench;
 use crate::state::State;
@@ -62,7 +61,7 @@ pub struct SupportReaction {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Deformation {
-    /// Largest magnitude of the polar rotation, degrees.
+    /// Largest magnitude of the polar rotation that is recovered at a node, as the stresses are, degrees.
     pub max_rotation_deg: f64,
     /// Largest magnitude of a principal strain that is recovered at a node, as the stresses are.
     pub max_strain: f64,
@@ -77,7 +76,16 @@ impl Deformation {
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let elements = problem.system().elements();
         let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
-        let mut result = Self { max_strain: strains.fold(0.0, f64::max), ..Self::default() };
+        let rotated = match nodal.kinematics() {
+            Kinematics::Linear => &NodalStress::of(problem, state, Kinematics::Corotated),
+            Kinematics::Corotated => nodal,
+        };
+        let rotations = rotated.nodes().iter().map(|local| local.rotation.angle().abs());
+        let mut result = Self {
+            max_strain: strains.fold(0.0, f64::max),
+            max_rotation_deg: rotations.fold(0.0, f64::max).to_degrees(),
+            ..Self::default()
+        };
         let mut last_inverted = None;
         let lame = problem.material().lame();
         elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
@@ -87,8 +95,6 @@ impl Deformation {
                 last_inverted = Some(element);
                 result.inverted_elements += 1;
             }
-            let angle = polar(&f).map_or(0.0, |r| r.angle().abs());
-            result.max_rotation_deg = result.max_rotation_deg.max(angle.to_degrees());
         });
         result
     }

@@ -20,7 +20,7 @@ use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Deformation, Simulation, SimulationError, Status};
+use crate::simulation::{Deformation, Simulation, SimulationError};
 use crate::stress::LAW_HOLDS;
 
 /// Smallest and largest part of the scene's loads and prescribed displacements.
@@ -125,12 +125,15 @@ pub struct Strip {
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
+    /// Number of iterations after which a result is accepted; 0: each is iterated to the tolerance.
+    pub accept_after: u32,
     /// Integrator of a motion.
     pub integrator: Option<IntegratorKind>,
     /// Results, in the order of their loads.
     pub points: Vec<LimitPoint>,
-    /// Part of the load beyond which the method does not converge; `None` if it converges at the largest load.
-    pub ends_at: Option<f64>,
+    /// Parts of the load between which the method does not converge, from small to large: next to buckling a method may
+    /// stop to converge, and converge again beyond.
+    pub fails: Vec<[f64; 2]>,
     /// Fraction of the loads that have been solved; 1 once the strip is complete.
     pub done: f64,
 }
@@ -141,11 +144,32 @@ impl Strip {
         Self {
             element: scene.element(),
             method: scene.solver.method,
+            accept_after: scene.solver.accept_after,
             integrator: (scene.analysis == Analysis::Dynamic).then_some(scene.dynamics.integrator),
             points: Vec::new(),
-            ends_at: None,
+            fails: Vec::new(),
             done: 0.0,
         }
+    }
+
+    /// Returns the part of the load up to which the method converges; `None` if it converges at the largest load and below.
+    #[must_use]
+    pub fn ends_at(&self) -> Option<f64> {
+        self.fails.first().map(|[end, _]| *end)
+    }
+
+    /// Returns the part of the load from which the method converges again; `None` if it does not. `range` is that of the
+    /// limits.
+    #[must_use]
+    pub fn converges_again_from(&self, range: [f64; 2]) -> Option<f64> {
+        self.fails.first().map(|[_, end]| *end).filter(|end| *end < range[1])
+    }
+
+    /// Returns the name of the method, translated by `text`, with the number of iterations of an early stop: `warped:2`.
+    #[must_use]
+    pub fn method_name(&self, text: impl Fn(&'static str) -> String) -> String {
+        let method = text(self.method.id());
+        if self.accept_after == 0 { method } else { format!("{method}:{}", self.accept_after) }
     }
 
     /// Returns the name of the integrator, or the names of element and method, translated by `text`.
@@ -153,12 +177,12 @@ impl Strip {
     pub fn name(&self, text: impl Fn(&'static str) -> String) -> String {
         match self.integrator {
             Some(integrator) => text(integrator.id()),
-            None => format!("{} {}", self.element.id(), text(self.method.id())),
+            None => format!("{} {}", self.element.id(), self.method_name(text)),
         }
     }
 
     /// Returns the part of the load up to which the error is at most `percent`, interpolated between two loads: 0 if it is
-    /// larger at the smallest load, and `None` if it is not larger at any load at which the error is known.
+    /// larger at the smallest load, and `None` if it is not larger up to [`Self::last_known`].
     #[must_use]
     pub fn within(&self, percent: f64) -> Option<f64> {
         let mut before: Option<(f64, f64)> = None;
@@ -171,7 +195,8 @@ impl Strip {
         None
     }
 
-    /// Returns the largest part of the load up to which the error is known, and the error; `None` if there is none.
+    /// Returns the largest part of the load up to which the error is known at every load, and the error; `None` if it is
+    /// not known at the smallest load.
     #[must_use]
     pub fn last_known(&self) -> Option<(f64, f64)> {
         self.known().last()
@@ -180,15 +205,23 @@ impl Strip {
     /// Returns the last load with a known error, and the error, if errors at larger loads in the range are not known although
     /// the method converges there.
     fn ends_early(&self, range: [f64; 2]) -> Option<(f64, f64)> {
-        let end = self.ends_at.unwrap_or(range[1]);
+        let end = self.ends_at().unwrap_or(range[1]);
         self.last_known()
             .filter(|(last, _)| *last < end && self.points.last().is_some_and(|point| point.factor > *last))
     }
 
-    /// Returns the loads with their errors up to the first load at which the error is not known.
+    /// Returns the loads with their errors up to the first load at which the error is not known, or the method does not
+    /// converge.
     fn known(&self) -> impl Iterator<Item = (f64, f64)> {
+        let end = self.ends_at().unwrap_or(f64::INFINITY);
         let known = self.points.iter().map(|point| Some((point.factor, point.error_percent?)));
-        known.skip_while(Option::is_none).map_while(|known| known)
+        known.map_while(|known| known).take_while(move |(factor, _)| *factor <= end)
+    }
+
+    /// Returns the results between which the error first exceeds `percent`, and the index of the second one.
+    fn crossing(&self, percent: f64) -> Option<(usize, [LimitPoint; 2])> {
+        let next = self.points.iter().position(|point| point.error_percent.is_some_and(|error| error > percent))?;
+        Some((next, [*self.points.get(next.checked_sub(1)?)?, *self.points.get(next)?]))
     }
 
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
@@ -204,7 +237,8 @@ impl Strip {
     /// strip that is not complete end at its last result. `range` is that of the limits.
     #[must_use]
     pub fn pieces(&self, range: [f64; 2]) -> Vec<Piece> {
-        let end = if self.done < 1.0 { None } else { Some(self.ends_at.unwrap_or(range[1])) };
+        let gap_between = |from: f64, to: f64| self.fails.iter().find(|gap| from <= gap[0] && gap[1] <= to).copied();
+        let failed = |range: [f64; 2]| Piece { range, rating: Rating::NotConverged, is_beyond_law: false };
         let mut results: Vec<Piece> = Vec::new();
         let mut add = |piece: Piece| match results.last_mut() {
             Some(last) if (last.rating, last.is_beyond_law) == (piece.rating, piece.is_beyond_law) => {
@@ -223,6 +257,13 @@ impl Strip {
         }
         for pair in self.points.windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
+            if let Some(gap) = gap_between(a.factor, b.factor) {
+                // The error is known at the ends of the gap, if the method has a result there.
+                add(Piece { rating: Rating::Unknown, ..of([a.factor, gap[0]], a) });
+                add(failed(gap));
+                add(Piece { rating: Rating::Unknown, ..of([gap[1], b.factor], b) });
+                continue;
+            }
             let mut ends = vec![a.factor, b.factor];
             // Where the error is known at one of them only, nothing is said of the loads in between.
             if let (Some(from), Some(to)) = (a.error_percent, b.error_percent) {
@@ -252,17 +293,17 @@ impl Strip {
                 });
             }
         }
-        // The error was not measured beyond the last result of a method that stops to converge.
-        if let (Some(last), Some(end)) = (self.points.last(), end) {
-            let rating = if self.ends_at.is_some() { Rating::Unknown } else { last.rating() };
-            add(Piece { rating, ..of([last.factor, end], last) });
+        let last = self.points.last();
+        let reached = last.map_or(range[0], |last| last.factor);
+        match (self.fails.last().filter(|gap| gap[1] > reached), last) {
+            (Some(&[start, end]), last) => {
+                // The error was not measured beyond the last result of a method that stops to converge.
+                last.into_iter().for_each(|last| add(Piece { rating: Rating::Unknown, ..of([reached, start], last) }));
+                add(failed([start.max(range[0]), end]));
+            }
+            (None, Some(last)) if self.done == 1.0 => add(of([reached, range[1]], last)),
+            _ => {}
         }
-        let failed = self.ends_at.map(|end| Piece {
-            range: [end.max(range[0]), range[1]],
-            rating: Rating::NotConverged,
-            is_beyond_law: false,
-        });
-        results.extend(failed);
         results
     }
 
@@ -281,16 +322,17 @@ impl Strip {
             (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
             (Some(factor), _) => load(factor).into(),
             // It does not converge beyond.
-            (None, Some((factor, _))) if self.ends_at == Some(factor) => load(factor).into(),
+            (None, Some((factor, _))) if self.ends_at() == Some(factor) => load(factor).into(),
             (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),
             (None, None) => sentence!("not known"),
         };
-        let converges = match self.ends_at {
+        let converges = match (self.ends_at(), self.converges_again_from(range)) {
+            (Some(end), Some(from)) => sentence!("%{load}, again from %{from}", load = load(end), from = load(from)),
             // Time steps shorter than the first are not tried.
-            Some(0.0) if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
-            Some(0.0) => sentence!("nowhere"),
-            Some(factor) => load(factor).into(),
-            None => sentence!("at least %{load}", load = load(range[1])),
+            (Some(0.0), _) if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
+            (Some(0.0), _) => sentence!("nowhere"),
+            (Some(factor), _) => load(factor).into(),
+            (None, _) => sentence!("at least %{load}", load = load(range[1])),
         };
         let law = self.law_ends_at().map_or_else(|| "\u{2013}".into(), |f| sentence!("from %{load}", load = load(f)));
         [within(GOOD), within(USABLE), converges, law]
@@ -307,13 +349,18 @@ impl Strip {
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
         let find = |is_told: &dyn Fn(&f64) -> bool| [GOOD, USABLE].into_iter().find(is_told);
         let percent = find(&is_far).or_else(|| find(&holds));
-        match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at) {
+        let from = || {
+            let from = load_text(axis, self.usable_from(range)?);
+            Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = from))
+        };
+        if self.last_known().is_none() && !self.points.is_empty() {
+            return from();
+        }
+        match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at()) {
             (Some((percent, factor)), _) => {
                 Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
             }
-            (None, _) if let (None, Some(from)) = (percent, self.usable_from(range)) => {
-                Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = load_text(axis, from)))
-            }
+            (None, _) if percent.is_none() && self.usable_from(range).is_some() => from(),
             // Beyond, the error is not known.
             (None, _) if let (Some(percent), Some((factor, _))) = (percent, self.ends_early(range)) => Some(sentence!(
                 "%{percent} % to at least %{load}",
@@ -328,6 +375,9 @@ impl Strip {
                 Some(sentence!("finishes to %{load}", load = load_text(axis, factor)))
             }
             (None, Some(factor)) => Some(sentence!("converges to %{load}", load = load_text(axis, factor))),
+            (None, None) if self.done == 1.0 => {
+                percent.map(|percent| sentence!("within %{percent} %", percent = number(percent)))
+            }
             (None, None) => None,
         }
     }
@@ -427,9 +477,16 @@ impl MethodLimits {
         let systems = systems.collect::<Result<Vec<_>, SimulationError>>()?;
         let now = [sentence!("reference solutions"), sentence!("following each method")];
         let methods = || METHODS.iter().map(|method| method.kind).filter(|method| *method != MethodKind::Auto);
-        let own = systems
-            .iter()
-            .flat_map(|(own, system)| methods().map(move |method| (own.clone().with_method(method), system)));
+        let iterated = |own: &Scene, method: MethodKind| {
+            let mut own = own.clone().with_method(method);
+            own.solver.accept_after = 0;
+            own
+        };
+        let all = systems.iter().flat_map(|(own, system)| methods().map(move |method| (iterated(own, method), system)));
+        // The scene's own early stop has a strip too.
+        let is_own = |(own, _): &&(Scene, _)| own.element() == scene.element();
+        let early = systems.iter().find(is_own).filter(|_| scene.solver.accept_after > 0);
+        let own = early.into_iter().map(|(own, system)| (own.clone(), system)).chain(all);
         let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
         let critical = critical(scene, &|_: Progress<'_>| observe(Progress::at(0.0)));
         let factors = factors(critical);
@@ -472,26 +529,27 @@ impl MethodLimits {
         settings.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
         });
+        let solve = |own: &Scene, system: &Arc<System>, factor: f64, observe: Observer<'_>| {
+            let mut simulation = Simulation::with_system(&at(own, factor), system.clone())?;
+            let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
+            check(flow).map(|()| Some(simulation).filter(|s| s.status().is_success()))
+        };
+        let point = |own: &Scene, system: &Arc<System>, factor: f64, observe: Observer<'_>| {
+            let Some(solved) = solve(own, system, factor, observe)? else { return Ok(None) };
+            let problem = solved.problem();
+            let probe = problem.probes().first();
+            let displacement = probe.map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
+            let Deformation { max_strain, inverted_elements, .. } =
+                Deformation::of(problem, solved.state(), &solved.nodal_stress());
+            let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
+            let error_percent = known.and_then(|known| known_error(&known, displacement));
+            Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
+        };
         all_done(parallel::map(
             &settings,
             |(row, (own, system)), observe| {
-                let solve = |factor: f64| {
-                    let mut simulation = Simulation::with_system(&at(own, factor), (*system).clone())?;
-                    let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
-                    check(flow).map(|()| Some(simulation).filter(|s| *s.status() == Status::Converged))
-                };
-                let point = |factor: f64| {
-                    let Some(solved) = solve(factor)? else { return Ok(None) };
-                    let problem = solved.problem();
-                    let probe = problem.probes().first();
-                    let displacement = probe.map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
-                    let Deformation { max_strain, inverted_elements, .. } =
-                        Deformation::of(problem, solved.state(), &solved.nodal_stress());
-                    let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
-                    let error_percent = known.and_then(|known| known_error(&known, displacement));
-                    Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
-                };
-                let converges = |factor: f64| Ok(solve(factor)?.is_some());
+                let point = |factor: f64| point(own, system, factor, observe);
+                let converges = |factor: f64| Ok(solve(own, system, factor, observe)?.is_some());
                 let is_costly = |factor: f64| references.folds(factor);
                 let found = follow(Strip::new(own), &factors, &point, &converges, &|strip| so_far.set(*row, strip))?;
                 let refined = refine(found, &point, &is_costly)?;
@@ -499,6 +557,18 @@ impl MethodLimits {
                 Ok(())
             },
             |done| observe(Progress { fraction: (factors.len() + done) as f64 / all, now: Some(&now[1]) }),
+        ))?;
+        // A load that was added for one method is solved by the others too if their errors cross a limit around it.
+        let known = references.factors();
+        all_done(parallel::map(
+            &settings,
+            |(row, (own, system)), observe| {
+                let Some(strip) = so_far.strip(*row) else { return Ok(()) };
+                let shared = share(strip, &known, &|factor| point(own, system, factor, observe))?;
+                so_far.set(*row, &shared);
+                Ok(())
+            },
+            |_| observe(Progress { fraction: 1.0, now: Some(&now[1]) }),
         ))?;
         Ok(so_far.end())
     }
@@ -591,6 +661,11 @@ impl References<'_> {
         Ok(probe)
     }
 
+    /// Returns the parts of the load whose references have been computed.
+    fn factors(&self) -> Vec<f64> {
+        self.known().iter().map(|known| known.factor).collect()
+    }
+
     /// Returns `true` if the reference under a part of the load is known, and folds.
     fn folds(&self, factor: f64) -> bool {
         self.known().iter().any(|known| known.factor == factor && known.folds)
@@ -617,6 +692,10 @@ impl<'a> SoFar<'a> {
 
     fn set(&self, row: usize, strip: &Strip) {
         self.change(|limits| _ = limits.strips.get_mut(row).map(|old| old.clone_from(strip)));
+    }
+
+    fn strip(&self, row: usize) -> Option<Strip> {
+        self.limits.lock().unwrap_or_else(PoisonError::into_inner).strips.get(row).cloned()
     }
 
     /// Returns the reference displacements.
@@ -696,13 +775,12 @@ fn critical(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
 fn at(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
     scene.scale_loads(factor);
-    scene.solver.accept_after = 0;
     scene
 }
 
-/// Follows a strip from load to load until `solve` has no result, and finds the end of `converges` by bisection; the
-/// last result is that at the end, if `solve` has one there. Each solve starts from rest, as `warpbeam solve` does.
-/// `report` receives the strip so far after each load.
+/// Follows a strip from load to load, and finds the loads between which it does not converge by bisection; there is a result
+/// at both of these, if `solve` has one there. Each solve starts from rest, as `warpbeam solve` does. `report` receives the
+/// strip so far after each load.
 fn follow(
     mut strip: Strip,
     factors: &[f64],
@@ -710,21 +788,56 @@ fn follow(
     converges: &dyn Fn(f64) -> Result<bool, StudyError>,
     report: &dyn Fn(&Strip),
 ) -> Result<Strip, StudyError> {
+    let (mut reached, mut failed) = (0.0, None);
     for (i, &factor) in factors.iter().enumerate() {
-        let Some(point) = solve(factor)? else {
-            let reached = strip.points.last().map_or(0.0, |point| point.factor);
-            let end = end_between([reached, factor], converges)?;
-            strip.ends_at = Some(end);
-            if end > reached {
-                strip.points.extend(solve(end)?);
+        match (solve(factor)?, failed) {
+            (Some(point), None) => {
+                strip.points.push(point);
+                reached = factor;
             }
-            break;
-        };
-        strip.points.push(point);
+            (Some(point), Some(last)) => {
+                let resumed = end_between([factor, last], converges)?;
+                if let Some(gap) = strip.fails.last_mut() {
+                    gap[1] = resumed;
+                }
+                let first = if resumed < factor { solve(resumed)? } else { None };
+                strip.points.extend(first.into_iter().chain([point]));
+                (reached, failed) = (factor, None);
+            }
+            (None, None) => {
+                let end = end_between([reached, factor], converges)?;
+                if end > reached {
+                    strip.points.extend(solve(end)?);
+                }
+                strip.fails.push([end, factor]);
+                failed = Some(factor);
+            }
+            (None, Some(_)) => {
+                strip.fails.iter_mut().next_back().into_iter().for_each(|gap| gap[1] = factor);
+                failed = Some(factor);
+            }
+        }
         strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
         report(&strip);
     }
     strip.done = 1.0;
+    Ok(strip)
+}
+
+/// Adds results at `known` loads between which the error first exceeds a limit.
+fn share(
+    mut strip: Strip,
+    known: &[f64],
+    solve: &dyn Fn(f64) -> Result<Option<LimitPoint>, StudyError>,
+) -> Result<Strip, StudyError> {
+    for percent in [GOOD, USABLE] {
+        let Some((_, [before, after])) = strip.crossing(percent) else { continue };
+        let between = known.iter().filter(|factor| (before.factor..after.factor).contains(*factor));
+        for factor in between.filter(|factor| **factor > before.factor) {
+            strip.points.extend(solve(*factor)?);
+        }
+        strip.points.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    }
     Ok(strip)
 }
 
@@ -774,8 +887,7 @@ fn peak_below(strip: &Strip, percent: f64) -> Option<[[f64; 2]; 2]> {
 fn coarse_crossing(strip: &Strip, percent: f64) -> Option<(usize, [f64; 2])> {
     /// Ratio of errors that is interpolated well enough.
     const SMALL_RATIO: f64 = 3.0;
-    let next = strip.points.iter().position(|point| point.error_percent.is_some_and(|error| error > percent))?;
-    let [before, after] = [strip.points.get(next.checked_sub(1)?)?, strip.points.get(next)?];
+    let (next, [before, after]) = strip.crossing(percent)?;
     let ratio = after.error_percent? / before.error_percent?;
     (ratio > SMALL_RATIO).then_some((next, [before.factor, after.factor]))
 }
@@ -811,11 +923,11 @@ mod tests {
             point(2.0, Some(20.0), 0.3),
             point(4.0, None, 0.4),
         ];
-        let strip = Strip { points, ends_at: Some(5.0), done: 1.0, ..Strip::new(&scene) };
+        let strip = Strip { points, fails: vec![[5.0, 10.0]], done: 1.0, ..Strip::new(&scene) };
         let pieces = strip.pieces([0.1, 10.0]);
         let end = |rating| pieces.iter().rev().find(|piece| piece.rating == rating).map(|piece| piece.range[1]);
         assert_eq!([Rating::Good, Rating::Usable].map(end), [GOOD, USABLE].map(|percent| strip.within(percent)));
-        assert_eq!(end(Rating::Unknown), strip.ends_at);
+        assert_eq!(end(Rating::Unknown), strip.ends_at());
         let law = pieces.iter().find(|piece| piece.is_beyond_law).map(|piece| piece.range[0]);
         assert_eq!(law, strip.law_ends_at());
         // 1 % is reached after ln(1/0.8)/ln(20/0.8) of an octave.
@@ -836,6 +948,11 @@ mod tests {
         assert_eq!(end(&strip), "5 % to at least 1 kN");
         let unknown = strip.pieces([1.0, 8.0]).into_iter().find(|piece| piece.rating == Rating::Unknown).unwrap();
         assert_eq!(unknown.range, [1.0, 4.0]);
+        // Nothing is said either of loads below one at which it is not known, but for the load from which it is usable.
+        let unknown = vec![point(1.0, None, 1e-3), point(2.0, Some(3.0), 1e-3), point(8.0, Some(4.0), 1e-3)];
+        let strip = Strip { points: unknown, done: 1.0, ..Strip::new(&scene) };
+        assert_eq!((strip.within(GOOD), strip.within(USABLE), strip.last_known()), (None, None, None));
+        assert_eq!(end(&strip), "5 % from 2 kN");
         // An error that falls is within 5 % from where it does.
         let falling = vec![point(1.0, Some(9.0), 1e-3), point(4.0, Some(1.0), 1e-3)];
         let strip = Strip { points: falling, done: 1.0, ..Strip::new(&scene) };
@@ -898,9 +1015,13 @@ mod tests {
             checked += 1;
         }
         assert!(checked >= 1);
-        let warped = limits.strips.iter().find(|strip| strip.method == MethodKind::Warped && strip.ends_at.is_some());
+        let warped = limits.strips.iter().find(|strip| strip.method == MethodKind::Warped && strip.ends_at().is_some());
         let warped = warped.unwrap();
-        assert_eq!(warped.points.last().map(|point| point.factor), warped.ends_at, "the error is known at the end");
+        assert_eq!(
+            warped.points.iter().map(|point| point.factor).rfind(|factor| Some(*factor) <= warped.ends_at()),
+            warped.ends_at(),
+            "the error is known at the end"
+        );
     }
 
     /// Next to the buckling load of a column with an imperfection the error has a peak, which is not missed: single solves
@@ -934,12 +1055,12 @@ mod tests {
         let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]);
         let strip = Strip {
             points: vec![point(0.1, Some(30.0), 1e-3), point(1.0, Some(40.0), 1e-2)],
-            ends_at: Some(1.5),
+            fails: vec![[1.5, 10.0]],
             done: 1.0,
             ..Strip::new(&scene)
         };
         let end = |strip: &Strip| strip.end(&axis(&scene), [0.1, 10.0]).map(|end| end.to_string());
         assert_eq!(end(&strip).as_deref(), Some("converges to 1.5 kN"));
-        assert_eq!(end(&Strip { ends_at: None, ..strip }).as_deref(), Some("not within 5 %"));
+        assert_eq!(end(&Strip { fails: Vec::new(), ..strip }).as_deref(), Some("not within 5 %"));
     }
 }

@@ -129,8 +129,14 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
         let (ink, name) = (Ink::Method(scene.solver.method), render(&name.into()));
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
         let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));
+        let values = || sections.iter().map(|section| value(&section.forces));
+        let [low, high] = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
+        let is_constant = three_digits(low) == three_digits(high);
         let largest = largest.map(|section| {
-            let at = sentence!("largest, at %{at}", at = engineering(three_digits(section.line.at.x), "m"));
+            let at = match is_constant {
+                true => sentence!("constant"),
+                false => sentence!("largest, at %{at}", at = engineering(three_digits(section.line.at.x), "m")),
+            };
             row(render(&at), ink, Mark::Line, engineering(three_digits(value(&section.forces)), unit))
         });
         Figure {

@@ -35,6 +35,10 @@ static TIMED: Mutex<()> = Mutex::new(());
 pub struct SolveFromRest {
     /// Median times of repeated solves.
     pub timings: Timings,
+    /// Number of iterations.
+    pub iterations: u32,
+    /// `true` if it ends with a result.
+    pub is_solved: bool,
     /// Displacement of the first probe at the end, m; `None` if the scene has no probe.
     pub displacement: Option<Vector2<f64>>,
 }
@@ -45,7 +49,12 @@ pub struct SolveFromRest {
 pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
     let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop()?;
-    Some(SolveFromRest { timings, displacement: first_probe(&simulation).ok() })
+    Some(SolveFromRest {
+        timings,
+        iterations: simulation.iterations(),
+        is_solved: simulation.status().is_success(),
+        displacement: first_probe(&simulation).ok(),
+    })
 }
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,

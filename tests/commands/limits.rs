@@ -55,6 +55,51 @@ fn limits_are_those_of_solve() {
     assert!(picture.contains("does not converge") && picture.contains("q4 newton"));
 }
 
+/// Next to buckling `warped` stops to converge, and converges again beyond, as `solve` does; its limit of 1 % is that of
+/// `newton`, whose results are the same.
+#[test]
+fn a_method_may_converge_again_beyond_buckling() {
+    let json: serde_json::Value = serde_json::from_slice(&warpbeam(&["limits", "column", "--json"]).stdout).unwrap();
+    let strip = |method: &str| {
+        let mut strips = json["strips"].as_array().unwrap().iter();
+        strips.find(|strip| strip["element"] == "t6" && strip["method"] == method).unwrap()
+    };
+    let [warped, newton] = ["warped", "newton"].map(strip);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let [end, again] = ["converges_to", "converges_again_from"].map(|key| number(&warped[key]));
+    let converges = |factor: f64| {
+        let load = format!("load.0.force=[{}, {}]", -700.0 * factor, 2.0 * factor);
+        warpbeam(&["solve", "column", "--set", "solver.method=warped", "--set", &load]).status.code() == Some(0)
+    };
+    let solved = [0.99 * end, 1.01 * end, 0.98 * again, 1.01 * again, 1.0].map(converges);
+    assert_eq!(solved, [true, false, false, true, true], "{end} {again}");
+    let [own, same] = [warped, newton].map(|strip| number(&strip["within_1_percent"]));
+    assert!((own / same - 1.0).abs() < 0.01, "{own} {same}");
+}
+
+/// A scene that stops early has a strip of its own, with the errors that `solve` states.
+#[test]
+fn an_early_stop_has_a_strip() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = ["--set", "beam.element=\"q4\"", "--set", "beam.cells=[10,1]", "--set", "solver.accept_after=2"];
+    let args = [&["limits", "cantilever", "--json", "--out", "t.csv"][..], &settings].concat();
+    let output = warpbeam_in(folder.path(), &args);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let strips = json["strips"].as_array().unwrap();
+    assert_eq!(strips.len(), 10, "nine strips, and the one of the early stop");
+    let early: Vec<_> = strips.iter().filter(|strip| strip["accept_after"] == 2).collect();
+    assert!(early.len() == 1 && early[0]["element"] == "q4" && early[0]["method"] == "warped", "{early:?}");
+    let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    let own = rows.lines().filter(|row| row.starts_with("q4,warped:2,"));
+    let values =
+        own.map(|row| row.split(',').skip(2).map(|v| v.parse::<f64>().unwrap_or(f64::NAN)).collect::<Vec<_>>());
+    let solved = solve_json(&[&["cantilever"][..], &settings].concat());
+    let probe = &solved["probes"][0];
+    let wanted = probe["error_percent"].as_f64().unwrap() + probe["reference_error_percent"].as_f64().unwrap();
+    let at_load = values.into_iter().find(|row| (row[0] - 1.0).abs() < 1e-9).unwrap();
+    assert!(solved["status"] == "accepted" && (at_load[3] / wanted - 1.0).abs() < 1e-6, "{at_load:?} {wanted}");
+}
+
 /// A linear axis begins at 0; its ticks are round loads. Without a picture there is no axis.
 #[test]
 fn a_picture_can_have_linear_axes() {

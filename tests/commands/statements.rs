@@ -149,6 +149,12 @@ fn a_probe_rotates_in_linear_theory_too() {
     let (largest, own) = (largest.as_f64().unwrap(), own.as_f64().unwrap());
     // The end of a cantilever rotates most.
     assert!(largest > 10.0 && own < 0.0 && (own.abs() / largest - 1.0).abs() < 0.05, "{own}° of {largest}°");
+    // No probe rotates more than the largest rotation, on coarse meshes too.
+    for method in ["linear", "newton"] {
+        let (_, json) = solve_object(&["article", "--set", &format!("solver.method={method:?}")]);
+        let (largest, own) = (&json["max_rotation_deg"], &json["probes"][0]["rotation_deg"]);
+        assert!(own.as_f64().unwrap().abs() <= largest.as_f64().unwrap(), "{method}: {own}° of {largest}°");
+    }
 }
 
 /// A body without stress has no stress that grows as the mesh is refined.

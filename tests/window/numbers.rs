@@ -83,7 +83,7 @@ fn number(value: &Value) -> Option<f64> {
 fn compare(what: &str, shown: &Shown, json: &Value) {
     let probe = &json["probes"][0];
     let iterations = json["iterations"].as_u64().unwrap();
-    let residual = format!("{iterations}, residual {:.2e}", number(&json["residual"]).unwrap());
+    let residual = format!("{iterations} since the last change, residual {:.2e}", number(&json["residual"]).unwrap());
     assert_eq!(shown.row("Iterations"), residual, "{what}");
     let bar = shown.starting_with("ERROR ").unwrap();
     match number(&probe["error_percent"]) {

@@ -461,7 +461,7 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     wait(&mut harness, "the reference", |lab| !lab.is_computing());
     harness.run();
     let mut bar = texts(&harness).into_iter().filter(|text| text.starts_with("ERROR"));
-    assert!(bar.next().is_some_and(|text| text.ends_with("no reference")), "{:?}", texts(&harness));
+    assert!(bar.next().is_some_and(|text| text.ends_with("no reference · strain 21 %")), "{:?}", texts(&harness));
 }
 
 /// If ρ is above 1 although the result has converged, the window explains why.

@@ -217,7 +217,10 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     };
     let before = details(&harness);
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");
-    assert!(before[3].starts_with("21, residual") && before[4].contains("ρ = 0.47"), "{before:?}");
+    assert!(
+        before[3].starts_with("21 since the last change, residual") && before[4].contains("ρ = 0.47"),
+        "{before:?}"
+    );
     type_into(&mut harness, "Force", "176000");
     assert!(matches!(harness.state().simulation().status(), Status::Diverged(_)));
     // On the body and in Details.
@@ -273,9 +276,10 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     harness.get_by_label("explain").click();
     harness.run();
     harness.get_by_label_contains(
-        "Accepted after 3 iterations from the state before, as the scene asks: the relative residual is 0.02",
+        "Accepted after 3 iterations from rest, as the scene asks: the relative residual is 0.02",
     );
     // The remedy of an early stop is to go on, not a finer mesh.
+    harness.get_by_label("47 % error: the iteration is stopped early.");
     harness.get_by_label("Iterate to the tolerance").click();
     harness.step();
     assert_eq!(harness.state().scene().solver.accept_after, 0);
@@ -295,11 +299,33 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     let node = harness.get_by_label_contains(&from_rest).accesskit_node();
     let error = node.label().or_else(|| node.value()).unwrap();
     assert!(error.starts_with("ERROR "), "{error}");
-    harness
-        .get_by_label(&format!("{} error from rest, accepted after 3 iterations.", &from_rest["from rest ".len()..]));
+    let error = &from_rest["from rest ".len()..];
+    harness.get_by_label(&format!("{error} error from rest: the iteration is stopped early."));
     harness.get_by_label("Use newton").click();
     wait(&mut harness, "equilibrium", |lab| *lab.simulation().status() == Status::Converged);
     assert_eq!(harness.state().scene().solver.accept_after, 0);
+}
+
+/// The number of iterations in the status is that of a solve from rest, as TIME is, whatever the load before was, and
+/// after an edit that needs no iteration.
+#[test]
+fn iterations_are_counted_from_rest() {
+    let mut harness = harness("article");
+    for force in ["32000", "33000", "32000"] {
+        type_into(&mut harness, "Force", force);
+        settle(&mut harness);
+        let load = format!("load.0.force=[0,-{force}]");
+        let solved = solve_json(&["article", "--set", &load]);
+        harness.get_by_label(&format!("Converged · stable · {} iterations", solved["iterations"]));
+        assert_ne!(Some(u64::from(harness.state().simulation().iterations())), solved["iterations"].as_u64());
+    }
+    unfold(&mut harness, "Held at");
+    harness.get_by_role_and_label(Role::Button, "Probe").click();
+    harness.run_steps(3);
+    settle(&mut harness);
+    harness.run_steps(2);
+    assert_eq!(harness.state().simulation().iterations(), 0);
+    harness.get_by_label_contains("Converged · stable · 24 iterations");
 }
 
 /// A body that is held is not said to be at another equilibrium than the one to which loading leads.
@@ -555,10 +581,16 @@ fn values_go_back_to_those_of_the_scene() {
     drag(&mut harness, at(0.5), at(0.6), Modifiers::NONE);
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(*harness.state().scene(), once);
-    // The tooltip of the control says so.
+    // The tooltip of the control says so, but not under the pointer that has just dragged it.
+    let tip = "Double click, or Delete on the slider: 1 kN";
+    harness.hover_at(at(0.3));
+    harness.run_steps(60);
+    assert!(harness.query_all_by_label_contains(tip).next().is_none());
+    harness.hover_at(slider.center() - egui::vec2(400.0, 0.0));
+    harness.run_steps(2);
     harness.hover_at(at(0.2));
     harness.run_steps(60);
-    assert!(harness.query_all_by_label_contains("Double click, or Delete on the slider: 1 kN").next().is_some());
+    assert!(harness.query_all_by_label_contains(tip).next().is_some());
 }
 
 fn moment(lab: &Lab) -> f64 {

@@ -15,7 +15,7 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
-use crate::format::{editable, number};
+use crate::format::{editable, engineering, number, three_digits};
 use crate::scene::{Axis, Load, Place, Scene, Support, limits};
 
 /// Name of the section, with which its messages are kept.
@@ -180,6 +180,12 @@ pub(super) fn show(
     for (i, load) in scene.loads.iter().enumerate() {
         let Some(present) = place_of(load) else { continue };
         let remove = fill!("Remove load %{n}", n = i + 1);
+        let size = match load {
+            Load::Force { force: [x, y], .. } => engineering(three_digits(x.hypot(*y)), "N"),
+            Load::Moment { moment, .. } => engineering(three_digits(*moment), "N m"),
+            Load::Gravity { .. } => String::new(),
+        };
+        let size = |ui: &mut Ui| _ = ui.weak(&size);
         let change = if load.is_moment() {
             row(
                 ui,
@@ -187,7 +193,7 @@ pub(super) fn show(
                 (scene, &present),
                 edges(can_carry_moment),
                 (view, &mut state.messages),
-                |_| {},
+                size,
             )
         } else {
             row(
@@ -196,7 +202,7 @@ pub(super) fn show(
                 (scene, &present),
                 edges(is_free).chain(points(scene)),
                 (view, &mut state.messages),
-                |_| {},
+                size,
             )
         };
         let Some(change) = change else { continue };

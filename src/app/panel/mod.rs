@@ -98,8 +98,10 @@ pub(super) fn show(
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         let palette = Palette::new(ui.visuals());
-        let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
-        ui.add(egui::Label::new(about).wrap());
+        if !input.scene.about.is_empty() {
+            let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
+            ui.add(egui::Label::new(about).wrap());
+        }
         ui.add_space(4.0);
         method(ui, input, state, actions);
         element(ui, input, state, actions);

@@ -55,11 +55,11 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row(
         "Iterations",
         fill!(
-            "%{n}, residual %{residual}",
+            "%{n} since the last change, residual %{residual}",
             n = simulation.iterations(),
             residual = format!("{:.2e}", simulation.residual())
         ),
-        "Iterations since the last change; residual: out-of-balance force over the sum of the elements' absolute \
+        "Iterations since the last change, from the state before it; the status has those from rest. Residual: out-of-balance force over the sum of the elements' absolute \
          forces",
     );
     probe_row(row, simulation);

@@ -162,12 +162,14 @@ pub(crate) fn without_methods(scene: &Scene) -> Scene {
         scene.dynamics.integrator = DynamicsSettings::default().integrator;
         return scene;
     }
+    // An early stop has a strip of its own.
+    if scene.solver.accept_after > 0 {
+        return scene;
+    }
     let first = scene.elements().next().unwrap_or_default();
     scene.set_element(first);
     let any = SolverSettings::default();
-    let solver = &mut scene.solver;
-    (solver.method, solver.accept_after, solver.max_error_percent) =
-        (any.method, any.accept_after, any.max_error_percent);
+    (scene.solver.method, scene.solver.max_error_percent) = (any.method, any.max_error_percent);
     scene
 }
 

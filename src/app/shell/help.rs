@@ -1,6 +1,6 @@
 //! Help overlay with the list of keys and mouse actions.
 
-use egui::{Align2, Context};
+use egui::{Align2, Context, Key, Modifiers};
 
 use crate::app::language::tr;
 use crate::app::shell::shortcuts::shortcuts;
@@ -25,6 +25,27 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Drop a file", "Open it"),
 ];
 
+/// Scrolls by the keys of the list.
+fn scroll_by_keys(ui: &egui::Ui) {
+    /// Distance of a line, points.
+    const LINE: f32 = 40.0;
+    let page = 0.8 * ui.ctx().content_rect().height();
+    let end = 1e5;
+    let keys = [
+        (Key::ArrowDown, -LINE),
+        (Key::ArrowUp, LINE),
+        (Key::PageDown, -page),
+        (Key::PageUp, page),
+        (Key::End, -end),
+        (Key::Home, end),
+    ];
+    for (key, distance) in keys {
+        if ui.input_mut(|i| i.consume_key(Modifiers::NONE, key)) {
+            ui.scroll_with_delta(egui::vec2(0.0, distance));
+        }
+    }
+}
+
 /// Shows the list over everything; sets `open` to `false` when it is closed.
 pub(crate) fn show(ctx: &Context, open: &mut bool) {
     /// Width of the window, points, below which an entry has its keys above its text.
@@ -45,6 +66,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .max_height(ctx.content_rect().height() - 80.0)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
+            scroll_by_keys(ui);
             let of_shortcuts = shortcuts().map(|shortcut| (with_keys(ctx, &shortcut.text()), tr(shortcut.does)));
             let of_gestures = FOCUS_KEYS.iter().chain(MOUSE);
             let rows = of_shortcuts.chain(of_gestures.map(|(gesture, does)| (tr(gesture).to_owned(), tr(does))));

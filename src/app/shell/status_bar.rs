@@ -74,7 +74,8 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Vec<BarNumber> {
     let simulation = input.simulation;
-    let time = input.from_rest.filter(|_| simulation.status().is_success());
+    let solve = input.from_rest.filter(|_| simulation.status().is_success());
+    let time = solve.filter(|solve| solve.is_solved);
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
@@ -94,10 +95,11 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
                 (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
                     format!("{} · {doubt}", tr(source.word())).into()
                 }
-                (Some(doubt), _) => doubt.into(),
-                (None, Some(source)) => tr(source.word()).into(),
+                (Some(doubt), _) if is_without_reference => format!("{} · {doubt}", tr("no reference")).into(),
+                (Some(doubt), _) if sought.is_none() => doubt.into(),
+                (_, Some(source)) => tr(source.word()).into(),
                 (None, None) if is_without_reference => tr("no reference").into(),
-                (None, None) => sought.map_or(Cow::default(), |done| {
+                (_, None) => sought.map_or(Cow::default(), |done| {
                     let percent = format!("{:.0}", 100.0 * done);
                     fill!("computing the reference: %{percent} %", percent = percent).into()
                 }),
@@ -113,7 +115,10 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
         BarNumber {
             name: "TIME",
             value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
-            word: Cow::default(),
+            word: match solve {
+                Some(solve) if !solve.is_solved => tr("not reached from rest").into(),
+                _ => Cow::default(),
+            },
             tip: tr(
                 "Computing time of a solve from rest, the median of repeated solves, without the check of stability",
             )

@@ -39,7 +39,7 @@ const PARTS: [Part; 5] = [
         outlines: [true, false],
     },
     Part {
-        caption: "At ρ ≈ 1 the warped iteration diverges.",
+        caption: "Beyond ρ ≈ 1 the warped iteration diverges.",
         seconds: 4.5,
         setting: |t| (MethodKind::Warped, ElementKind::T3, between(1.0, PAST, t / 0.8)),
         outlines: [false, false],

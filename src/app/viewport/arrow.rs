@@ -23,8 +23,10 @@ const SHARE: f64 = 0.12;
 /// Length, in opening lengths, above which an arrow ends at the border of the view.
 const WHOLE: f64 = 2.0;
 /// Distance of such an arrow's tip from the border at the sides, and above and below, points: room for its label and for
-/// the colour bar.
+/// the colour bar. In a low view it is at most a quarter of the height.
 const BORDER: Vec2 = vec2(40.0, 80.0);
+/// Largest opening length as a fraction of the shorter side of a low view.
+const LOW_SHARE: f64 = 0.25;
 /// Length below which a dragged arrow is a force of zero, points.
 const NO_LENGTH: f32 = 0.5;
 /// Smallest ratio of the largest force of a slider to the force that the scene opens with.
@@ -82,8 +84,8 @@ pub(crate) fn power_of_ten_above(value: f64) -> f64 {
 /// Returns the scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of size `view`,
 /// points.
 pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
-    let [low, high] = OPENING;
-    LoadScale::smooth(usual, (SHARE * f64::from(view.min_elem())).clamp(low, high))
+    let ([low, high], side) = (OPENING, f64::from(view.min_elem()).max(1.0));
+    LoadScale::smooth(usual, (SHARE * side).clamp(low, high).min(LOW_SHARE * side))
 }
 
 /// Returns the distance from a point to the border of a rectangle along a unit vector, points; infinite for a point
@@ -177,8 +179,9 @@ impl ForceArrows<'_> {
             let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
             let direction = vec2(x as f32, -y as f32);
             let whole = WHOLE * scale.opening;
-            let longest = whole.max(room(projection.rect.shrink2(BORDER), from, direction));
-            let vector = direction * scale.length(magnitude).clamp(STUB, longest) as f32;
+            let border = BORDER.min(LOW_SHARE as f32 * projection.rect.size());
+            let longest = whole.max(room(projection.rect.shrink2(border), from, direction));
+            let vector = direction * scale.length(magnitude).min(longest).max(STUB) as f32;
             let arrow = Arrow { load, from, vector, direction, scale, magnitude, largest };
             (arrow.from.is_finite() && arrow.vector.is_finite()).then_some(arrow)
         });
@@ -339,10 +342,13 @@ mod tests {
         assert_eq!(polar_form([0.0, 0.0]), (0.0, None));
     }
 
-    /// In every view, a pixel of the arrow of the opening force is 1 to 2 % of the force.
+    /// In every view, a pixel of the arrow of the opening force is 1 to 2 % of the force; in a low one, where an arrow of that
+    /// length would leave the view, up to 3.4 %.
     #[test]
     fn a_pixel_is_one_or_two_percent_of_the_force() {
-        for side in [120.0, 340.0, 480.0, 700.0, 2000.0] {
+        let low = scale(3e4, vec2(240.0, 120.0));
+        assert!(low.opening == 30.0 && low.load(low.opening + 1.0) < 1.034 * 3e4, "{low:?}");
+        for side in [200.0, 340.0, 480.0, 700.0, 2000.0] {
             let scale = scale(3e4, vec2(2.0 * side, side));
             let rate = (scale.load(scale.opening + 1.0) - scale.load(scale.opening - 1.0)) / (2.0 * 3e4);
             assert!((0.01..=0.0201).contains(&rate), "{side}: {rate}");

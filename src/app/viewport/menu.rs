@@ -149,9 +149,12 @@ fn normal_section(system: &System, at: Vector2<f64>) -> SectionLine {
     if length(horizontal) < length(vertical) { horizontal } else { vertical }
 }
 
-/// Rounds a point to a thousandth of the body's size, if the body has that point.
+/// Rounds a point to a thousandth of the body's size, and to a hundredth of its smaller dimension, if the body has that
+/// point.
 pub(crate) fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
-    let step = 10f64.powf((1e-3 * system.size()).log10().floor());
+    let (low, high) = system.mesh().bounds();
+    let step = (1e-3 * system.size()).min(1e-2 * (high - low).min());
+    let step = 10f64.powf(step.log10().floor());
     // Quotients by a power of ten have short decimals.
     let rounded =
         at.map(|x| if step < 1.0 { (x / step).round() / (1.0 / step).round() } else { (x / step).round() * step });

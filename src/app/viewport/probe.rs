@@ -173,14 +173,16 @@ fn card_area(view: Rect) -> Rect {
     Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, BELOW))
 }
 
-/// Returns the corner of a view in which a card hides the fewest points of a body, whose positions are in the window.
-pub(crate) fn card_corner(view: Rect, body: impl Iterator<Item = Pos2>) -> Align2 {
+/// Returns the corner of a view in which a card hides the fewest of the points that are to be `shown`, and of these
+/// corners one in which it hides the fewest points of a body. All positions are in the window.
+pub(crate) fn card_corner(view: Rect, body: impl Iterator<Item = Pos2>, shown: &[Pos2]) -> Align2 {
     let area = card_area(view);
     let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-    let mut hidden = corners.map(|corner| (0_u32, corner));
+    let hides = |corner: Align2, at: Pos2| corner.anchor_size(corner.pos_in_rect(&area), CARD).contains(at);
+    let mut hidden = corners.map(|corner| ((shown.iter().filter(|at| hides(corner, **at)).count(), 0_usize), corner));
     for at in body {
-        for (count, corner) in &mut hidden {
-            *count += u32::from(corner.anchor_size(corner.pos_in_rect(&area), CARD).contains(at));
+        for ((_, count), corner) in &mut hidden {
+            *count += usize::from(hides(*corner, at));
         }
     }
     hidden.into_iter().min_by_key(|(count, _)| *count).map_or(Align2::RIGHT_TOP, |(_, corner)| corner)

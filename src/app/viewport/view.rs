@@ -486,6 +486,7 @@ impl BodyView {
         }
         let shown = self.shown(content);
         if let Some((point, at)) = self.pointer.over_body()
+            && !egui::Popup::is_any_open(ui.ctx())
             && let Some(u) = probe::place(content.mesh(), shown.displacement(), point)
         {
             probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
@@ -500,7 +501,9 @@ impl BodyView {
         let corner = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
             || {
                 let projection = self.projection();
-                probe::card_corner(self.rect, self.body.points().iter().map(|point| projection.point(*point)))
+                let arrows = self.arrows(content).into_iter().map(|arrow| arrow.tip());
+                let shown: Vec<Pos2> = std::iter::once(at).chain(arrows).collect();
+                probe::card_corner(self.rect, self.body.points().iter().map(|point| projection.point(*point)), &shown)
             },
             |(_, corner)| corner,
         );

@@ -254,9 +254,20 @@ fn is_reset_by(ui: &Ui, slider: &Response) -> bool {
     clicked_twice || slider.has_focus() && deletes()
 }
 
-/// Adds a tooltip that is hidden while the widget is dragged or has the focus, because it would cover the row below.
+/// Adds a tooltip that is hidden while the widget is dragged or has the focus, and afterwards until the pointer leaves it,
+/// because it would cover the row below.
 fn quiet_tip(response: Response, tip: &str) {
-    if !response.dragged() && !response.has_focus() {
+    let used = response.id.with("used");
+    let is_used = response.dragged() || response.has_focus();
+    let was_used = response.ctx.data_mut(|data| {
+        let was_used = data.get_temp::<bool>(used).is_some_and(|_| response.contains_pointer());
+        match is_used || was_used {
+            true => _ = data.insert_temp(used, true),
+            false => data.remove::<bool>(used),
+        }
+        was_used
+    });
+    if !is_used && !was_used {
         response.on_hover_text(tip);
     }
 }

@@ -138,14 +138,14 @@ impl Measured {
                 let parts = fill!(
                     "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
                     unknowns = count(m.dofs as u64, "unknown"),
-                    mesh = percent(m.error.discretization),
-                    iteration = percent(m.error.iteration),
-                    theory = percent(m.error.model)
+                    mesh = part_text(m.error.discretization),
+                    iteration = part_text(m.error.iteration),
+                    theory = part_text(m.error.model)
                 );
                 [Some(parts), runs_away(study, m)].into_iter().flatten().collect::<Vec<_>>().join(" ")
             }
             (Self::Motion(study), Choice::Motion(m)) => {
-                let part = |of: fn(&PathError) -> f64| percent(m.error.as_ref().map_or(0.0, of));
+                let part = |of: fn(&PathError) -> f64| part_text(m.error.as_ref().map_or(0.0, of));
                 fill!(
                     "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the largest kinetic energy.",
                     unknowns = count(m.dofs as u64, "unknown"),
@@ -159,6 +159,11 @@ impl Measured {
             _ => String::new(),
         }
     }
+}
+
+/// Formats a part of an error; one that a setting does not have is 0.
+fn part_text(part: f64) -> String {
+    if part == 0.0 { "0 %".to_owned() } else { percent(part) }
 }
 
 /// Returns the warning that a setting stops an iteration that does not converge when it runs on.

@@ -9,8 +9,8 @@ use self::grid::{Preset, grow};
 use self::panes::{ComparedPane, Condition, PaneChange, Panes};
 use self::trace::Trace;
 use crate::app::action::Action;
-use crate::app::diagnosis::{error_color, error_tip};
-use crate::app::language::{count, fill, percent, said, sentence, tr};
+use crate::app::diagnosis::{coarse_text, error_color, error_tip};
+use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
 use crate::app::task::thread::POLL;
@@ -246,7 +246,7 @@ impl Compare {
                 settings: chosen.to_vec(),
                 enabled: input.chosen.is_some(),
                 tip: "The current setting next to the fastest that meets the limits of Budget",
-                unless: "Measure in Budget first: its fastest setting is compared with the current one",
+                unless: "Measure this load in Budget first: its fastest setting is compared with the current one",
             },
         ];
         ui.horizontal_wrapped(|ui| {
@@ -453,6 +453,9 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         semibold(painter, at.min, &galley, color);
         left = at.right() + 12.0;
     }
+    let reference = input.reference.and_then(Reference::first);
+    let coarse = error.zip(reference).and_then(|(error, first)| coarse_text(error, &first));
+    let text = joined(coarse.into_iter().chain([text]));
     let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
     let mut job = egui::text::LayoutJob::simple_singleline(text.clone(), FontId::proportional(size), ink);
     job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(0.0));

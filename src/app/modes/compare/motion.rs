@@ -335,7 +335,7 @@ fn numbers(pane: &MotionPane, first: Option<&MotionPane>) -> String {
         fill!("drift %{drift}", drift = text)
     });
     let apart = first.and_then(|first| first.motion.tip()).zip(pane.motion.tip()).map(|(first, own)| {
-        fill!("tip differs by %{distance}", distance = engineering(three_digits((own - first).norm()), "m"))
+        fill!("%{distance} from pane 1", distance = engineering(three_digits((own - first).norm()), "m"))
     });
     joined(cost.into_iter().chain(drift).chain(apart))
 }

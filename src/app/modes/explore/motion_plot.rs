@@ -11,7 +11,7 @@ use crate::app::session::playback::Playback;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::app::widgets::plot::still;
-use crate::format::engineering;
+use crate::format::{number, three_digits};
 use crate::scene::IntegratorKind;
 
 const PLOTS: [(MotionPlot, &str, &str); 4] = [
@@ -91,7 +91,10 @@ pub(crate) fn show(
     };
     let own = if *chosen == MotionPlot::Spectrum { frequency } else { None };
     let own = own.map(|frequency| {
-        let name = fill!("\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}", frequency = engineering(frequency, "Hz"));
+        let name = fill!(
+            "\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}",
+            frequency = format!("{} Hz", number(three_digits(frequency)))
+        );
         (frequency, name)
     });
     ui.horizontal_wrapped(|ui| {

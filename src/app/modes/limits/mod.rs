@@ -383,7 +383,10 @@ impl<'a> StripChart<'a> {
         let name = strip.name(|id| tr(id).to_owned());
         let is_used = match strip.integrator {
             Some(integrator) => scene.dynamics.integrator == integrator,
-            None => scene.element() == strip.element && scene.solver.method == strip.method,
+            None => {
+                let used = (scene.element(), scene.solver.method, scene.solver.accept_after);
+                used == (strip.element, strip.method, strip.accept_after)
+            }
         };
         let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
@@ -442,7 +445,7 @@ impl<'a> StripChart<'a> {
                 own.dynamics.integrator = integrator;
                 "Integrator"
             } else {
-                own.solver.method = strip.method;
+                (own.solver.method, own.solver.accept_after) = (strip.method, strip.accept_after);
                 own.set_element(strip.element);
                 "Method"
             };
