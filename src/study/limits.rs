@@ -252,8 +252,13 @@ impl Strip {
             rating: point.rating(),
             is_beyond_law: point.is_beyond_law(),
         };
-        if let Some(first) = self.points.first() {
-            add(of([range[0], first.factor], first));
+        match self.points.first().map(|first| (gap_between(0.0, first.factor), first)) {
+            Some((Some([_, end]), first)) => {
+                add(failed([range[0], end]));
+                add(Piece { rating: Rating::Unknown, ..of([end, first.factor], first) });
+            }
+            Some((None, first)) => add(of([range[0], first.factor], first)),
+            None => {}
         }
         for pair in self.points.windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
@@ -327,6 +332,7 @@ impl Strip {
             (None, None) => sentence!("not known"),
         };
         let converges = match (self.ends_at(), self.converges_again_from(range)) {
+            (Some(0.0), Some(from)) => sentence!("from %{load}", load = load(from)),
             (Some(end), Some(from)) => sentence!("%{load}, again from %{from}", load = load(end), from = load(from)),
             // Time steps shorter than the first are not tried.
             (Some(0.0), _) if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
@@ -953,6 +959,13 @@ mod tests {
         let strip = Strip { points: unknown, done: 1.0, ..Strip::new(&scene) };
         assert_eq!((strip.within(GOOD), strip.within(USABLE), strip.last_known()), (None, None, None));
         assert_eq!(end(&strip), "5 % from 2 kN");
+        // A method that converges at larger loads only is red below, and again beyond.
+        let late = vec![point(2.0, Some(0.5), 1e-3), point(4.0, Some(0.6), 1e-3)];
+        let strip = Strip { points: late, fails: vec![[0.0, 2.0], [4.0, 8.0]], done: 1.0, ..Strip::new(&scene) };
+        let pieces = strip.pieces([1.0, 8.0]).into_iter().map(|piece| (piece.range, piece.rating)).collect::<Vec<_>>();
+        let (red, green) = (Rating::NotConverged, Rating::Good);
+        assert_eq!(pieces, [([1.0, 2.0], red), ([2.0, 4.0], green), ([4.0, 8.0], red)]);
+        assert_eq!((strip.ends_at(), strip.converges_again_from([1.0, 8.0])), (Some(0.0), Some(2.0)));
         // An error that falls is within 5 % from where it does.
         let falling = vec![point(1.0, Some(9.0), 1e-3), point(4.0, Some(1.0), 1e-3)];
         let strip = Strip { points: falling, done: 1.0, ..Strip::new(&scene) };
