@@ -794,33 +794,28 @@ fn follow(
     converges: &dyn Fn(f64) -> Result<bool, StudyError>,
     report: &dyn Fn(&Strip),
 ) -> Result<Strip, StudyError> {
-    let (mut reached, mut failed) = (0.0, None);
+    let mut reached = 0.0;
     for (i, &factor) in factors.iter().enumerate() {
+        // The end of a gap is the last load that fails until one converges.
+        let failed = strip.fails.last_mut().map(|gap| &mut gap[1]).filter(|end| **end > reached);
         match (solve(factor)?, failed) {
-            (Some(point), None) => {
+            (Some(point), failed) => {
+                if let Some(end) = failed {
+                    *end = end_between([factor, *end], converges)?;
+                    if *end < factor {
+                        strip.points.extend(solve(*end)?);
+                    }
+                }
                 strip.points.push(point);
                 reached = factor;
             }
-            (Some(point), Some(last)) => {
-                let resumed = end_between([factor, last], converges)?;
-                if let Some(gap) = strip.fails.last_mut() {
-                    gap[1] = resumed;
-                }
-                let first = if resumed < factor { solve(resumed)? } else { None };
-                strip.points.extend(first.into_iter().chain([point]));
-                (reached, failed) = (factor, None);
-            }
+            (None, Some(end)) => *end = factor,
             (None, None) => {
                 let end = end_between([reached, factor], converges)?;
                 if end > reached {
                     strip.points.extend(solve(end)?);
                 }
                 strip.fails.push([end, factor]);
-                failed = Some(factor);
-            }
-            (None, Some(_)) => {
-                strip.fails.iter_mut().next_back().into_iter().for_each(|gap| gap[1] = factor);
-                failed = Some(factor);
             }
         }
         strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
@@ -838,9 +833,8 @@ fn share(
 ) -> Result<Strip, StudyError> {
     for percent in [GOOD, USABLE] {
         let Some((_, [before, after])) = strip.crossing(percent) else { continue };
-        let between = known.iter().filter(|factor| (before.factor..after.factor).contains(*factor));
-        for factor in between.filter(|factor| **factor > before.factor) {
-            strip.points.extend(solve(*factor)?);
+        for &factor in known.iter().filter(|&&factor| before.factor < factor && factor < after.factor) {
+            strip.points.extend(solve(factor)?);
         }
         strip.points.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }

@@ -35,8 +35,7 @@ impl Lab {
     /// Shows warnings and offers in rows under the toolbar, if there are any.
     pub(super) fn show_banners(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let has_warning = self.warnings.len() > self.closed_warnings;
-        let offers_unsaved = self.offers_unsaved() && self.lesson.is_none();
-        if !(has_warning || offers_unsaved || self.desk.session.is_outdated()) {
+        if !(has_warning || self.offered().is_some() || self.desk.session.is_outdated()) {
             return;
         }
         let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 4));

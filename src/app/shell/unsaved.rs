@@ -142,10 +142,14 @@ impl Lab {
         }
     }
 
+    /// Returns the edits that are offered now: they are restored to the user's own scene, which Learn puts aside.
+    pub(super) fn offered(&self) -> Option<&Unsaved> {
+        self.left.as_ref().filter(|_| self.lesson.is_none())
+    }
+
     /// Offers the edits left by a crashed window, until the user answers.
     pub(super) fn offer_unsaved(&mut self, ui: &mut Ui, requests: &mut Vec<Request>) {
-        // The edits are restored to the user's own scene, which Learn puts aside.
-        let Some(left) = self.left.as_ref().filter(|_| self.lesson.is_none()) else { return };
+        let Some(left) = self.offered() else { return };
         let text = fill!("Unsaved changes to “%{scene}” were found.", scene = tr(&left.scene.name));
         let (mut restore, mut discard) = (false, false);
         banner(ui, |ui| {

@@ -1,6 +1,8 @@
-//! Legend marks, which show how each line over the body is drawn.
+//! Legend marks, which show how each line over the body is drawn, and entries of the keys of plots.
 
-use egui::{Color32, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
+use egui::{Color32, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+
+use crate::app::widgets::palette::SMALL;
 
 /// Line style of a solution.
 #[derive(Clone, Copy, PartialEq)]
@@ -30,4 +32,18 @@ impl LegendMark {
             }
         }
     }
+}
+
+/// Shows an entry of a key: a mark of this size, which `paint` paints in its area, and a name after it. A line breaks
+/// between entries.
+pub(crate) fn entry(ui: &mut Ui, name: &str, mark: Vec2, paint: &dyn Fn(&Ui, Rect)) {
+    const GAP: f32 = 5.0;
+    /// Height of an entry, points.
+    const LINE: f32 = 18.0;
+    let (font, ink) = (FontId::proportional(SMALL), ui.visuals().text_color());
+    let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
+    let (rect, response) = ui.allocate_exact_size(vec2(mark.x + GAP + galley.size().x, LINE), Sense::hover());
+    paint(ui, Rect::from_center_size(rect.left_center() + vec2(0.5 * mark.x, 0.0), mark));
+    ui.painter().galley(rect.left_center() + vec2(mark.x + GAP, -0.5 * galley.size().y), galley, ink);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
 }

@@ -437,6 +437,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         Activity::Iterates(iterations) => (false, count(iterations, "iteration")),
     };
     let error = pane.error.filter(|_| !bad);
+    let judged = error.zip(input.reference.and_then(Reference::first));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), Sense::hover());
     let painter = ui.painter();
     let mut left = rect.left();
@@ -445,16 +446,14 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         left += 6.0;
     } else {
         let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
-        let bound =
-            error.zip(input.reference.and_then(Reference::first)).map(|(error, first)| first.error_bound(error));
+        let bound = judged.map(|(error, first)| first.error_bound(error));
         let color = error_color(&palette, bound);
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         semibold(painter, at.min, &galley, color);
         left = at.right() + 12.0;
     }
-    let reference = input.reference.and_then(Reference::first);
-    let coarse = error.zip(reference).and_then(|(error, first)| coarse_text(error, &first));
+    let coarse = judged.and_then(|(error, first)| coarse_text(error, &first));
     let text = joined(coarse.into_iter().chain([text]));
     let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
     let mut job = egui::text::LayoutJob::simple_singleline(text.clone(), FontId::proportional(size), ink);

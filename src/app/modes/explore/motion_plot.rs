@@ -1,7 +1,7 @@
 //! Plots of a motion: energy by kind, displacement of the first probe over time, its phase diagram, and its spectrum.
 
 use crate::app::view_options::MotionPlot;
-use egui::{Color32, FontId, Rect, Role, Sense, Ui, WidgetInfo};
+use egui::{Color32, Ui, Vec2, vec2};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
 use realfft::RealFftPlanner;
 
@@ -9,7 +9,8 @@ use crate::app::language::{fill, tr};
 use crate::app::session::history::{History, MotionSample};
 use crate::app::session::playback::Playback;
 use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::palette::{Palette, SMALL};
+use crate::app::widgets::legend;
+use crate::app::widgets::palette::Palette;
 use crate::app::widgets::plot::still;
 use crate::format::{number, three_digits};
 use crate::scene::IntegratorKind;
@@ -30,8 +31,11 @@ const LONGEST_SPECTRUM: usize = 4096;
 /// Smallest number of samples of a spectrum.
 const SHORTEST_SPECTRUM: usize = 64;
 
+/// Size of the sample of a line's colour, points.
+const SAMPLE: Vec2 = vec2(14.0, 3.0);
+
 /// Named line of a plot.
-struct Curve {
+struct PlotLine {
     name: String,
     color: Color32,
     width: f32,
@@ -39,11 +43,11 @@ struct Curve {
 }
 
 /// Lines and axes of a plot.
-struct Curves<'a> {
+struct LinePlot<'a> {
     id: &'a str,
     /// Name and unit of each axis.
     axes: [(&'a str, &'static str); 2],
-    lines: Vec<Curve>,
+    lines: Vec<PlotLine>,
 }
 
 /// Shows the chosen plot, with the names of its lines above it; `frequency` is the lowest natural frequency, Hz.
@@ -60,8 +64,8 @@ pub(crate) fn show(
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
     let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
-    let lines = |points: &dyn Fn(&History) -> Vec<PlotPoint>| -> Vec<Curve> {
-        let line = |&(kind, history): &(IntegratorKind, &History)| Curve {
+    let lines = |points: &dyn Fn(&History) -> Vec<PlotPoint>| -> Vec<PlotLine> {
+        let line = |&(kind, history): &(IntegratorKind, &History)| PlotLine {
             name: tr(kind.id()).to_owned(),
             color: palette.integrator(kind),
             width: 1.5,
@@ -70,27 +74,26 @@ pub(crate) fn show(
         motions.iter().map(line).collect()
     };
     let time = (tr("time"), "s");
-    let curves = match chosen {
+    let drawn = match chosen {
         MotionPlot::Energy => {
-            Curves { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, &palette) }
+            LinePlot { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, &palette) }
         }
         MotionPlot::Tip => {
             let lines = lines(&|history| thinned(history, |s| [s.time, s.displacement[axis]]));
-            Curves { id: "tip", axes: [time, (&name, "m")], lines }
+            LinePlot { id: "tip", axes: [time, (&name, "m")], lines }
         }
         MotionPlot::Phase => {
             let lines = lines(&|history| thinned(history, |s| [s.displacement[axis], s.velocity[axis]]));
-            Curves { id: "phase", axes: [(&name, "m"), (tr("velocity"), "m/s")], lines }
+            LinePlot { id: "phase", axes: [(&name, "m"), (tr("velocity"), "m/s")], lines }
         }
         MotionPlot::Spectrum => {
             let mut lines =
                 lines(&|history| spectrum(history, axis).into_iter().map(|[x, y]| PlotPoint::new(x, y)).collect());
             cut_spectra(&mut lines, frequency);
-            Curves { id: "spectrum", axes: [(tr("frequency"), "Hz"), (tr("amplitude"), "m")], lines }
+            LinePlot { id: "spectrum", axes: [(tr("frequency"), "Hz"), (tr("amplitude"), "m")], lines }
         }
     };
-    let own = if *chosen == MotionPlot::Spectrum { frequency } else { None };
-    let own = own.map(|frequency| {
+    let natural = frequency.filter(|_| *chosen == MotionPlot::Spectrum).map(|frequency| {
         let name = fill!(
             "\u{3c9}\u{2081}/2\u{3c0} about rest: %{frequency}",
             frequency = format!("{} Hz", number(three_digits(frequency)))
@@ -103,30 +106,31 @@ pub(crate) fn show(
                 *chosen = plot;
             }
         }
-        let shown = curves.lines.iter().filter(|line| !line.points.is_empty());
+        ui.spacing_mut().item_spacing.x = 14.0;
+        let shown = drawn.lines.iter().filter(|line| !line.points.is_empty());
         let names = shown.map(|line| (line.name.as_str(), line.color));
-        for (name, color) in names.chain(own.iter().map(|(_, name)| (name.as_str(), palette.secondary))) {
-            key(ui, name, color);
+        for (name, color) in names.chain(natural.iter().map(|(_, name)| (name.as_str(), palette.secondary))) {
+            legend::entry(ui, name, SAMPLE, &|ui, sample| _ = ui.painter().rect_filled(sample, 1.0, color));
         }
     });
     if playback.history.samples().is_empty() {
         ui.centered_and_justified(|ui| ui.weak(tr("No time step yet: press Run or Step.")));
         return;
     }
-    if curves.lines.iter().all(|line| line.points.is_empty()) {
+    if drawn.lines.iter().all(|line| line.points.is_empty()) {
         ui.centered_and_justified(|ui| ui.weak(fill!("A spectrum needs %{n} time steps.", n = SHORTEST_SPECTRUM)));
         return;
     }
-    let Curves { id, axes: [x, y], lines } = curves;
+    let LinePlot { id, axes: [x, y], lines } = drawn;
     let plot = still(&palette, id, x, y);
     let plot = if *chosen == MotionPlot::Spectrum { plot.include_y(0.0) } else { plot };
     // Displayed moment, if it is not the latest.
     let cursor = playback.shown_time();
     plot.show(ui, |plot| {
-        for Curve { name, color, width, points } in lines {
+        for PlotLine { name, color, width, points } in lines {
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(width));
         }
-        if let Some((frequency, name)) = own {
+        if let Some((frequency, name)) = natural {
             plot.vline(VLine::new(name, frequency).color(palette.secondary).style(LineStyle::dashed_dense()));
         }
         match (chosen, cursor) {
@@ -144,20 +148,6 @@ pub(crate) fn show(
     });
 }
 
-/// Shows the name of a line after a sample of its colour.
-fn key(ui: &mut Ui, name: &str, color: Color32) {
-    const SAMPLE: egui::Vec2 = egui::vec2(14.0, 3.0);
-    const GAP: f32 = 5.0;
-    let text = Palette::new(ui.visuals()).text;
-    let galley = ui.painter().layout_no_wrap(name.to_owned(), FontId::proportional(SMALL), text);
-    let size = egui::vec2(SAMPLE.x + 3.0 * GAP + galley.size().x, galley.size().y);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-    let sample = rect.left_center() + egui::vec2(GAP, -0.5 * SAMPLE.y);
-    ui.painter().rect_filled(Rect::from_min_size(sample, SAMPLE), 1.0, color);
-    ui.painter().galley(rect.left_top() + egui::vec2(SAMPLE.x + 2.0 * GAP, 0.0), galley, text);
-}
-
 fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
     let samples: Vec<&MotionSample> = history.last(SHOWN).collect();
     let stride = samples.len().div_ceil(MAX_POINTS).max(1);
@@ -169,7 +159,7 @@ fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<
 type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
 
 /// Returns the energies of a motion by kind, and their sum; of several motions only the sum of each, for comparison.
-fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<Curve> {
+fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<PlotLine> {
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
     let kinds: [EnergyKind; 6] = [
         ("kinetic", kinetic, |s| s.ledger.kinetic),
@@ -183,16 +173,16 @@ fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<Cu
     if let [(_, history)] = motions {
         // Energies that are always zero have no line.
         let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
-        let parts = shown.map(|(name, color, value)| Curve {
+        let parts = shown.map(|(name, color, value)| PlotLine {
             name: tr(name).to_owned(),
             color,
             width: 1.5,
             points: thinned(history, |s| [s.time, value(s)]),
         });
-        let sum = Curve { name: tr("total").to_owned(), color: palette.text, width: 2.5, points: total(history) };
+        let sum = PlotLine { name: tr("total").to_owned(), color: palette.text, width: 2.5, points: total(history) };
         return parts.chain([sum]).collect();
     }
-    let sum = |&(kind, history): &(IntegratorKind, &History)| Curve {
+    let sum = |&(kind, history): &(IntegratorKind, &History)| PlotLine {
         name: fill!("total, %{integrator}", integrator = tr(kind.id())),
         color: palette.integrator(kind),
         width: 2.5,
@@ -233,7 +223,7 @@ fn spectrum(history: &History, axis: usize) -> Vec<[f64; 2]> {
 }
 
 /// Ends spectra at the highest frequency whose amplitude is visible, or at three times the lowest natural frequency, Hz.
-fn cut_spectra(spectra: &mut [Curve], frequency: Option<f64>) {
+fn cut_spectra(spectra: &mut [PlotLine], frequency: Option<f64>) {
     /// Fraction of the largest amplitude that is visible.
     const VISIBLE: f64 = 1e-3;
     let points = || spectra.iter().flat_map(|spectrum| &spectrum.points);

@@ -192,8 +192,8 @@ impl SectionFigure {
     fn text(self, is_numbered: bool) -> (String, &'static str) {
         match self {
             Self::Stress(i, component) => {
-                let (symbol, tip) =
-                    (STRESSES[component.min(1)].0, "Stress along the section, recovered and of beam theory");
+                let symbol = STRESSES.get(component).map_or("", |(symbol, ..)| symbol);
+                let tip = "Stress along the section, recovered and of beam theory";
                 (if is_numbered { format!("{symbol} {}", i + 1) } else { symbol.to_owned() }, tip)
             }
             Self::Along(i) => {

@@ -4,7 +4,8 @@
 pub(crate) mod load_curve;
 
 use egui::{
-    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 use nalgebra::Vector2;
 
@@ -14,6 +15,7 @@ use crate::app::session::Session;
 use crate::app::session::facts::without_methods;
 use crate::app::view_options::ViewOptions;
 use crate::app::widgets::buttons::option_button;
+use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
 use crate::plot::{AxisScale, ScaledAxis, rating_color};
@@ -113,7 +115,7 @@ impl LimitMap {
             if limits.is_some() && !shows_curve {
                 progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
                 if has_one_row {
-                    legend(ui, moves);
+                    key(ui, moves);
                 }
             }
         });
@@ -142,7 +144,7 @@ impl LimitMap {
         if !has_one_row && ui.available_height() >= strips + 2.0 * LINE {
             ui.horizontal(|ui| {
                 ui.add_space(8.0);
-                ui.horizontal_wrapped(|ui| legend(ui, moves));
+                ui.horizontal_wrapped(|ui| key(ui, moves));
             });
         }
         let axis = limits::axis(&base);
@@ -195,24 +197,14 @@ fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
 }
 
 /// Shows the key of the colours; a line breaks between entries.
-fn legend(ui: &mut Ui, moves: bool) {
-    const BOX: f32 = 10.0;
-    const GAP: f32 = 5.0;
+fn key(ui: &mut Ui, moves: bool) {
+    const BOX: Vec2 = vec2(10.0, 10.0);
     ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
-    let entry = |ui: &mut Ui, name: &str, paint: &dyn Fn(&Ui, Rect)| {
-        let (font, ink) = (FontId::proportional(SMALL), ui.visuals().text_color());
-        let galley = ui.painter().layout_no_wrap(name.to_owned(), font, ink);
-        let size = vec2(BOX + GAP + galley.size().x, LINE);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-        paint(ui, Rect::from_center_size(rect.left_center() + vec2(0.5 * BOX, 0.0), vec2(BOX, BOX)));
-        ui.painter().galley(rect.left_center() + vec2(BOX + GAP, -0.5 * galley.size().y), galley, ink);
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-    };
     for (rating, name) in Rating::all(moves) {
-        entry(ui, &said(&name), &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+        legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
     }
     let ink = Palette::new(ui.visuals()).text;
-    entry(ui, tr("strains above 10 % or inverted"), &|ui, rect| {
+    legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
         hatch(ui, rect, ink);
     });
