@@ -302,7 +302,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     }
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
-        let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "solve"));
+        let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "back substitution"));
         lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
         let is_explicit = input.scene.dynamics.integrator.entry().is_explicit();
         lines.push(match is_explicit {

@@ -8,18 +8,21 @@ use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
 use super::progress::Watch;
-use super::{CliError, json, named, text, validated};
+use super::{CliError, json, named, simulate, text};
 use crate::format::{engineering, three_digits};
 use crate::plot::{self, AxisScale};
 use crate::scene::{self, Scene};
 use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
+use crate::study::moved_points;
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let LimitsArgs { scene, json, outputs, linear } = args;
     let source = scene::Source::from(scene);
     outputs.check()?;
-    let scene = validated(&source)?;
+    let (scene, simulation) = simulate(&source)?;
+    let moved: Vec<String> = moved_points(&simulation).iter().map(ToString::to_string).collect();
+    drop(simulation);
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
@@ -27,7 +30,10 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let scale = if linear { AxisScale::Linear } else { AxisScale::Logarithmic };
     outputs.write_table(|| table(&limits, &scene))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
-    text::print(&if json { as_json(&limits, &scene) } else { summary(&limits, &scene) })?;
+    text::print(&match json {
+        true => as_json(&limits, &scene, &moved),
+        false => summary(&limits, &scene) + &text::notes(&moved),
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -86,7 +92,7 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
     text
 }
 
-fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
+fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String {
     let axis = limits::axis(scene);
     let strip = |strip: &Strip| {
         let mut object = json!({
@@ -98,6 +104,7 @@ fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
             "error_known_to": strip.last_known().map(|(factor, _)| factor),
             "converges_to": strip.ends_at(),
             "converges_again_from": strip.converges_again_from(limits.range),
+            "does_not_converge": strip.fails,
             "law_ends_at": strip.law_ends_at(),
         });
         // Equilibria have no integrator.
@@ -113,6 +120,7 @@ fn as_json(limits: &MethodLimits, scene: &Scene) -> String {
         "full_load": axis.full,
         "reference": limits.reference.iter().map(|(factor, u)| json!({ "load_factor": factor, "displacement": u })).collect::<Value>(),
         "strips": limits.strips.iter().map(strip).collect::<Value>(),
+        "warnings": warnings,
     });
     match limits.duration {
         Some(duration) => object["duration"] = json!(duration),

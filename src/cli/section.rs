@@ -53,6 +53,11 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         (None, [section]) => stress_table(section),
         _ => forces_table(&sections),
     })?;
+    // Diagrams and largest values do not miss a jump between the sections that were asked for.
+    let diagram = match along {
+        Some(_) => simulation.diagram_sections().map_err(refused)?,
+        None => Vec::new(),
+    };
     outputs.write_picture(|| {
         Ok(match along {
             None => Drawing::stacked(sections.iter().flat_map(|cut| {
@@ -60,15 +65,15 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
                 section_chart::stress(cut, &scene, &within, &ToString::to_string).map(|figure| plot::figure(&figure))
             })),
             Some(_) => {
-                let within = section_chart::contexts(&sections, &simulation);
-                let figures = section_chart::forces(&sections, &scene, &within, &ToString::to_string);
+                let within = section_chart::contexts(&diagram, &simulation);
+                let figures = section_chart::forces(&diagram, &scene, &within, &ToString::to_string);
                 Drawing::stacked(figures.iter().map(plot::figure))
             }
         })
     })?;
     text::print(&match (json, along) {
         (true, _) => as_json(&scene, &simulation, &sections),
-        (false, Some(_)) => heading(&scene, &simulation) + &along_beam(&sections, &simulation),
+        (false, Some(_)) => heading(&scene, &simulation) + &along_beam(&sections, &diagram, &simulation),
         (false, None) => {
             let cuts: Vec<String> = sections.iter().map(|section| of_cut(section, &simulation)).collect();
             heading(&scene, &simulation) + &cuts.join("\n")
@@ -142,7 +147,8 @@ fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
     (0..rows).filter_map(move |row| values.get(row * (values.len() - 1) / (rows - 1).max(1)))
 }
 
-fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
+/// Formats N, V and M in these sections as a table, and the largest value of each in a diagram of the beam.
+fn along_beam(sections: &[Section], diagram: &[Section], simulation: &Simulation) -> String {
     let columns: Vec<(&SectionComponent, Vec<f64>)> = COMPONENTS
         .iter()
         .zip(section_chart::contexts(sections, simulation))
@@ -167,11 +173,12 @@ fn along_beam(sections: &[Section], simulation: &Simulation) -> String {
         text.push('\n');
     }
     text.push('\n');
-    for (component, values) in &columns {
-        let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        if let Some((i, value)) = largest {
-            let (value, x) = (engineering(*value, component.unit), engineering(x[i], "m"));
-            let _ = writeln!(text, "largest {}: {value}, at x = {x}", component.symbol);
+    for (component, within) in COMPONENTS.iter().zip(section_chart::contexts(diagram, simulation)) {
+        let value = |section: &Section| within.rounded((component.of)(&section.forces));
+        let largest = diagram.iter().max_by(|a, b| value(a).abs().total_cmp(&value(b).abs()));
+        if let Some(section) = largest {
+            let (value, x) = (engineering(value(section), component.unit), three_digits(section.line.at.x));
+            let _ = writeln!(text, "largest {}: {value}, at x = {}", component.symbol, engineering(x, "m"));
         }
     }
     text

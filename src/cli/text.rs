@@ -78,7 +78,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "{word} at {} after {} and {}; the numbers below are those of this instant",
             engineering(*time, "s"),
             steps_text(scene, counts.steps, *time),
-            count(counts.solves, "solve"),
+            count(counts.solves, "back substitution"),
         ),
         None => writeln!(
             text,
@@ -200,9 +200,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     if let Some(motion) = &solution.motion {
         text.push_str(&energy_text(motion, &within));
     }
-    for warning in warnings {
-        let _ = writeln!(text, "note: {warning}");
-    }
+    text.push_str(&notes(warnings));
     let seconds = |time: std::time::Duration| engineering(time.as_secs_f64(), "s");
     let parts = spent.parts();
     let shown = parts.iter().filter(|(_, time)| !time.is_zero());
@@ -210,6 +208,11 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
     let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
     text
+}
+
+/// Formats warnings, each on a line.
+pub(super) fn notes(warnings: &[String]) -> String {
+    warnings.iter().map(|warning| format!("note: {warning}\n")).collect()
 }
 
 fn moved(scene: &Scene) -> bool {

@@ -1,8 +1,8 @@
 //! Sections of the current state.
 
 use super::{Equilibrium, Simulation};
-use crate::mesh::{axis_angle, bent};
-use crate::model::SectionLine;
+use crate::mesh::{axis_angle, bent, straightened};
+use crate::model::{Load, Place, SectionLine};
 use crate::section::{Section, SectionError};
 use crate::stress::NodalStress;
 
@@ -66,8 +66,37 @@ impl Simulation {
         self.sections_along((0..count).map(|i| i as f64 / intervals))
     }
 
+    /// Computes as [`Self::sections`] the sections of diagrams of N, V and M: even ones, and two beside every point of a
+    /// load or a support, where the forces jump.
+    ///
+    /// # Errors
+    /// As [`Self::sections`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn diagram_sections(&self) -> Result<Vec<Section>, SectionError> {
+        /// Number of intervals between even sections.
+        const ALONG: u32 = 40;
+        /// Distance of a section from a point where the forces jump, relative to the length.
+        const BESIDE: f64 = 1e-6;
+        let scene = self.scene();
+        let loads = scene.loads.iter().filter_map(|load| match load {
+            Load::Force { place, .. } => Some(place),
+            _ => None,
+        });
+        let points = loads.chain(scene.supports.iter().map(|support| &support.place));
+        let beam = self.system().beam();
+        let jumps = points.filter_map(|place| match place {
+            Place::At(at) => Some(straightened(beam?, (*at).into())[0]),
+            Place::Edge(_) => None,
+        });
+        let beside = jumps.flat_map(|along| [along - BESIDE, along + BESIDE]);
+        let even = (0..=ALONG).map(|i| f64::from(i) / f64::from(ALONG));
+        let mut along: Vec<f64> = beside.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
+        along.sort_by(f64::total_cmp);
+        self.sections_along(along.into_iter())
+    }
+
     /// Computes as [`Self::sections`] the sections at these points of the axis, fractions of the beam's length.
-    pub(crate) fn sections_along(&self, along: impl Iterator<Item = f64>) -> Result<Vec<Section>, SectionError> {
+    fn sections_along(&self, along: impl Iterator<Item = f64>) -> Result<Vec<Section>, SectionError> {
         let beam = self.system().beam().ok_or(SectionError::NoAxis)?;
         let nodal = self.nodal_stress();
         let line = |along: f64| SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) };

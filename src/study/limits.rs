@@ -302,8 +302,13 @@ impl Strip {
         let reached = last.map_or(range[0], |last| last.factor);
         match (self.fails.last().filter(|gap| gap[1] > reached), last) {
             (Some(&[start, end]), last) => {
-                // The error was not measured beyond the last result of a method that stops to converge.
-                last.into_iter().for_each(|last| add(Piece { rating: Rating::Unknown, ..of([reached, start], last) }));
+                // The error was not measured beyond the last result of a method that stops to converge. One that is large
+                // with a time step is large with longer ones.
+                let beyond = |last: &LimitPoint| match last.rating() {
+                    Rating::Beyond if self.integrator.is_some() => Rating::Beyond,
+                    _ => Rating::Unknown,
+                };
+                last.into_iter().for_each(|last| add(Piece { rating: beyond(last), ..of([reached, start], last) }));
                 add(failed([start.max(range[0]), end]));
             }
             (None, Some(last)) if self.done == 1.0 => add(of([reached, range[1]], last)),
@@ -312,10 +317,40 @@ impl Strip {
         results
     }
 
+    /// Returns the parts of the load between which the error is at most `percent`, from small to large.
+    fn ranges_within(&self, percent: f64, range: [f64; 2]) -> Vec<[f64; 2]> {
+        let is_within = |rating: Rating| rating == Rating::Good || rating == Rating::Usable && percent == USABLE;
+        let mut ranges: Vec<[f64; 2]> = Vec::new();
+        for piece in self.pieces(range).into_iter().filter(|piece| is_within(piece.rating)) {
+            match ranges.last_mut().filter(|last| last[1] == piece.range[0]) {
+                Some(last) => last[1] = piece.range[1],
+                None => ranges.push(piece.range),
+            }
+        }
+        ranges
+    }
+
     /// Returns the first load at which the error is within 5 %; `None` if there is none.
     fn usable_from(&self, range: [f64; 2]) -> Option<f64> {
-        let usable = |piece: &Piece| matches!(piece.rating, Rating::Good | Rating::Usable);
-        self.pieces(range).into_iter().find(usable).map(|piece| piece.range[0])
+        self.ranges_within(USABLE, range).first().map(|[from, _]| *from)
+    }
+
+    /// Returns the widest range of loads beyond [`Self::within`] with an error of at most `percent`, as beyond buckling;
+    /// `None` if there is none, or only that around a load at which the results of a method cross the reference.
+    fn within_again(&self, percent: f64, range: [f64; 2]) -> Option<[f64; 2]> {
+        /// Ratio of the ends of a range that is more than a crossing.
+        const WIDE: f64 = 1.5;
+        let end = self.within(percent).filter(|end| *end > 0.0)?;
+        let ratio = |[from, to]: &[f64; 2]| to / from;
+        let beyond = self.ranges_within(percent, range).into_iter().filter(|[from, _]| *from > end);
+        beyond.filter(|beyond| ratio(beyond) > WIDE).max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+    }
+
+    /// Returns the parts of the load between which the method converges, from small to large.
+    fn ranges_converged(&self, range: [f64; 2]) -> Vec<[f64; 2]> {
+        let starts = std::iter::once(0.0).chain(self.fails.iter().map(|[_, end]| *end));
+        let ends = self.fails.iter().map(|[start, _]| *start).chain([range[1]]);
+        starts.zip(ends).map(|(start, end)| [start, end]).filter(|[start, end]| start < end).collect()
     }
 
     /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
@@ -323,29 +358,39 @@ impl Strip {
     #[must_use]
     pub fn words(&self, axis: &LoadAxis, range: [f64; 2]) -> [Sentence; 4] {
         let load = |factor: f64| load_text(axis, factor);
+        let again = |loads: Sentence, [from, to]: [f64; 2]| {
+            if to < range[1] {
+                sentence!("%{loads}, again %{from} to %{to}", loads, from = load(from), to = load(to))
+            } else {
+                sentence!("%{loads}, again from %{from}", loads, from = load(from))
+            }
+        };
         let within = |percent: f64| match (self.within(percent), self.last_known()) {
             (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
-            (Some(factor), _) => load(factor).into(),
+            (Some(factor), _) => self.within_again(percent, range).into_iter().fold(load(factor).into(), again),
             // It does not converge beyond.
             (None, Some((factor, _))) if self.ends_at() == Some(factor) => load(factor).into(),
             (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),
             (None, None) => sentence!("not known"),
         };
-        let converges = match (self.ends_at(), self.converges_again_from(range)) {
-            (Some(0.0), Some(from)) => sentence!("from %{load}", load = load(from)),
-            (Some(end), Some(from)) => sentence!("%{load}, again from %{from}", load = load(end), from = load(from)),
+        let ranges = self.ranges_converged(range);
+        let first = match ranges.first() {
+            Some(&[0.0, end]) if end < range[1] => load(end).into(),
+            Some([0.0, end]) => sentence!("at least %{load}", load = load(*end)),
+            Some(&[from, to]) if to < range[1] => sentence!("%{from} to %{to}", from = load(from), to = load(to)),
+            Some([from, _]) => sentence!("from %{load}", load = load(*from)),
             // Time steps shorter than the first are not tried.
-            (Some(0.0), _) if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
-            (Some(0.0), _) => sentence!("nowhere"),
-            (Some(factor), _) => load(factor).into(),
-            (None, _) => sentence!("at least %{load}", load = load(range[1])),
+            None if self.integrator.is_some() => sentence!("not at %{load}", load = load(range[0])),
+            None => sentence!("nowhere"),
         };
+        let converges = ranges.into_iter().skip(1).fold(first, again);
         let law = self.law_ends_at().map_or_else(|| "\u{2013}".into(), |f| sentence!("from %{load}", load = load(f)));
         [within(GOOD), within(USABLE), converges, law]
     }
 
-    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger near the smallest load;
-    /// or the one from which it is within 5 %, or else up to which the method converges; `None` if there is no such load.
+    /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger near the smallest load,
+    /// and a wide range beyond where it is again; or the load from which it is within 5 %, or else up to which the method
+    /// converges; `None` if there is no such load.
     /// `range` is that of the limits.
     #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
@@ -364,7 +409,18 @@ impl Strip {
         }
         match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at()) {
             (Some((percent, factor)), _) => {
-                Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
+                let first =
+                    sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor));
+                Some(match self.within_again(percent, range) {
+                    None => first,
+                    Some([from, to]) if to < range[1] => sentence!(
+                        "%{loads}, %{from} to %{to}",
+                        loads = first,
+                        from = load_text(axis, from),
+                        to = load_text(axis, to)
+                    ),
+                    Some([from, _]) => sentence!("%{loads}, from %{from}", loads = first, from = load_text(axis, from)),
+                })
             }
             (None, _) if percent.is_none() && self.usable_from(range).is_some() => from(),
             // Beyond, the error is not known.
@@ -373,7 +429,9 @@ impl Strip {
                 percent = number(percent),
                 load = load_text(axis, factor)
             )),
-            (None, None) if percent.is_none() => Some(sentence!("not within %{percent} %", percent = number(USABLE))),
+            (None, end) if percent.is_none() && (end.is_none() || self.converges_again_from(range).is_some()) => {
+                Some(sentence!("not within %{percent} %", percent = number(USABLE)))
+            }
             (None, Some(0.0)) if self.integrator.is_some() => {
                 Some(sentence!("not at %{load}", load = load_text(axis, range[0])))
             }
@@ -960,6 +1018,17 @@ mod tests {
         let (red, green) = (Rating::NotConverged, Rating::Good);
         assert_eq!(pieces, [([1.0, 2.0], red), ([2.0, 4.0], green), ([4.0, 8.0], red)]);
         assert_eq!((strip.ends_at(), strip.converges_again_from([1.0, 8.0])), (Some(0.0), Some(2.0)));
+        // Words and labels have every range in which the method converges, and the widest in which it is good again.
+        let points = [(1.0, 0.1), (2.0, 0.5), (4.0, 0.2), (8.0, 0.4)].map(|(at, error)| point(at, Some(error), 1e-3));
+        let strip = Strip { points: points.into(), fails: vec![[2.0, 4.0], [8.0, 16.0]], done: 1.0, ..strip };
+        let [good, _, converges, _] = strip.words(&axis(&scene), [1.0, 16.0]).map(|words| words.to_string());
+        assert_eq!((&*good, &*converges), ("2 kN", "2 kN, again 4 kN to 8 kN"));
+        let points = [(1.0, 0.1), (2.0, 4.0), (4.0, 0.5), (16.0, 0.4)].map(|(at, error)| point(at, Some(error), 1e-3));
+        let strip = Strip { points: points.into(), fails: Vec::new(), done: 1.0, ..strip };
+        let good = strip.words(&axis(&scene), [1.0, 16.0])[0].to_string();
+        assert!(good.starts_with("1.5") && good.ends_with(" kN, again from 3.17 kN"), "{good}");
+        let label = strip.end(&axis(&scene), [0.1, 16.0]).unwrap().to_string();
+        assert!(label.starts_with("1 % to 1.5") && label.ends_with(" kN, from 3.17 kN"), "{label}");
         // An error that falls is within 5 % from where it does.
         let falling = vec![point(1.0, Some(9.0), 1e-3), point(4.0, Some(1.0), 1e-3)];
         let strip = Strip { points: falling, done: 1.0, ..Strip::new(&scene) };

@@ -67,12 +67,18 @@ fn a_method_may_converge_again_beyond_buckling() {
     let [warped, newton] = ["warped", "newton"].map(strip);
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     let [end, again] = ["converges_to", "converges_again_from"].map(|key| number(&warped[key]));
+    let gaps: Vec<[f64; 2]> = serde_json::from_value(warped["does_not_converge"].clone()).unwrap();
+    assert_eq!(gaps[0], [end, again]);
+    let text = stdout(&warpbeam(&["limits", "column"]));
+    assert!(text.contains("518 N, again 618 N to 848 N"), "it ends a second time: {text}");
     let converges = |factor: f64| {
         let load = format!("load.0.force=[{}, {}]", -700.0 * factor, 2.0 * factor);
         warpbeam(&["solve", "column", "--set", "solver.method=warped", "--set", &load]).status.code() == Some(0)
     };
     let solved = [0.99 * end, 1.01 * end, 0.98 * again, 1.01 * again, 1.0].map(converges);
     assert_eq!(solved, [true, false, false, true, true], "{end} {again}");
+    let solved = [0.97, 1.02].map(|part| converges(part * gaps[1][0]));
+    assert_eq!(solved, [true, false], "{gaps:?}");
     let [own, same] = [warped, newton].map(|strip| number(&strip["within_1_percent"]));
     assert!((own / same - 1.0).abs() < 0.01, "{own} {same}");
 }

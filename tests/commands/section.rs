@@ -39,6 +39,29 @@ fn forces_of_a_cantilever_are_those_of_statics() {
     assert!(text.contains("largest M: -10 mN m, at x = 0 m"), "{text}");
 }
 
+/// The largest value of a diagram is beside the load where it jumps, however few sections are printed.
+#[test]
+fn the_largest_value_is_beside_a_jump() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "name = \"loaded in the middle\"\n[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\nelement = \"q4\"\n\
+                 [material]\nyoung = 1e6\npoisson = 0.3\n\
+                 [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n\
+                 [[load]]\nkind = \"force\"\nat = [5.0, 0.5]\nforce = [1e-3, 0.0]\n";
+    fs::write(folder.path().join("middle.toml"), scene).unwrap();
+    for count in ["2", "3", "12"] {
+        let output = warpbeam_in(folder.path(), &["section", "middle.toml", "--along", count]);
+        let text = stdout(&output);
+        assert!(text.contains("largest N: 1 mN, at x = "), "{text} {}", stderr(&output));
+        let rows = text.lines().skip(2).take_while(|line| !line.is_empty()).count();
+        assert_eq!(rows, count.parse::<usize>().unwrap(), "{text}");
+    }
+    // Between a force that pulls to the left and the one beyond it, N is larger than in any of the sections asked for.
+    let two = format!("{scene}[[load]]\nkind = \"force\"\nat = [5.5, 0.5]\nforce = [-3e-3, 0.0]\n");
+    fs::write(folder.path().join("two.toml"), two).unwrap();
+    let text = stdout(&warpbeam_in(folder.path(), &["section", "two.toml", "--along", "2"]));
+    assert!(text.contains("largest N: -3 mN, at x = 5"), "{text}");
+}
+
 #[test]
 fn tables_and_pictures_are_written() {
     let folder = tempfile::tempdir().unwrap();

@@ -147,6 +147,24 @@ fn a_click_on_a_strip_sets_method_and_element() {
     assert_eq!(used(harness.state()), before);
 }
 
+/// The strip of an early stop stays while another strip is used.
+#[test]
+fn the_strip_of_an_early_stop_stays() {
+    let mut harness = opened(scene_with("article", &["solver.accept_after=2"]));
+    let has_own = |harness: &Harness<'_, Lab>| {
+        harness.query_by(|node| node.label().is_some_and(|label| label.starts_with("t3 warped:2: within"))).is_some()
+    };
+    assert!(has_own(&harness));
+    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
+    drag(&mut harness, row.center(), row.center());
+    assert_eq!(harness.state().scene().solver.accept_after, 0);
+    assert!(has_own(&harness), "nothing is computed again");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(harness.state().scene().solver.accept_after, 2);
+    assert!(has_own(&harness));
+}
+
 /// The line follows the pointer, and its load is where the axis has it: a drag by a third of the axis is a factor of
 /// ten. The limits are not computed again; one undo restores the load.
 #[test]
@@ -159,9 +177,32 @@ fn the_line_sets_the_load() {
     let ratio = force(harness.state()) / before;
     assert!((ratio - 0.1).abs() < 0.002, "{ratio}");
     let is_strip = |label: String| label.starts_with("t3 warped:") && label.contains("49.3 kN");
-    assert!(harness.query_by(|node| node.label().is_some_and(is_strip)).is_some(), "the limits are those of before");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
+    let keeps_limits =
+        |harness: &Harness<'_, Lab>| harness.query_by(|node| node.label().is_some_and(is_strip)).is_some();
+    assert!(keeps_limits(&harness), "the limits are those of before");
+    let first = force(harness.state());
+    let now = Pos2::new(area.left() + area.width() / 3.0, middle.y);
+    drag(&mut harness, now, now + egui::vec2(area.width() / 6.0, 0.0));
+    assert!(force(harness.state()) > 2.0 * first);
+    for expected in [first, before] {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(3);
+        assert_eq!(force(harness.state()), expected);
+        assert!(keeps_limits(&harness), "nothing is computed again");
+    }
+    // A load that is set elsewhere moves the line too, but for one out of the range.
+    let typed = |harness: &mut Harness<'_, Lab>, factor: f64| {
+        let mut scene = harness.state().scene().clone();
+        scene.scale_loads(factor);
+        harness.state_mut().set_scene(scene).unwrap();
+        harness.run_steps(2);
+    };
+    typed(&mut harness, 0.5);
+    assert!(keeps_limits(&harness));
+    typed(&mut harness, 200.0);
+    assert!(!keeps_limits(&harness));
+    typed(&mut harness, 0.01);
+    settle(&mut harness);
     assert_eq!(force(harness.state()), before);
     // With the focus on the line, an arrow key changes the load in small steps.
     harness.get_by_role_and_label(Role::Slider, "Load").focus();

@@ -15,7 +15,7 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
-use crate::format::{editable, engineering, number, three_digits};
+use crate::format::{editable, engineering, engineering_pair, three_digits};
 use crate::scene::{Axis, Load, Place, Scene, Support, limits};
 
 /// Name of the section, with which its messages are kept.
@@ -61,7 +61,7 @@ pub(super) fn text(scene: &Scene, place: &Place) -> String {
         Place::Edge(name) => tr(name).to_owned(),
         Place::At([x, y]) => match points(scene).find(|(_, point)| point == place) {
             Some((name, _)) => tr(name).to_owned(),
-            None => fill!("point (%{x}, %{y})", x = number(*x), y = number(*y)),
+            None => fill!("point %{place}", place = engineering_pair([*x, *y], "m")),
         },
     }
 }

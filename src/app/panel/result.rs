@@ -182,7 +182,7 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
     row(
         "Steps",
-        joined([counts.steps.to_string(), count(counts.solves, "solve")].into_iter().chain(halvings)),
+        joined([counts.steps.to_string(), count(counts.solves, "back substitution")].into_iter().chain(halvings)),
         "Time steps since the start; a step that does not converge is halved",
     );
     if let Some(auto) = motion.auto_report() {

@@ -82,10 +82,17 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     let doubt = doubt(input, errors, is_raw);
     let is_without_reference =
         input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
+    // The error from rest is in the colour, and is no doubt if it is small.
+    let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }, is_raw).is_some();
     let color = match error_color(palette, errors.worst()) {
-        color if doubt.is_some() && color == palette.good => palette.warning,
+        color if is_doubtful && color == palette.good => palette.warning,
         color => color,
     };
+    let of_reference = error_tip(input.reference, input.reference_failure);
+    let from_rest = errors.from_rest.map(|_| {
+        tr("From rest: the error of a solve from rest. A result that is accepted early depends on the state before it")
+    });
+    let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
     let mut entries = vec![
         BarNumber {
             name: "ERROR",
@@ -104,11 +111,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
                     fill!("computing the reference: %{percent} %", percent = percent).into()
                 }),
             },
-            tip: format!(
-                "{}\n{}",
-                error_tip(input.reference, input.reference_failure),
-                tr("Beside it: a reason to doubt the result, or else the main source of the error")
-            ),
+            tip: [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
             color,
             ratio: None,
         },

@@ -25,6 +25,8 @@ const WHOLE: f64 = 2.0;
 /// Distance of such an arrow's tip from the border at the sides, and above and below, points: room for its label and for
 /// the colour bar. In a low view it is at most a quarter of the height.
 const BORDER: Vec2 = vec2(40.0, 80.0);
+/// Distance of every tip from the border, points: room for its head and its label.
+const LABEL: Vec2 = vec2(12.0, 32.0);
 /// Largest opening length as a fraction of the shorter side of a low view.
 const LOW_SHARE: f64 = 0.25;
 /// Length below which a dragged arrow is a force of zero, points.
@@ -166,8 +168,18 @@ pub(crate) struct ForceArrows<'a> {
 }
 
 impl ForceArrows<'_> {
-    /// Returns the arrows of all forces that act at the current time.
+    /// Returns the arrows of all forces that act at the current time; their tips are in the view if their bases are.
     pub(crate) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
+        let whole = self.whole_arrows(projection).into_iter();
+        let within = whole.map(|arrow| {
+            let room = room(projection.rect.shrink2(LABEL), arrow.from, arrow.direction);
+            Arrow { vector: arrow.direction * arrow.vector.length().min((room as f32).max(STUB as f32)), ..arrow }
+        });
+        within.collect()
+    }
+
+    /// Returns the arrows of all forces that act at the current time, each long enough to be dragged, also out of the view.
+    pub(crate) fn whole_arrows(&self, projection: &Projection) -> Vec<Arrow> {
         let mesh = self.system.mesh();
         let [usual, largest] = force_range(self.opening, &self.scene.material, self.system);
         let scale = scale(usual, projection.rect.size());
@@ -245,15 +257,27 @@ impl Arrow {
             paint_arrow(painter, self.from, self.vector, faint)
         };
         paint_grip(painter, tip - direction * 6.0, faint, is_hot);
+        let view = painter.clip_rect();
+        if !view.contains(self.from) && !view.contains(tip) {
+            return;
+        }
         let label = engineering(self.magnitude, "N");
         let (mut anchor, mut at) = label_place(tip, direction);
         let size = painter.layout_no_wrap(label.clone(), FontId::proportional(BODY), faint).size();
         if let Some(legend) = legend.filter(|legend| legend.intersects(anchor.anchor_size(at, size).expand(4.0))) {
-            let is_on_top = legend.center().y < painter.clip_rect().center().y;
+            let is_on_top = legend.center().y < view.center().y;
             (anchor, at) = match is_on_top {
                 true => (Align2::LEFT_TOP, pos2(tip.x + 12.0, legend.bottom() + 8.0)),
                 false => (Align2::LEFT_BOTTOM, pos2(tip.x + 12.0, legend.top() - 8.0)),
             };
+        }
+        // There is no room beyond the tip of a short arrow at the border.
+        if !view.contains_rect(anchor.anchor_size(at, size)) {
+            let beside = [(Align2::LEFT_CENTER, 16.0), (Align2::RIGHT_CENTER, -16.0)];
+            let mut beside =
+                beside.map(|(anchor, right)| (anchor, tip - direction * 8.0 + vec2(right, 0.0))).into_iter();
+            (anchor, at) =
+                beside.find(|(anchor, at)| view.contains_rect(anchor.anchor_size(*at, size))).unwrap_or((anchor, at));
         }
         boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
     }

@@ -119,8 +119,22 @@ impl Bases<'_> {
         if matches!(object, Object::Support(_)) {
             return at_node(mesh.nearest_node(rest));
         }
-        let rest = rounded(self.system, rest);
+        let rest = rounded(self.system, self.on_side(rest).unwrap_or(rest));
         Some((Place::At(rest.into()), self.drawn(rest)?))
+    }
+
+    /// Returns the nearest point of the outline at rest, m; `None` if it is not close to the rest position `at`.
+    fn on_side(&self, at: Vector2<f64>) -> Option<Vector2<f64>> {
+        /// Distance within which an object moves to the outline, points.
+        const CLOSE: f64 = 4.0;
+        let mesh = self.mesh();
+        let feet = self.outline.iter().map(|side| {
+            let [p, q] = side.ends().map(|n| mesh.node(n));
+            let side = q - p;
+            p + side * ((at - p).dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
+        });
+        let nearest = feet.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm()))?;
+        ((nearest - at).norm() * self.projection.camera.scale <= CLOSE).then_some(nearest)
     }
 
     /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.

@@ -12,8 +12,8 @@ use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 
-/// Usual size of the card of a point, points.
-const CARD: Vec2 = vec2(240.0, 300.0);
+/// Size of the card of a point while its matrices are folded, points.
+const CARD: Vec2 = vec2(300.0, 288.0);
 /// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;
 
@@ -164,49 +164,48 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
-/// Returns the area of a view in which cards are shown.
-fn card_area(view: Rect) -> Rect {
-    /// Room for the line key above, and for the colour bar and the status below, points.
+/// Returns the position of a card with this alignment in a view.
+fn card_position(view: Rect, align: Align2) -> Pos2 {
+    /// Room for the line key above, and for the colour bar and the status in the lower corners, points.
     const ABOVE: f32 = 44.0;
-    const BELOW: f32 = 84.0;
+    const CORNER: f32 = 84.0;
     const SIDE: f32 = 14.0;
-    Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, BELOW))
+    let below = if align == Align2::CENTER_BOTTOM { SIDE } else { CORNER };
+    align.pos_in_rect(&Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, below)))
 }
 
-/// Returns the corner of a view in which a card hides the fewest of the points that are to be `shown`, and of these
-/// corners one in which it hides the fewest points of a body. All positions are in the window.
-pub(crate) fn card_corner(view: Rect, body: impl Iterator<Item = Pos2>, shown: &[Pos2]) -> Align2 {
-    let area = card_area(view);
+/// Returns the alignment in a view with which a card hides the fewest of the points that are to be `shown`, and of these
+/// one with which it hides the fewest points of a body. All positions are in the window.
+pub(crate) fn card_align(view: Rect, body: impl Iterator<Item = Pos2>, shown: &[Pos2]) -> Align2 {
+    /// Width of a view in which a card has room between the status and the colour bar, points.
+    const WIDE: f32 = 2.0 * 290.0 + CARD.x;
     let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-    let hides = |corner: Align2, at: Pos2| corner.anchor_size(corner.pos_in_rect(&area), CARD).contains(at);
-    let mut hidden = corners.map(|corner| ((shown.iter().filter(|at| hides(corner, **at)).count(), 0_usize), corner));
-    for at in body {
-        for ((_, count), corner) in &mut hidden {
-            *count += usize::from(hides(*corner, at));
-        }
-    }
-    hidden.into_iter().min_by_key(|(count, _)| *count).map_or(Align2::RIGHT_TOP, |(_, corner)| corner)
+    let middle = Some(Align2::CENTER_BOTTOM).filter(|_| view.width() >= WIDE);
+    let hides = |align: Align2, at: &Pos2| align.anchor_size(card_position(view, align), CARD).contains(*at);
+    let body: Vec<Pos2> = body.collect();
+    let hidden = |align: &Align2| [shown, &body].map(|points| points.iter().filter(|at| hides(*align, at)).count());
+    corners.into_iter().chain(middle).min_by_key(hidden).unwrap_or(Align2::RIGHT_TOP)
 }
 
-/// Shows the card of a pinned point at the window position `at`, in a corner of the view. `is_kept` is `true` if the
-/// scene has a probe there.
+/// Shows the card of a pinned point at the window position `at`, with this alignment in the view. `is_kept` is `true` if
+/// the scene has a probe there.
 pub(crate) fn show_card(
     ui: &Ui,
     painter: &Painter,
     (view, at): (Rect, Pos2),
-    pivot: Align2,
+    align: Align2,
     (point, is_kept): (&PointState, bool),
     axes: &mut Axes,
 ) -> Option<CardRequest> {
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
-    let (id, corner) = (egui::Id::unique("probe"), pivot.pos_in_rect(&card_area(view)));
-    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(pivot.anchor_size(corner, CARD));
+    let (id, position) = (egui::Id::unique("probe"), card_position(view, align));
+    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(align.anchor_size(position, CARD));
     painter.line_segment([at, card.clamp(at)], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
     paint_principal(painter, at, point, color);
-    let area = Area::new(id).order(Order::Middle).pivot(pivot).fixed_pos(corner).constrain_to(view);
+    let area = Area::new(id).order(Order::Middle).pivot(align).fixed_pos(position).constrain_to(view);
     let card =
         area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, point, is_kept, axes)).inner);
     card.inner
@@ -216,14 +215,6 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     let mut request = None;
     ui.spacing_mut().item_spacing.y = 3.0;
     let place = metres(point.rest);
-    ui.horizontal(|ui| {
-        ui.strong(fill!("Point %{place}", place = place.as_str()));
-        let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
-        close.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr("Close the card")));
-        if close.clicked() {
-            request = Some(CardRequest::Close);
-        }
-    });
     let (kind, tip) = match point.values {
         PointValues::Recovered => (
             "recovered at the nodes",
@@ -231,7 +222,15 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
         ),
         PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
     };
-    ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
+    ui.horizontal(|ui| {
+        ui.strong(fill!("Point %{place}", place = place.as_str()));
+        let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
+        close.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr("Close the card")));
+        if close.clicked() {
+            request = Some(CardRequest::Close);
+        }
+        ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
+    });
     // In linear theory the axes of the material do not rotate.
     if !point.is_linear {
         ui.horizontal(|ui| {
@@ -243,8 +242,8 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
     }
     let rows = rows_of(point, *axes);
     // Rows of text need less height than those of controls.
-    ui.spacing_mut().interact_size.y = 18.0;
-    Grid::new("probe values").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+    ui.spacing_mut().interact_size.y = 16.0;
+    Grid::new("probe values").num_columns(2).spacing([12.0, 1.0]).show(ui, |ui| {
         for (name, text, tip) in &rows {
             ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
             ui.label(text).on_hover_text(tr(tip));
@@ -287,4 +286,23 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
         }
     });
     request
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    /// Whatever point of a beam is pinned, its card hides neither the beam nor the tip of its force.
+    #[test]
+    fn a_card_hides_nothing() {
+        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 738.0));
+        let nodes = (0..=40_u8).flat_map(|i| [330.0, 374.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
+        let tip = pos2(919.0, 422.0);
+        for at in nodes.clone() {
+            let align = card_align(view, nodes.clone(), &[at, tip]);
+            let card = align.anchor_size(card_position(view, align), CARD);
+            assert!(nodes.clone().chain([tip]).all(|at| !card.contains(at)), "{at:?}: {card:?}");
+        }
+    }
 }

@@ -137,7 +137,7 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
-    /// Pinned point whose card is shown, and the corner of the view where it is.
+    /// Pinned point whose card is shown, and the alignment of the card in the view.
     card: Option<(MaterialPoint, Align2)>,
     /// Axes of the stresses at the pinned point.
     axes: Axes,
@@ -393,15 +393,9 @@ impl BodyView {
         // On a card of Learn a click selects a triangle.
         let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
-            // A probe that is kept there has the same values.
-            let system = content.simulation().system();
-            let mesh = system.mesh();
-            let rounded = probe::place(mesh, mesh.nodes(), point)
-                .and_then(|rest| mesh.locate(menu::rounded(system, rest)))
-                .filter(|near| near.element == point.element);
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
             let is_unpinned = kept.is_some_and(|kept| probe::is_on(kept, click));
-            self.probe = (!is_unpinned).then_some(rounded.unwrap_or(point));
+            self.probe = (!is_unpinned).then_some(rounded(content, point));
         }
     }
 
@@ -487,6 +481,7 @@ impl BodyView {
         let shown = self.shown(content);
         if let Some((point, at)) = self.pointer.over_body()
             && !egui::Popup::is_any_open(ui.ctx())
+            && let point = rounded(content, point)
             && let Some(u) = probe::place(content.mesh(), shown.displacement(), point)
         {
             probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
@@ -498,17 +493,17 @@ impl BodyView {
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
         // The card stays where it is while the body moves.
-        let corner = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
+        let align = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
             || {
                 let projection = self.projection();
                 let arrows = self.arrows(content).into_iter().map(|arrow| arrow.tip());
                 let shown: Vec<Pos2> = std::iter::once(at).chain(arrows).collect();
-                probe::card_corner(self.rect, self.body.points().iter().map(|point| projection.point(*point)), &shown)
+                probe::card_align(self.rect, self.body.points().iter().map(|point| projection.point(*point)), &shown)
             },
-            |(_, corner)| corner,
+            |(_, align)| align,
         );
-        self.card = Some((point, corner));
-        match probe::show_card(ui, painter, (self.rect, at), corner, (&state, is_kept), &mut self.axes)? {
+        self.card = Some((point, align));
+        match probe::show_card(ui, painter, (self.rect, at), align, (&state, is_kept), &mut self.axes)? {
             CardRequest::Close => self.probe = None,
             CardRequest::Copy(text) => ui.ctx().copy_text(text),
             CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
@@ -517,7 +512,7 @@ impl BodyView {
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
-    /// converged are not followed, because they may be anywhere.
+    /// converged are not followed while they change, because they may be anywhere.
     pub(crate) fn fit_camera(&mut self, ui: &Ui, content: &Content<'_>) {
         // Moving the camera would also move the point that the pointer has grabbed.
         if self.pointer.holds() {
@@ -528,7 +523,8 @@ impl BodyView {
         let status = session.simulation().status();
         let is_sound =
             if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() || self.shows_converged };
-        if is_sound || content.shows_iterate() && self.is_of_usual_size(content) {
+        let is_stepped = !is_motion && !session.is_running();
+        if is_sound || (content.shows_iterate() || is_stepped) && self.is_of_usual_size(content) {
             let (mut low, mut high) = content.mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
                 (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
@@ -623,12 +619,12 @@ impl BodyView {
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         let camera = Camera::fit(low, high, view, least);
         let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
-        let mut arrows = self.forces(content).arrows(&projection);
+        let mut arrows = self.forces(content).whole_arrows(&projection);
         if let Some(reach) = content.reach() {
             let positions: Vec<_> = self.drawn_positions(reach).collect();
             let own = self.forces(content);
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
-            arrows.extend(forces.arrows(&projection));
+            arrows.extend(forces.whole_arrows(&projection));
         }
         let on_top = overlay::has_legend_on_top(size.y);
         arrows.iter().fold(least, |margins, arrow| {
@@ -752,6 +748,15 @@ impl BodyView {
             content.mesh().passes_through_itself(&session.geometry().boundary, &self.body.nodes);
         self.crossing.is_reported
     }
+}
+
+/// Returns the point with rounded coordinates near a point of the body, so that a probe that is kept there has the values
+/// that are shown; the point itself if the rounded one is in another element.
+fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
+    let system = content.simulation().system();
+    let mesh = system.mesh();
+    let near = probe::place(mesh, mesh.nodes(), point).and_then(|rest| mesh.locate(menu::rounded(system, rest)));
+    near.filter(|near| near.element == point.element).unwrap_or(point)
 }
 
 /// Returns the margins around a box that do not depend on the loads.

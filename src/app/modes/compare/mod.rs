@@ -210,7 +210,8 @@ impl Compare {
             let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
             let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
             panel.show(ui, |ui| {
-                self.trace.show(ui, input.common.scene, &self.panes.list, input.common.view.curve_plot, actions);
+                let panes = (&self.panes.list[..], input.running);
+                self.trace.show(ui, input.common.scene, panes, input.common.view.curve_plot, actions);
             });
         }
     }

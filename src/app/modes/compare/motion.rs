@@ -319,8 +319,9 @@ fn result(ui: &mut Ui, name: &str, pane: &MotionPane, first: Option<&MotionPane>
     let spoken = format!("{name}: {text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(tr(
-        "Computing time of a frame at 60 Hz; energy that the integrator has added; distance of the first probe from \
-         the first pane's at the same time",
+        "Computing time of the last frames at 60 Hz, with drawing between them: frames in a row, as in Budget, may take \
+         half the time; energy that the integrator has added; distance of the first probe from the first pane's at the \
+         same time",
     ));
 }
 

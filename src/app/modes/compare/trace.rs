@@ -256,7 +256,7 @@ impl Trace {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        panes: &[Pane],
+        (panes, is_running): (&[Pane], bool),
         chosen: Option<CurvePlot>,
         actions: &mut Vec<Action>,
     ) {
@@ -272,7 +272,7 @@ impl Trace {
             self.reach = 1.25 * axis.magnitude;
         }
         let shown = chosen.filter(|plot| OFFERED.contains(plot)).unwrap_or_else(|| self.usual(axis));
-        let drawn = self.figure(axis, scene, panes, shown);
+        let drawn = self.figure(axis, scene, (panes, is_running), shown);
         let parts = Parts::of(ui.available_rect_before_wrap());
         ui.scope_builder(egui::UiBuilder::new().max_rect(parts.plot), |ui| {
             let response = figure::plot(ui, "trace", &drawn, Some(axis.magnitude));
@@ -298,7 +298,7 @@ impl Trace {
     }
 
     /// Returns the figure of the panes' curves, and their results for the current load.
-    fn figure(&self, axis: TraceAxis, scene: &Scene, panes: &[Pane], shown: CurvePlot) -> Figure {
+    fn figure(&self, axis: TraceAxis, scene: &Scene, (panes, is_running): (&[Pane], bool), shown: CurvePlot) -> Figure {
         let reach = if self.reach > 0.0 { self.reach } else { 1.0 };
         let exact = |all: &[Exact]| -> Vec<FigurePoint> {
             let seen = all.iter().filter(|(load, _)| *load <= 1.001 * reach);
@@ -344,6 +344,7 @@ impl Trace {
                 (_, Activity::Refused(_)) => (tr("no solution").to_owned(), true),
                 (Some((probe, true)), _) => (pair(probe.u), false),
                 (Some((_, false)), _) => (tr("does not converge").to_owned(), true),
+                (None, Activity::Iterates(_)) if !is_running => (tr("paused").to_owned(), false),
                 (None, _) => (tr("iterating").to_owned(), false),
             };
             let error = pane.error.filter(|_| !is_bad).map(percent).unwrap_or_default();

@@ -10,8 +10,7 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;
 use crate::app::widgets::buttons::option_button;
 use crate::format::Context;
-use crate::mesh::straightened;
-use crate::scene::{Load, Place, Scene};
+use crate::scene::Scene;
 use crate::section::{Section, SectionError};
 use crate::simulation::{Equilibrium, Simulation};
 use crate::state::State;
@@ -32,33 +31,13 @@ struct Cuts {
 
 impl Cuts {
     fn of(simulation: &Simulation) -> Self {
-        /// Number of intervals between sections along a beam.
-        const ALONG: u32 = 40;
-        /// Distance of sections from a point where the forces jump, relative to the length.
-        const BESIDE: f64 = 1e-6;
-        let scene = simulation.scene();
-        let loads = scene.loads.iter().filter_map(|load| match load {
-            Load::Force { place, .. } => Some(place),
-            _ => None,
-        });
-        let points = loads.chain(scene.supports.iter().map(|support| &support.place));
-        let beam = simulation.system().beam();
-        let jumps = points.filter_map(|place| match place {
-            Place::At(at) => Some(straightened(beam?, (*at).into())[0]),
-            Place::Edge(_) => None,
-        });
-        let beside = jumps.flat_map(|along| [along - BESIDE, along + BESIDE]);
-        let even = (0..=ALONG).map(|i| f64::from(i) / f64::from(ALONG));
-        let mut along: Vec<f64> = beside.filter(|along| (0.0..=1.0).contains(along)).chain(even).collect();
-        along.sort_by(f64::total_cmp);
-        let (own, along) =
-            (simulation.scene_sections(), simulation.sections_along(along.into_iter()).unwrap_or_default());
+        let (own, along) = (simulation.scene_sections(), simulation.diagram_sections().unwrap_or_default());
         let all: Vec<Section> = own.iter().flatten().chain(&along).cloned().collect();
         Self {
             contexts: section_chart::contexts(&all, simulation),
             own,
             along,
-            of: (simulation.state().clone(), scene.clone()),
+            of: (simulation.state().clone(), simulation.scene().clone()),
         }
     }
 

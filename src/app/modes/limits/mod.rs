@@ -19,7 +19,7 @@ use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
 use crate::plot::{AxisScale, ScaledAxis, rating_color};
-use crate::scene::{Analysis, Scene};
+use crate::scene::{Analysis, Load, Scene};
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
@@ -29,13 +29,15 @@ const HATCH: f32 = 6.0;
 /// Widths of the columns left and right of the strips, points.
 const NAMES: f32 = 92.0;
 const INTEGRATORS: f32 = 120.0;
-const ENDS: f32 = 148.0;
+const ENDS: f32 = 190.0;
 /// Width, points, below which the right column is omitted.
-const WITH_ENDS: f32 = 560.0;
+const WITH_ENDS: f32 = 640.0;
 /// Width from which the choice of the scale and the key of the colours are in one row, points.
 const ONE_ROW: f32 = 980.0;
 /// Height of a line of small text, points.
 const LINE: f32 = 18.0;
+/// Height of the line that shows the progress, points.
+const PROGRESS: f32 = 3.0;
 /// Fraction of the height that the strips take from the curve, and the smallest height of the curve, points: in a lower
 /// window it is omitted.
 const SHARE: f32 = 0.62;
@@ -50,8 +52,6 @@ const HIGH_ROW: f32 = 40.0;
 pub(crate) struct LimitMap {
     /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
     base: Option<Scene>,
-    /// Lab's scene after its load or its time step was set here, and its part of the base's.
-    placed: Option<(Scene, f64)>,
     /// Part of the base's loads, or of its time step, that the lab's scene has.
     factor: f64,
     /// Scale of loads and displacements.
@@ -60,36 +60,22 @@ pub(crate) struct LimitMap {
 
 impl Default for LimitMap {
     fn default() -> Self {
-        Self { base: None, placed: None, factor: 1.0, scale: AxisScale::default() }
+        Self { base: None, factor: 1.0, scale: AxisScale::default() }
     }
 }
 
 impl LimitMap {
-    /// Turns to the lab's scene. A load that was set here does not change the limits, nor do method and element.
+    /// Turns to the lab's scene. Another load in the range of the limits does not change them, nor do method and element.
     pub(crate) fn turn_to(&mut self, scene: &Scene) {
-        let own = without_methods(scene);
-        let placed = self.placed.as_ref().filter(|(placed, _)| *placed == own);
-        self.factor = placed.map_or(1.0, |(_, factor)| *factor);
-        if placed.is_none() && self.base.as_ref().map(without_methods) != Some(own) {
-            *self = Self { base: Some(scene.clone()), scale: self.scale, ..Self::default() };
+        match self.base.as_ref().and_then(|base| part_of(base, scene)) {
+            Some(factor) => self.factor = factor,
+            None => *self = Self { base: Some(scene.clone()), scale: self.scale, ..Self::default() },
         }
     }
 
     /// Returns the scene whose limits are shown.
     pub(crate) fn base(&self) -> Option<&Scene> {
         self.base.as_ref()
-    }
-
-    /// Returns the lab's scene with a part of the base's loads or time step, rounded to three digits.
-    fn place(&mut self, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene {
-        let factor = three_digits(factor * axis.full) / axis.full;
-        let mut placed = scene.clone();
-        match placed.analysis {
-            Analysis::Static => placed.scale_loads(factor / self.factor),
-            Analysis::Dynamic => placed.dynamics.time_step = factor * axis.full,
-        }
-        self.placed = Some((without_methods(&placed), factor));
-        placed
     }
 
     /// Shows the limits of the lab's scene.
@@ -112,11 +98,8 @@ impl LimitMap {
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             self.views(ui, scene, view);
-            if limits.is_some() && !shows_curve {
-                progress.map(|done| ui.add(progress_bar(done).desired_width(72.0)));
-                if has_one_row {
-                    key(ui, moves);
-                }
+            if limits.is_some() && !shows_curve && has_one_row {
+                key(ui, moves);
             }
         });
         if shows_curve {
@@ -147,12 +130,18 @@ impl LimitMap {
                 ui.horizontal_wrapped(|ui| key(ui, moves));
             });
         }
+        // Its room stays after the limits are complete, so that nothing moves.
+        let line = Rect::from_min_size(ui.next_widget_position(), vec2(ui.available_width(), PROGRESS));
+        ui.add_space(PROGRESS);
+        if let Some(done) = progress {
+            ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
+        }
         let axis = limits::axis(&base);
         let below = ui.available_rect_before_wrap();
         let chart = StripChart::new(ui, below, limits, &axis, self.scale);
         let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
-            let placed = self.place(scene, &axis, factor);
+            let placed = with_part(&base, scene, &axis, factor);
             if placed != *scene {
                 actions.push(Action::Edit(chart.label(), Box::new(placed)));
             }
@@ -183,6 +172,74 @@ impl LimitMap {
             view.curve = true;
         }
     }
+}
+
+/// Returns the part of the base's loads, or of its time step, that a scene has; `None` if the limits of the base are not
+/// those of the scene.
+fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
+    /// Relative rounding error of loads.
+    const ROUNDING: f64 = 1e-9;
+    /// Parts of the time step of a motion whose limits are kept.
+    const STEPS: [f64; 2] = [0.0625, 8.0];
+    let stops = |scene: &Scene| (scene.solver.accept_after, scene.element(), scene.solver.method);
+    if scene.solver.accept_after > 0 && stops(scene) != stops(base) {
+        return None;
+    }
+    let moves = scene.analysis == Analysis::Dynamic;
+    let alike = |scene: &Scene| {
+        let mut own = scene.clone();
+        own.solver.accept_after = 0;
+        if moves {
+            own.dynamics.time_step = base.dynamics.time_step;
+        } else {
+            own.scale_loads(0.0);
+        }
+        without_methods(&own)
+    };
+    if alike(base) != alike(scene) {
+        return None;
+    }
+    if moves {
+        let part = scene.dynamics.time_step / base.dynamics.time_step;
+        return Some(part).filter(|part| (STEPS[0]..=STEPS[1]).contains(part));
+    }
+    let [full, own] = [base, scene].map(|scene| load_values(scene).collect::<Vec<f64>>());
+    let largest = full.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let Some((index, largest)) = largest.filter(|(_, value)| *value != 0.0) else {
+        return (full == own).then_some(1.0);
+    };
+    let part = own.get(index)? / largest;
+    let rounding = ROUNDING * part * largest.abs();
+    let is_part =
+        full.len() == own.len() && full.iter().zip(&own).all(|(full, own)| (part * full - own).abs() <= rounding);
+    let [low, high] = limits::RANGE;
+    (is_part && (low * (1.0 - ROUNDING)..=high * (1.0 + ROUNDING)).contains(&part)).then_some(part)
+}
+
+/// Returns the components of the loads and of the prescribed displacements and rotations of supports, in their order.
+fn load_values(scene: &Scene) -> impl Iterator<Item = f64> {
+    let supports =
+        scene.supports.iter().flat_map(|support| [support.displacement[0], support.displacement[1], support.turn]);
+    let loads = scene.loads.iter().flat_map(|load| match load {
+        Load::Force { force: v, .. } | Load::Gravity { acceleration: v, .. } => *v,
+        Load::Moment { moment, .. } => [*moment, 0.0],
+    });
+    supports.chain(loads)
+}
+
+/// Returns a scene with a part of the base's loads or time step, rounded to three digits.
+fn with_part(base: &Scene, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene {
+    let factor = three_digits(factor * axis.full) / axis.full;
+    let mut placed = scene.clone();
+    match placed.analysis {
+        Analysis::Static => {
+            let mut part = base.clone();
+            part.scale_loads(factor);
+            (placed.loads, placed.supports) = (part.loads, part.supports);
+        }
+        Analysis::Dynamic => placed.dynamics.time_step = factor * axis.full,
+    }
+    placed
 }
 
 /// Returns the bar of the fraction of the limits that is known.
