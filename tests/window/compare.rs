@@ -485,3 +485,17 @@ fn the_key_of_the_load_curve_belongs_to_the_panes() {
         assert_eq!(shown(&harness), expected);
     }
 }
+
+/// Panes of a paused scene are paused in the table of the curve too.
+#[test]
+fn paused_panes_are_paused_everywhere() {
+    let mut harness = harness_of("article", scene("article"));
+    harness.run();
+    harness.get_by_label("Step").click();
+    harness.run_steps(2);
+    harness.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());
+    harness.run_steps(5);
+    let labels = labels(&harness);
+    assert!(labels.iter().any(|label| label.contains("paused")), "{labels:?}");
+    assert!(!labels.iter().any(|label| label.contains("iterating")), "{labels:?}");
+}

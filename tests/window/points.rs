@@ -102,6 +102,30 @@ fn colours_follow_the_load_of_a_magnified_body() {
     }
 }
 
+/// The label at the pointer has the values of the card that a click opens there.
+#[test]
+fn a_hovered_point_has_the_values_of_its_card() {
+    let mut lab = lab_of("cantilever", scene("cantilever"));
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
+    harness.run();
+    for at in [Vector2::new(3.1374, 0.2113), Vector2::new(7.7137, -0.3276)] {
+        let pos = on_body(harness.state(), at);
+        harness.hover_at(pos);
+        harness.run();
+        let shown = painted(&harness);
+        let hovered = shown.iter().find_map(|text| text.split_once("\nu = ")).unwrap();
+        let stress = hovered.0.strip_prefix("von Mises (Cauchy): ").unwrap();
+        click(&mut harness, pos);
+        harness.run();
+        assert!(harness.state().probed().is_some());
+        for value in [stress, hovered.1] {
+            let alike = harness.query_all_by_label(value).count();
+            assert!(alike > 0, "{value} is not on the card");
+        }
+    }
+}
+
 /// Every field has the value of the card's point under the pointer, and its own name at the colour bar.
 #[test]
 fn every_field_colours_the_body() {

@@ -1566,3 +1566,38 @@ fn the_menu_of_a_point_adds_and_removes_objects() {
     open_menu(&mut harness, beside);
     assert!(harness.query_by_label("Add a probe here").is_none());
 }
+
+/// In a low view the arrow of a large force ends in the view, with room for its label.
+#[test]
+fn the_arrow_of_a_large_force_ends_in_a_low_view() {
+    for size in [[640.0, 480.0], [900.0, 600.0]] {
+        let mut large = scene("cantilever").with_method(MethodKind::Newton);
+        large.scale_loads(5.0);
+        let mut lab = lab_of("cantilever", large);
+        lab.solve();
+        lab.show_limits();
+        let mut harness = window(size, lab);
+        harness.run_steps(8);
+        let (view, tip) = (harness.state().view_rect(), harness.state().arrow_tips()[0].1);
+        assert!(view.shrink2(vec2(10.0, 20.0)).contains(tip), "{size:?}: {tip:?} in {view:?}");
+    }
+}
+
+/// A body that is iterated step by step stays in the view, also where it is far larger than the result.
+#[test]
+fn a_stepped_body_stays_in_view() {
+    let mut large = scene("article");
+    large.scale_loads(2.06);
+    let mut harness = harness_of("article", large);
+    settle(&mut harness);
+    for steps in 1..4 {
+        harness.get_by_label("Step").click();
+        harness.run_steps(30);
+        let lab = harness.state();
+        assert_eq!(lab.simulation().iterations(), steps);
+        for &place in lab.frame().positions {
+            let seen = in_window(lab, place);
+            assert!(lab.view_rect().contains(seen), "after {steps}: {place} at {seen:?}");
+        }
+    }
+}

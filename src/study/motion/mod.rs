@@ -218,6 +218,8 @@ pub struct MotionMeasurement {
     pub error: Option<PathError>,
     /// Energy added by the integrator, percent of the largest kinetic energy.
     pub drift_percent: f64,
+    /// The same, percent of the energy put in.
+    pub drift_of_input_percent: f64,
     /// Numbers of steps and solves.
     pub counts: Counts,
     /// `true` if no other measurement is both faster and more accurate; errors below the reference's own error count as
@@ -385,6 +387,7 @@ impl MotionStudy {
                 milliseconds: first.milliseconds(studied, meshed)?,
                 error: (first.ending == Ending::Finished).then(|| self.error(&first, meshed)),
                 drift_percent: 100.0 * first.drift,
+                drift_of_input_percent: 100.0 * first.drift_of_input,
                 counts: first.counts,
                 pareto: false,
             });
@@ -465,6 +468,8 @@ struct FirstRun {
     counts: Counts,
     /// Energy added by the integrator, relative to the largest kinetic energy.
     drift: f64,
+    /// The same, relative to the energy put in.
+    drift_of_input: f64,
 }
 
 impl FirstRun {
@@ -490,8 +495,12 @@ impl FirstRun {
             (false, true) => Ending::CutShort,
             (false, false) => Ending::Finished,
         };
-        let (counts, drift) = simulation.motion().map(|m| (m.counts(), m.ledger().drift())).unwrap_or_default();
-        Ok(Self { setting, steps_of_sample, steps, ending, path, counts, drift })
+        let of_motion = simulation.motion().map(|motion| {
+            let ledger = motion.ledger();
+            (motion.counts(), ledger.drift(), ledger.drift_of_input())
+        });
+        let (counts, drift, drift_of_input) = of_motion.unwrap_or_default();
+        Ok(Self { setting, steps_of_sample, steps, ending, path, counts, drift, drift_of_input })
     }
 
     /// Returns the computing time per simulated second, ms, measured by repeating the run.

@@ -147,13 +147,13 @@ impl Measured {
             (Self::Motion(study), Choice::Motion(m)) => {
                 let part = |of: fn(&PathError) -> f64| part_text(m.error.as_ref().map_or(0.0, of));
                 fill!(
-                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the largest kinetic energy.",
+                    "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the energy put in.",
                     unknowns = count(m.dofs as u64, "unknown"),
                     mesh = part(|e| e.discretization),
                     steps = part(|e| e.integration),
                     theory = part(|e| e.model),
                     duration = engineering(three_digits(study.duration), "s"),
-                    drift = percent(m.drift_percent)
+                    drift = percent(m.drift_of_input_percent)
                 )
             }
             _ => String::new(),

@@ -412,6 +412,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     const EDGE: f64 = 0.2;
     /// Width of a tick label of the axis of times, points.
     const LABEL: f32 = 40.0;
+    /// Least distance of the labels of the axis of errors, points.
+    const LINE: f32 = 22.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
@@ -430,7 +432,10 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         Analysis::Dynamic => "time of a frame at 60 Hz, ms",
     };
     let room = (ui.available_width() - BUDGET_Y_AXIS).max(LABEL);
-    let step = ((x[1] - x[0]) as f32 * LABEL / room).ceil().max(1.0) as usize;
+    // Decades from one label to the next.
+    let step =
+        |[low, high]: [f64; 2], label: f32, room: f32| ((high - low) as f32 * label / room).ceil().max(1.0) as usize;
+    let [step, step_up] = [step(x, LABEL, room), step(y, LINE, (ui.available_height() - X_AXIS).max(LINE))];
     Plot::new("budget")
         .custom_x_axes(vec![
             AxisHints::new_x()
@@ -443,7 +448,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
         .y_axis_label(tr("error, %"))
         .y_axis_min_width(BUDGET_Y_AXIS)
         .x_grid_spacer(move |input| decades(input, step))
-        .y_grid_spacer(|input| decades(input, 1))
+        .y_grid_spacer(|input| decades(input, step_up))
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)

@@ -220,7 +220,10 @@ pub(super) fn pick<T: Copy + PartialEq>(
 fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut dyn FnMut(&mut Ui)) {
     let (label, text) = (format!("{pane} {}", tr(what)), tr(text));
     let combo = ComboBox::from_id_salt(&label).selected_text(RichText::new(text)).width(width).height(420.0).truncate();
-    let response = combo.show_ui(ui, menu).response;
+    // The width of a combo box is its least one.
+    let size = vec2(width, ui.spacing().interact_size.y);
+    let inside = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| combo.show_ui(ui, menu));
+    let response = inside.inner.response;
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ComboBox, true, &label);
         info.current_text_value = Some(text.to_owned());
