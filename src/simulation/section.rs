@@ -1,8 +1,12 @@
 //! Sections of the current state.
 
 use super::{Equilibrium, Simulation};
-use crate::mesh::{axis_angle, bent, straightened};
-use crate::model::{Load, Place, SectionLine};
+#[cfg(feature = "cli")]
+use crate::mesh::straightened;
+use crate::mesh::{axis_angle, bent};
+use crate::model::SectionLine;
+#[cfg(feature = "cli")]
+use crate::model::{Load, Place};
 use crate::section::{Section, SectionError};
 use crate::stress::NodalStress;
 

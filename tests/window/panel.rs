@@ -352,6 +352,17 @@ fn keys_that_end_a_text_edit_do_not_act_on_the_window() {
     assert!(harness.query_by_label_contains("Paused").is_none());
 }
 
+/// The message about a refused value moves no other row.
+#[test]
+fn a_refused_value_moves_nothing() {
+    let mut harness = harness("article");
+    let place = |harness: &Harness<'_, Lab>| harness.get_by_role_and_label(Role::SpinButton, "Direction").rect();
+    let before = place(&harness);
+    type_into(&mut harness, "Force", "45 mm");
+    assert!(harness.query_by_label_contains("is a length").is_some(), "{:?}", texts(&harness));
+    assert_eq!(place(&harness), before);
+}
+
 /// The ends of a fixed colour range accept any value, including negative ones. The scale does not
 /// move while an end is dragged.
 #[test]
@@ -371,6 +382,8 @@ fn a_fixed_range_of_colours_is_set() {
     };
     assert!(harness.query_by_label_contains("expected").is_none(), "{:?}", texts(&harness));
     let (low, high) = (shown(&harness, "Lowest"), shown(&harness, "Highest"));
+    let range = harness.state().frame().range;
+    assert!(range[0] == -range[1] && range[1] > 0.0, "the middle colour of a field with a sign is 0: {range:?}");
     type_into(&mut harness, "Highest", "-100 MPa");
     harness.key_press(Key::Escape);
     harness.run();

@@ -1512,6 +1512,18 @@ fn open_menu(harness: &mut Harness<'_, Lab>, pos: Pos2) {
     harness.run();
 }
 
+/// The mark of a support on an edge has a menu that removes it.
+#[test]
+fn the_menu_of_a_clamp_removes_it() {
+    let mut harness = harness_of("cantilever", scene("cantilever").clamp("right"));
+    let beside = on_body(harness.state(), Vector2::new(1e-6, 0.1)) - vec2(7.0, 0.0);
+    open_menu(&mut harness, beside);
+    harness.get_by_label("Remove this support").click();
+    harness.run();
+    let supports = &harness.state().scene().supports;
+    assert!(supports.len() == 1 && supports[0].place == Place::from("right"), "{supports:?}");
+}
+
 /// The menu of a point adds a force, a support and a probe there, and removes them; undo takes each back.
 #[test]
 fn the_menu_of_a_point_adds_and_removes_objects() {

@@ -24,6 +24,7 @@ pub(super) fn options(
         let label = ui.label(tr("Colour"));
         ComboBox::from_id_salt("field")
             .selected_text(tr(view.field.name()))
+            .height(560.0)
             .show_ui(ui, |ui| {
                 for (i, field) in Field::ALL.into_iter().enumerate() {
                     // A line between stresses, strains, displacements and the rest.
@@ -68,6 +69,11 @@ pub(super) fn options(
             if let Some(new) = field.show(ui, &mut state.messages, factor * range[end]) {
                 let mut changed = range;
                 changed[end] = new / factor;
+                // The middle colour of a field with a sign stays at 0.
+                if view.field.has_sign() {
+                    let largest = changed[end].abs();
+                    changed = [-largest, largest];
+                }
                 if changed[0] < changed[1] {
                     view.fixed_range = Some(changed);
                 } else {

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::app::language::tr;
 use crate::app::viewport::arrow::point_of_application;
-use crate::app::viewport::menu::{acts_at_point, rounded};
+use crate::app::viewport::menu::{acts_at_point, nearest_on_side, rounded};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
@@ -128,11 +128,7 @@ impl Bases<'_> {
         /// Distance within which an object moves to the outline, points.
         const CLOSE: f64 = 4.0;
         let mesh = self.mesh();
-        let feet = self.outline.iter().map(|side| {
-            let [p, q] = side.ends().map(|n| mesh.node(n));
-            let side = q - p;
-            p + side * ((at - p).dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
-        });
+        let feet = self.outline.iter().map(|side| nearest_on_side(mesh, side, at));
         let nearest = feet.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm()))?;
         ((nearest - at).norm() * self.projection.camera.scale <= CLOSE).then_some(nearest)
     }

@@ -30,7 +30,7 @@ pub(crate) fn show(
     response.context_menu(|ui: &mut Ui| {
         let edge = nearest_edge_for_moment(system, at);
         let added = additions(scene, system, (at, edge), present);
-        let entries = added.into_iter().chain(removals(scene, (at, near), edge));
+        let entries = added.into_iter().chain(removals(scene, system.mesh(), (at, near), edge));
         for (text, edited) in entries {
             if ui.button(text).clicked() {
                 chosen = Some(edited);
@@ -71,17 +71,21 @@ pub(crate) fn can_carry_moment(system: &System, edge: &Edge) -> bool {
 /// Returns the name of the edge nearest to a point, m, that can carry a moment.
 fn nearest_edge_for_moment(system: &System, at: Vector2<f64>) -> Option<&str> {
     let mesh = system.mesh();
-    let distance = |segment: &Segment| {
-        let [a, b] = segment.ends().map(|node| mesh.node(node));
-        let along = ((at - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
-        (a + (b - a) * along - at).norm()
-    };
     let edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
-    let distances = edges.filter_map(|name| {
-        let nearest = mesh.edges().get(name)?.iter().map(distance).fold(f64::INFINITY, f64::min);
-        Some((name, nearest))
-    });
+    let distances = edges.filter_map(|name| Some((name, distance_to_edge(mesh, name, at)?)));
     distances.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(name, _)| name)
+}
+
+/// Returns the distance, m, of a point from an edge of a mesh at rest; `None` if the edge does not exist.
+fn distance_to_edge(mesh: &Mesh, name: &str, at: Vector2<f64>) -> Option<f64> {
+    let distance = |segment: &Segment| (nearest_on_side(mesh, segment, at) - at).norm();
+    Some(mesh.edges().get(name)?.iter().map(distance).fold(f64::INFINITY, f64::min))
+}
+
+/// Returns the point of a side at rest that is nearest to `at`, m.
+pub(crate) fn nearest_on_side(mesh: &Mesh, side: &Segment, at: Vector2<f64>) -> Vector2<f64> {
+    let [a, b] = side.ends().map(|node| mesh.node(node));
+    a + (b - a) * ((at - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
 }
 
 /// Returns the entries that add an object at a point, or a moment on an edge. A support holds nodes, so it is put on the
@@ -162,8 +166,8 @@ pub(crate) fn rounded(system: &System, at: Vector2<f64>) -> Vector2<f64> {
     if system.mesh().locate(rounded).is_some() { rounded } else { at }
 }
 
-/// Returns the entries that remove an object at a point near `at`, or a moment on an edge.
-fn removals(scene: &Scene, (at, near): (Vector2<f64>, f64), edge: Option<&str>) -> Vec<MenuEntry> {
+/// Returns the entries that remove an object at a point near `at`, a support of an edge near it, or a moment on an edge.
+fn removals(scene: &Scene, mesh: &Mesh, (at, near): (Vector2<f64>, f64), edge: Option<&str>) -> Vec<MenuEntry> {
     let is_near = |place: &Place| match place {
         Place::At(point) => (Vector2::from(*point) - at).norm() <= near,
         Place::Edge(_) => false,
@@ -183,8 +187,13 @@ fn removals(scene: &Scene, (at, near): (Vector2<f64>, f64), edge: Option<&str>) 
         }
         _ => None,
     });
-    let supports = scene.supports.iter().enumerate().filter(|(_, support)| is_near(&support.place));
+    let is_near_edge = |place: &Place| match place {
+        Place::Edge(name) => distance_to_edge(mesh, name, at).is_some_and(|distance| distance <= near),
+        Place::At(_) => false,
+    };
+    let supports = scene.supports.iter().enumerate();
     let supports = supports
+        .filter(|(_, support)| is_near(&support.place) || is_near_edge(&support.place))
         .map(|(i, _)| (tr("Remove this support").to_owned(), edited(scene, |scene| _ = scene.supports.remove(i))));
     let is_on_line = |line: &SectionLine| line.normal().dot(&(at - line.at)).abs() <= near;
     let sections = scene.sections.iter().enumerate().filter(|(_, line)| is_on_line(line));

@@ -38,9 +38,12 @@ fn rolling_moment(material: &Material, system: &System) -> f64 {
 }
 
 /// Returns the moments, N m, that scale the arrows and sliders of a scene: the largest opening moment and the largest
-/// moment of sliders. For a scene without moments the first is about a tenth of the moment that rolls the body up once.
+/// moment of sliders. For a scene without moments the first is about a tenth of the moment that rolls the body up once, or
+/// of the moment of the largest opening force about the other end of the body, if that is smaller.
 pub(crate) fn moment_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
-    let usual = opening.moment.unwrap_or_else(|| round_down(0.1 * rolling_moment(material, system)));
+    let of_force = opening.force.map_or(f64::INFINITY, |force| force * system.strip()[0]);
+    let usual = || round_down(0.1 * rolling_moment(material, system).min(of_force));
+    let usual = opening.moment.unwrap_or_else(usual);
     [usual, largest_moment(material, system).max(MIN_SPAN * usual)]
 }
 

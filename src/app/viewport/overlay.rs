@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
-use egui::{Align2, Color32, FontId, Galley, Painter, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
@@ -199,7 +199,14 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
     let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
-    let mut taken = Vec::new();
+    let mut taken: Vec<Rect> = named_probes(projection, overlay)
+        .map(|(at, name)| {
+            Align2::LEFT_BOTTOM.anchor_size(
+                at + PROBE_NAME,
+                painter.layout_no_wrap(name.to_owned(), FontId::proportional(BODY), palette.text).size(),
+            )
+        })
+        .collect();
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
         let [from, to] = [0, 1].map(|i| projection.point(end(i)));
@@ -250,19 +257,27 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-/// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
+/// Position of the name of a probe beside its point.
+const PROBE_NAME: Vec2 = vec2(8.0, -4.0);
+
+/// Returns the positions of the probes at points, with their names. Those of edges are at the arrows of the loads, as a
+/// rule.
+fn named_probes<'a>(projection: &Projection, overlay: &Overlay<'a>) -> impl Iterator<Item = (Pos2, &'a str)> {
+    let mesh = overlay.system.mesh();
+    let drawn = move |at: [f64; 2]| probe::place(mesh, overlay.positions, mesh.locate(at.into())?);
+    overlay.scene.probes.iter().filter_map(move |own| match own.place {
+        Place::At(at) => Some((projection.point(drawn(at)?), tr(&own.name))),
+        Place::Edge(_) => None,
+    })
+}
+
+/// Marks the probes at points, with their names.
 fn probes(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, visuals: &Visuals) {
     const RADIUS: f32 = 3.5;
-    let mesh = overlay.system.mesh();
-    for own in &overlay.scene.probes {
-        let Place::At(at) = own.place else { continue };
-        let Some(place) = mesh.locate(at.into()).and_then(|point| probe::place(mesh, overlay.positions, point)) else {
-            continue;
-        };
-        let (at, color) = (projection.point(place), visuals.strong_text_color());
+    let color = visuals.strong_text_color();
+    for (at, name) in named_probes(projection, overlay) {
         painter.circle(at, RADIUS, visuals.extreme_bg_color, Stroke::new(1.5, color));
-        let beside = at + vec2(8.0, -4.0);
-        boxed_text(painter, beside, Align2::LEFT_BOTTOM, tr(&own.name), visuals, color, 160.0);
+        boxed_text(painter, at + PROBE_NAME, Align2::LEFT_BOTTOM, name, visuals, color, 160.0);
     }
 }
 

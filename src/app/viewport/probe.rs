@@ -174,17 +174,23 @@ fn card_position(view: Rect, align: Align2) -> Pos2 {
     align.pos_in_rect(&Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, below)))
 }
 
-/// Returns the alignment in a view with which a card hides the fewest of the points that are to be `shown`, and of these
-/// one with which it hides the fewest points of a body. All positions are in the window.
-pub(crate) fn card_align(view: Rect, body: impl Iterator<Item = Pos2>, shown: &[Pos2]) -> Align2 {
+/// Returns the alignment in a view with which a card hides least: not its point at `at`, as few of the points of a body as
+/// possible, and the `tips` of arrows only for many of these. All positions are in the window.
+pub(crate) fn card_align(view: Rect, body: &[Pos2], at: Pos2, tips: &[Pos2]) -> Align2 {
+    /// Part of a body for which a tip is hidden.
+    const TIP: f32 = 0.15;
     /// Width of a view in which a card has room between the status and the colour bar, points.
     const WIDE: f32 = 2.0 * 290.0 + CARD.x;
     let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
     let middle = Some(Align2::CENTER_BOTTOM).filter(|_| view.width() >= WIDE);
-    let hides = |align: Align2, at: &Pos2| align.anchor_size(card_position(view, align), CARD).contains(*at);
-    let body: Vec<Pos2> = body.collect();
-    let hidden = |align: &Align2| [shown, &body].map(|points| points.iter().filter(|at| hides(*align, at)).count());
-    corners.into_iter().chain(middle).min_by_key(hidden).unwrap_or(Align2::RIGHT_TOP)
+    let cost = |align: Align2| {
+        let card = align.anchor_size(card_position(view, align), CARD);
+        let hidden = |points: &[Pos2]| points.iter().filter(|at| card.contains(**at)).count() as f32;
+        let part = hidden(body) / body.len().max(1) as f32;
+        if card.contains(at) { f32::INFINITY } else { part + TIP * hidden(tips) }
+    };
+    let costs = corners.into_iter().chain(middle).map(|align| (align, cost(align)));
+    costs.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(Align2::RIGHT_TOP, |(align, _)| align)
 }
 
 /// Shows the card of a pinned point at the window position `at`, with this alignment in the view. `is_kept` is `true` if
@@ -298,11 +304,25 @@ mod tests {
     fn a_card_hides_nothing() {
         let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 738.0));
         let nodes = (0..=40_u8).flat_map(|i| [330.0, 374.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
-        let tip = pos2(919.0, 422.0);
-        for at in nodes.clone() {
-            let align = card_align(view, nodes.clone(), &[at, tip]);
+        let (nodes, tip) = (nodes.collect::<Vec<_>>(), pos2(919.0, 422.0));
+        for &at in &nodes {
+            let align = card_align(view, &nodes, at, &[tip]);
             let card = align.anchor_size(card_position(view, align), CARD);
-            assert!(nodes.clone().chain([tip]).all(|at| !card.contains(at)), "{at:?}: {card:?}");
+            assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
+        }
+    }
+
+    /// In a low view a card hides the tip of an arrow rather than a third of the beam.
+    #[test]
+    fn a_card_in_a_low_view_hides_little_of_a_beam() {
+        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 536.0));
+        let nodes = (0..=40_u8).flat_map(|i| [196.0, 216.0, 236.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
+        let (nodes, tips) = (nodes.collect::<Vec<_>>(), [pos2(919.0, 290.0), pos2(490.0, 290.0)]);
+        for &at in nodes.iter().filter(|at| !(340.0..660.0).contains(&at.x)) {
+            let align = card_align(view, &nodes, at, &tips);
+            let card = align.anchor_size(card_position(view, align), CARD);
+            let hidden = nodes.iter().filter(|at| card.contains(**at)).count();
+            assert!(!card.contains(at) && 6 * hidden < nodes.len(), "{at:?}: {card:?} hides {hidden}");
         }
     }
 }

@@ -432,7 +432,14 @@ impl BodyView {
                 Load::Force { place: Place::At(at), .. } => content.mesh().locate((*at).into()),
                 _ => None,
             });
-            self.menu = self.pointer.over_body().map(|(point, _)| point).or(of_handle);
+            // The marks of supports are beside the body.
+            let beside = || {
+                let at = response.interact_pointer_pos()? - self.rect.center();
+                let at = self.camera().to_world([f64::from(at.x), f64::from(at.y)]);
+                let outline = &content.session.geometry().boundary;
+                content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera().scale)
+            };
+            self.menu = self.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
@@ -482,6 +489,7 @@ impl BodyView {
         if let Some((point, at)) = self.pointer.over_body()
             && !egui::Popup::is_any_open(ui.ctx())
             && let point = rounded(content, point)
+            && self.probe != Some(point)
             && let Some(u) = probe::place(content.mesh(), shown.displacement(), point)
         {
             probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
@@ -496,9 +504,9 @@ impl BodyView {
         let align = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
             || {
                 let projection = self.projection();
-                let arrows = self.arrows(content).into_iter().map(|arrow| arrow.tip());
-                let shown: Vec<Pos2> = std::iter::once(at).chain(arrows).collect();
-                probe::card_align(self.rect, self.body.points().iter().map(|point| projection.point(*point)), &shown)
+                let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
+                let body = self.body.points().iter().map(|point| projection.point(*point)).collect::<Vec<_>>();
+                probe::card_align(self.rect, &body, at, &tips)
             },
             |(_, align)| align,
         );

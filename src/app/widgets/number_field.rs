@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use egui::text_edit::TextEditState;
-use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Response, Slider, SliderClamping, Ui};
+use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Rect, Response, Slider, SliderClamping, Ui, UiBuilder};
 
 use crate::app::language::{fill, said, tr};
 use crate::app::widgets::load_scale::LoadScale;
@@ -116,7 +116,7 @@ impl NumberField {
             .inner;
         ui.spacing_mut().slider_width = ui.available_width();
         let (response, slid) = self.show_slider(ui, value);
-        let response = response.labelled_by(label.id);
+        let (slider, response) = (response.rect, response.labelled_by(label.id));
         if response.has_focus() && !response.dragged() {
             edited = self.stepped(ui, value).or(edited);
         } else if response.changed() {
@@ -145,7 +145,9 @@ impl NumberField {
             },
             (None, None) => None,
         };
-        show_message(ui, messages, self.label);
+        if let Some(message) = messages.get(self.label) {
+            show_over_slider(ui, message, slider);
+        }
         accepted.filter(|&new| new != value)
     }
 
@@ -244,6 +246,18 @@ pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
         let color = ui.visuals().error_fg_color;
         ui.add(egui::Label::new(egui::RichText::new(said(message)).color(color).small()).wrap());
     }
+}
+
+/// Shows a message over the slider of a field, so that it does not move the rows below.
+fn show_over_slider(ui: &mut Ui, message: &Sentence, slider: Rect) {
+    /// Space above and below the slider that belongs to the field, points: two lines of the message have room.
+    const ABOVE: f32 = 5.0;
+    const BELOW: f32 = 7.0;
+    let place = Rect::from_x_y_ranges(slider.x_range(), slider.top() - ABOVE..=slider.bottom() + BELOW);
+    let mut over = ui.new_child(UiBuilder::new().max_rect(place));
+    over.painter().rect_filled(place, 0.0, over.visuals().panel_fill);
+    let color = over.visuals().error_fg_color;
+    over.add(egui::Label::new(egui::RichText::new(said(message)).color(color).small()).wrap());
 }
 
 /// Returns `true` if a slider was double-clicked, or has the focus while Delete or Backspace is pressed.
