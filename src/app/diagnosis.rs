@@ -23,6 +23,14 @@ pub(crate) fn drift(simulation: &Simulation) -> Option<f64> {
     Some(motion.ledger().drift_of_input())
 }
 
+/// Formats an energy drift with its sign; rounding errors are 0.
+pub(crate) fn drift_text(drift: f64) -> String {
+    /// Largest drift, percent, that is a rounding error.
+    const ROUNDING: f64 = 1e-6;
+    let drift = 100.0 * drift;
+    if drift.abs() < ROUNDING { "0 %".to_owned() } else { percent(drift) }
+}
+
 /// Main source of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ErrorSource {

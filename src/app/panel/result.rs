@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, equilibrium_text, error_tip, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, equilibrium_text, error_tip, rho, stability};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -201,7 +201,7 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     let drift = drift(input.simulation);
-    row("Drift", drift.map_or_else(|| UNKNOWN.to_owned(), |drift| percent(100.0 * drift)), DRIFT_TIP);
+    row("Drift", drift.map_or_else(|| UNKNOWN.to_owned(), drift_text), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }

@@ -1,6 +1,8 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, doubt, drift, error_color, error_tip, is_large, rho, rho_number};
+use crate::app::diagnosis::{
+    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, rho, rho_number,
+};
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -179,7 +181,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
         },
         BarNumber {
             name: "DRIFT",
-            value: drift.map_or_else(|| UNKNOWN.to_owned(), |drift| percent(100.0 * drift)),
+            value: drift.map_or_else(|| UNKNOWN.to_owned(), drift_text),
             word: Cow::default(),
             tip: tr(DRIFT_TIP).to_owned(),
             color: if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text },

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use egui::Color32;
 
+use crate::app::diagnosis::drift_text;
 use crate::app::language::{count, fill, percent, said, tr};
 use crate::app::session::clock::FRAMES;
 use crate::app::widgets::palette::Palette;
@@ -153,7 +154,7 @@ impl Measured {
                     steps = part(|e| e.integration),
                     theory = part(|e| e.model),
                     duration = engineering(three_digits(study.duration), "s"),
-                    drift = percent(m.drift_of_input_percent)
+                    drift = drift_text(0.01 * m.drift_of_input_percent)
                 )
             }
             _ => String::new(),

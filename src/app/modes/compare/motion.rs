@@ -7,7 +7,8 @@ use nalgebra::Vector2;
 use super::grid::{self, Preset, grow};
 use super::panes::{self, ComparedPane, Condition, PaneChange, PaneDisplay, PaneInput, Panes};
 use super::setting::PaneSetting;
-use crate::app::language::{fill, joined, percent, said, sentence, tr};
+use crate::app::diagnosis::drift_text;
+use crate::app::language::{fill, joined, said, sentence, tr};
 use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::compared_motion::ComparedMotion;
 use crate::app::session::compared_solve::Equations;
@@ -330,11 +331,11 @@ fn numbers(pane: &MotionPane, first: Option<&MotionPane>) -> String {
         let frame = seconds / step / FRAMES;
         fill!("%{time} a frame", time = engineering(two_digits(frame), "s"))
     });
-    let drift = pane.simulation().and_then(Simulation::motion).map(Motion::ledger).map(|ledger| {
-        let drift = 100.0 * ledger.drift_of_input();
-        let text = if drift.abs() < 1e-6 { "0 %".to_owned() } else { percent(drift) };
-        fill!("drift %{drift}", drift = text)
-    });
+    let drift = pane
+        .simulation()
+        .and_then(Simulation::motion)
+        .map(Motion::ledger)
+        .map(|ledger| fill!("drift %{drift}", drift = drift_text(ledger.drift_of_input())));
     let apart = first.and_then(|first| first.motion.tip()).zip(pane.motion.tip()).map(|(first, own)| {
         fill!("%{distance} from pane 1", distance = engineering(three_digits((own - first).norm()), "m"))
     });
