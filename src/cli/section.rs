@@ -1,5 +1,6 @@
 //! Command `section`: section forces, and the stress along a cut.
 
+use std::cell::LazyCell;
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
@@ -54,10 +55,8 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         _ => forces_table(&sections),
     })?;
     // Diagrams and largest values do not miss a jump between the sections that were asked for.
-    let diagram = match along {
-        Some(_) => simulation.diagram_sections().map_err(refused)?,
-        None => Vec::new(),
-    };
+    let diagram = LazyCell::new(|| simulation.diagram_sections());
+    let diagram = || LazyCell::force(&diagram).as_ref().map_err(|error| refused(*error));
     outputs.write_picture(|| {
         Ok(match along {
             None => Drawing::stacked(sections.iter().flat_map(|cut| {
@@ -65,15 +64,16 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
                 section_chart::stress(cut, &scene, &within, &ToString::to_string).map(|figure| plot::figure(&figure))
             })),
             Some(_) => {
-                let within = section_chart::contexts(&diagram, &simulation);
-                let figures = section_chart::forces(&diagram, &scene, &within, &ToString::to_string);
+                let diagram = diagram()?;
+                let within = section_chart::contexts(diagram, &simulation);
+                let figures = section_chart::forces(diagram, &scene, &within, &ToString::to_string);
                 Drawing::stacked(figures.iter().map(plot::figure))
             }
         })
     })?;
     text::print(&match (json, along) {
         (true, _) => as_json(&scene, &simulation, &sections),
-        (false, Some(_)) => heading(&scene, &simulation) + &along_beam(&sections, &diagram, &simulation),
+        (false, Some(_)) => heading(&scene, &simulation) + &along_beam(&sections, diagram()?, &simulation),
         (false, None) => {
             let cuts: Vec<String> = sections.iter().map(|section| of_cut(section, &simulation)).collect();
             heading(&scene, &simulation) + &cuts.join("\n")
@@ -174,11 +174,9 @@ fn along_beam(sections: &[Section], diagram: &[Section], simulation: &Simulation
     }
     text.push('\n');
     for (component, within) in COMPONENTS.iter().zip(section_chart::contexts(diagram, simulation)) {
-        let value = |section: &Section| within.rounded((component.of)(&section.forces));
-        let largest = diagram.iter().max_by(|a, b| value(a).abs().total_cmp(&value(b).abs()));
-        if let Some(section) = largest {
-            let (value, x) = (engineering(value(section), component.unit), three_digits(section.line.at.x));
-            let _ = writeln!(text, "largest {}: {value}, at x = {}", component.symbol, engineering(x, "m"));
+        if let Some((value, x)) = section_chart::largest(diagram, component, &within) {
+            let (value, x) = (engineering(value, component.unit), engineering(three_digits(x), "m"));
+            let _ = writeln!(text, "largest {}: {value}, at x = {x}", component.symbol);
         }
     }
     text

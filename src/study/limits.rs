@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
+#[cfg(feature = "app")]
+use super::motion::steps::POWERS;
 use super::motion::steps::{StepResult, StepStudy};
 use super::progress::{StudyError, all_done, check};
 use super::{Effort, ProbeReference, Reference, parallel};
@@ -25,6 +27,12 @@ use crate::stress::LAW_HOLDS;
 
 /// Smallest and largest part of the scene's loads and prescribed displacements.
 pub const RANGE: [f64; 2] = [0.01, 10.0];
+/// Returns the smallest and the largest part of the time step of a motion.
+#[cfg(feature = "app")]
+pub(crate) fn time_step_range() -> [f64; 2] {
+    POWERS.map(|power| 2f64.powi(power))
+}
+
 /// Loads per decade.
 const PER_DECADE: i32 = 6;
 /// Further loads relative to a critical load, near which errors change within a few percent of the load.
@@ -390,8 +398,7 @@ impl Strip {
 
     /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger near the smallest load,
     /// and a wide range beyond where it is again; or the load from which it is within 5 %, or else up to which the method
-    /// converges; `None` if there is no such load.
-    /// `range` is that of the limits.
+    /// converges; `None` if there is no such load. `range` is that of the limits.
     #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
         /// Ratio of the loads that are near the smallest one.

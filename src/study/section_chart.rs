@@ -119,6 +119,12 @@ fn stress_of(
     }
 }
 
+/// Returns the largest value of a component in these sections, rounded within a context, and its position x, m.
+pub(crate) fn largest(sections: &[Section], component: &SectionComponent, within: &Context) -> Option<(f64, f64)> {
+    let values = sections.iter().map(|section| (within.rounded((component.of)(&section.forces)), section.line.at.x));
+    values.max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()))
+}
+
 /// Draws N, V and M along a beam, each with its largest value; `render` translates the names.
 #[must_use]
 pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 3] {
@@ -128,16 +134,15 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
         let value = |forces: &SectionForces| within.rounded(value(forces));
         let (ink, name) = (Ink::Method(scene.solver.method), render(&name.into()));
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
-        let largest = sections.iter().max_by(|a, b| value(&a.forces).abs().total_cmp(&value(&b.forces).abs()));
         let values = || sections.iter().map(|section| value(&section.forces));
         let [low, high] = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
         let is_constant = three_digits(low) == three_digits(high);
-        let largest = largest.map(|section| {
+        let largest = largest(sections, &COMPONENTS[i], &within).map(|(value, x)| {
             let at = match is_constant {
                 true => sentence!("constant"),
-                false => sentence!("largest, at %{at}", at = engineering(three_digits(section.line.at.x), "m")),
+                false => sentence!("largest, at %{at}", at = engineering(three_digits(x), "m")),
             };
-            row(render(&at), ink, Mark::Line, engineering(three_digits(value(&section.forces)), unit))
+            row(render(&at), ink, Mark::Line, engineering(three_digits(value), unit))
         });
         Figure {
             title: format!("{}: {name}", render(&scene.name.as_str().into())),

@@ -12,7 +12,7 @@ use crate::ui_interaction::{click, drag, harness, harness_of, on_body, shapes};
 use warpbeam::app::{Lab, Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
 use warpbeam::scene::{Axis, ElementKind, Load, MethodKind, Place};
-use warpbeam::{Field, PointValues};
+use warpbeam::{Field, PointValues, Scene};
 
 /// Returns all texts that are painted without a widget.
 fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
@@ -21,6 +21,15 @@ fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
         _ => None,
     });
     texts.collect()
+}
+
+/// Opens a window with a scene that is solved.
+fn solved_window(id: &str, scene: Scene) -> Harness<'static, Lab> {
+    let mut lab = lab_of(id, scene);
+    lab.solve();
+    let mut harness = window([1280.0, 800.0], lab);
+    harness.run();
+    harness
 }
 
 fn positions(lab: &Lab) -> Vec<Vector2<f64>> {
@@ -105,10 +114,7 @@ fn colours_follow_the_load_of_a_magnified_body() {
 /// The label at the pointer has the values of the card that a click opens there.
 #[test]
 fn a_hovered_point_has_the_values_of_its_card() {
-    let mut lab = lab_of("cantilever", scene("cantilever"));
-    lab.solve();
-    let mut harness = window([1280.0, 800.0], lab);
-    harness.run();
+    let mut harness = solved_window("cantilever", scene("cantilever"));
     for at in [Vector2::new(3.1374, 0.2113), Vector2::new(7.7137, -0.3276)] {
         let pos = on_body(harness.state(), at);
         harness.hover_at(pos);
@@ -130,10 +136,7 @@ fn a_hovered_point_has_the_values_of_its_card() {
 #[test]
 fn every_field_colours_the_body() {
     // The view has room for the outline of the reference once that is known.
-    let mut lab = lab_of("article", scene("article"));
-    lab.solve();
-    let mut harness = window([1280.0, 800.0], lab);
-    harness.run();
+    let mut harness = solved_window("article", scene("article"));
     let at = Vector2::new(1.1, 0.3);
     let pos = on_body(harness.state(), at);
     for field in Field::ALL {

@@ -157,13 +157,15 @@ pub(crate) fn without_solver(scene: &Scene) -> Scene {
 /// Returns the scene with default values of all settings that its limits do not depend on: they are those of every
 /// method and element at rest, and of every integrator in motion.
 pub(crate) fn without_methods(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
+    // An early stop has a strip of its own.
+    let stops = scene.analysis == Analysis::Static && scene.solver.accept_after > 0;
+    if stops { scene.clone() } else { with_default_methods(scene.clone()) }
+}
+
+/// Returns a scene with the default integrator, or with the default method and the first element.
+pub(crate) fn with_default_methods(mut scene: Scene) -> Scene {
     if scene.analysis == Analysis::Dynamic {
         scene.dynamics.integrator = DynamicsSettings::default().integrator;
-        return scene;
-    }
-    // An early stop has a strip of its own.
-    if scene.solver.accept_after > 0 {
         return scene;
     }
     let first = scene.elements().next().unwrap_or_default();

@@ -1,13 +1,12 @@
 //! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
-use egui::{Align, Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, pos2, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
-use crate::app::widgets::palette::BODY;
-use crate::app::widgets::text::boxed_text;
+use crate::app::widgets::text::{boxed_text, text_size};
 use crate::assembly::System;
 use crate::format::{engineering, round_down, three_digits};
 use crate::mesh::Mesh;
@@ -263,7 +262,7 @@ impl Arrow {
         }
         let label = engineering(self.magnitude, "N");
         let (mut anchor, mut at) = label_place(tip, direction);
-        let size = painter.layout_no_wrap(label.clone(), FontId::proportional(BODY), faint).size();
+        let size = text_size(painter, &label);
         if let Some(legend) = legend.filter(|legend| legend.intersects(anchor.anchor_size(at, size).expand(4.0))) {
             let is_on_top = legend.center().y < view.center().y;
             (anchor, at) = match is_on_top {

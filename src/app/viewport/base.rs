@@ -112,8 +112,7 @@ impl Bases<'_> {
         if let Some(nearest) = near.min_by(|(_, a), (_, b)| distance(*a).total_cmp(&distance(*b))) {
             return Some(nearest);
         }
-        let from_center = pointer - self.projection.rect.center();
-        let world = self.projection.camera.to_world([f64::from(from_center.x), f64::from(from_center.y)]);
+        let world = self.projection.place(pointer);
         let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
         if matches!(object, Object::Support(_)) {

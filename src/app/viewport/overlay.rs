@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::text::boxed_text;
+use crate::app::widgets::text::{boxed_text, text_size};
 use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
@@ -187,26 +187,31 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
         let below = on_top.map_or(0.0, |legend| legend.bottom() - rect.top());
         weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
-        probes(painter, &projection, overlay, visuals);
-        sections(painter, &projection, overlay, &palette, visuals);
+        let named: Vec<(Pos2, &str)> = named_probes(&projection, overlay).collect();
+        probes(painter, &named, visuals);
+        sections(painter, &projection, overlay, &named, &palette, visuals);
     }
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
-fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+fn sections(
+    painter: &Painter,
+    projection: &Projection,
+    overlay: &Overlay<'_>,
+    named: &[(Pos2, &str)],
+    palette: &Palette,
+    visuals: &Visuals,
+) {
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
     let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
-    let mut taken: Vec<Rect> = named_probes(projection, overlay)
-        .map(|(at, name)| {
-            Align2::LEFT_BOTTOM.anchor_size(
-                at + PROBE_NAME,
-                painter.layout_no_wrap(name.to_owned(), FontId::proportional(BODY), palette.text).size(),
-            )
-        })
-        .collect();
+    if overlay.sections.is_empty() {
+        return;
+    }
+    let name = |&(at, name): &(Pos2, &str)| PROBE_ANCHOR.anchor_size(at + PROBE_NAME, text_size(painter, name));
+    let mut taken: Vec<Rect> = named.iter().map(name).collect();
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
         let [from, to] = [0, 1].map(|i| projection.point(end(i)));
@@ -246,7 +251,7 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
             (false, _) => (i + 1).to_string(),
         };
         // A label moves up from one that it would cover.
-        let size = painter.layout_no_wrap(label.clone(), FontId::proportional(BODY), color).size();
+        let size = text_size(painter, &label);
         let mut at = end + outward * (OUTSIDE + 4.0);
         let place = |at| anchor.anchor_size(at, size).expand(4.0);
         while taken.iter().any(|other: &Rect| other.intersects(place(at))) {
@@ -257,8 +262,9 @@ fn sections(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-/// Position of the name of a probe beside its point.
+/// Position of the name of a probe beside its point, and its anchor.
 const PROBE_NAME: Vec2 = vec2(8.0, -4.0);
+const PROBE_ANCHOR: Align2 = Align2::LEFT_BOTTOM;
 
 /// Returns the positions of the probes at points, with their names. Those of edges are at the arrows of the loads, as a
 /// rule.
@@ -272,12 +278,12 @@ fn named_probes<'a>(projection: &Projection, overlay: &Overlay<'a>) -> impl Iter
 }
 
 /// Marks the probes at points, with their names.
-fn probes(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, visuals: &Visuals) {
+fn probes(painter: &Painter, named: &[(Pos2, &str)], visuals: &Visuals) {
     const RADIUS: f32 = 3.5;
     let color = visuals.strong_text_color();
-    for (at, name) in named_probes(projection, overlay) {
+    for &(at, name) in named {
         painter.circle(at, RADIUS, visuals.extreme_bg_color, Stroke::new(1.5, color));
-        boxed_text(painter, at + PROBE_NAME, Align2::LEFT_BOTTOM, name, visuals, color, 160.0);
+        boxed_text(painter, at + PROBE_NAME, PROBE_ANCHOR, name, visuals, color, 160.0);
     }
 }
 

@@ -10,6 +10,7 @@ use crate::app::session::Grab;
 use crate::app::viewport::base::{self, Base, HotBase, Object};
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
 use crate::app::viewport::probe;
+use crate::app::viewport::projection::Projection;
 use crate::mesh::{MaterialPoint, Mesh, Segment};
 use crate::render::Camera;
 
@@ -132,8 +133,7 @@ pub(crate) struct HitTargets<'a> {
 impl HitTargets<'_> {
     /// Returns the position in the plane of a point of the view, m.
     fn place(&self, response: &Response, at: Pos2) -> Vector2<f64> {
-        let at = at - response.rect.center();
-        self.camera.to_world([f64::from(at.x), f64::from(at.y)])
+        Projection { camera: self.camera, rect: response.rect }.place(at)
     }
 
     /// Returns the vector from a material point to a position in the plane, m; `None` if the mesh has no such point.

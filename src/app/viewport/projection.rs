@@ -23,6 +23,12 @@ impl Projection {
         self.rect.center() + vec2(x, y)
     }
 
+    /// Returns the point at a window position, m.
+    pub(crate) fn place(&self, at: Pos2) -> Vector2<f64> {
+        let at = at - self.rect.center();
+        self.camera.to_world([f64::from(at.x), f64::from(at.y)])
+    }
+
     /// Returns the part of a segment that is in or near the view. Coordinates far outside would lose their precision as
     /// `f32`.
     pub(crate) fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {

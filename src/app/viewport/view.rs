@@ -434,8 +434,7 @@ impl BodyView {
             });
             // The marks of supports are beside the body.
             let beside = || {
-                let at = response.interact_pointer_pos()? - self.rect.center();
-                let at = self.camera().to_world([f64::from(at.x), f64::from(at.y)]);
+                let at = self.projection().place(response.interact_pointer_pos()?);
                 let outline = &content.session.geometry().boundary;
                 content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera().scale)
             };

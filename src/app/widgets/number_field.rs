@@ -145,8 +145,8 @@ impl NumberField {
             },
             (None, None) => None,
         };
-        if let Some(message) = messages.get(self.label) {
-            show_over_slider(ui, message, slider);
+        if messages.contains_key(self.label) {
+            show_over_slider(ui, messages, self.label, slider);
         }
         accepted.filter(|&new| new != value)
     }
@@ -248,16 +248,15 @@ pub(crate) fn show_message(ui: &mut Ui, messages: &Messages, label: &str) {
     }
 }
 
-/// Shows a message over the slider of a field, so that it does not move the rows below.
-fn show_over_slider(ui: &mut Ui, message: &Sentence, slider: Rect) {
+/// Shows the message of a field over its slider, so that it does not move the rows below.
+fn show_over_slider(ui: &mut Ui, messages: &Messages, label: &str, slider: Rect) {
     /// Space above and below the slider that belongs to the field, points: two lines of the message have room.
     const ABOVE: f32 = 5.0;
     const BELOW: f32 = 7.0;
     let place = Rect::from_x_y_ranges(slider.x_range(), slider.top() - ABOVE..=slider.bottom() + BELOW);
     let mut over = ui.new_child(UiBuilder::new().max_rect(place));
     over.painter().rect_filled(place, 0.0, over.visuals().panel_fill);
-    let color = over.visuals().error_fg_color;
-    over.add(egui::Label::new(egui::RichText::new(said(message)).color(color).small()).wrap());
+    show_message(&mut over, messages, label);
 }
 
 /// Returns `true` if a slider was double-clicked, or has the focus while Delete or Backspace is pressed.

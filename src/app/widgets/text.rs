@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Visuals, vec2};
+use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Vec2, Visuals, vec2};
 
 use crate::app::widgets::palette::BODY;
 
@@ -31,6 +31,11 @@ pub(crate) fn boxed_text(
     let rect = Rect::from_min_size(corner, galley.size());
     painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(rect.min, galley, color);
+}
+
+/// Returns the size of a text on a box in one line.
+pub(crate) fn text_size(painter: &Painter, text: &str) -> Vec2 {
+    painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::PLACEHOLDER).size()
 }
 
 /// Paints semibold text with a font that has only one weight: drawn twice, 0.45 points apart.

@@ -15,7 +15,7 @@ use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
 
 /// Powers of two of the shortest and the longest time step, relative to the scene's.
-const POWERS: [i32; 2] = [-4, 3];
+pub(in crate::study) const POWERS: [i32; 2] = [-4, 3];
 /// Largest number of steps of a motion; shorter time steps are not measured.
 const MAX_STEPS: f64 = 4000.0;
 

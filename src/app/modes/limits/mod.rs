@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::session::Session;
-use crate::app::session::facts::without_methods;
+use crate::app::session::facts::with_default_methods;
 use crate::app::view_options::ViewOptions;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::legend;
@@ -179,29 +179,28 @@ impl LimitMap {
 fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
     /// Relative rounding error of loads.
     const ROUNDING: f64 = 1e-9;
-    /// Parts of the time step of a motion whose limits are kept.
-    const STEPS: [f64; 2] = [0.0625, 8.0];
     let stops = |scene: &Scene| (scene.solver.accept_after, scene.element(), scene.solver.method);
     if scene.solver.accept_after > 0 && stops(scene) != stops(base) {
         return None;
     }
     let moves = scene.analysis == Analysis::Dynamic;
     let alike = |scene: &Scene| {
-        let mut own = scene.clone();
+        let mut own = with_default_methods(scene.clone());
         own.solver.accept_after = 0;
         if moves {
             own.dynamics.time_step = base.dynamics.time_step;
         } else {
             own.scale_loads(0.0);
         }
-        without_methods(&own)
+        own
     };
     if alike(base) != alike(scene) {
         return None;
     }
     if moves {
         let part = scene.dynamics.time_step / base.dynamics.time_step;
-        return Some(part).filter(|part| (STEPS[0]..=STEPS[1]).contains(part));
+        let [shortest, longest] = limits::time_step_range();
+        return (shortest..=longest).contains(&part).then_some(part);
     }
     let [full, own] = [base, scene].map(|scene| load_values(scene).collect::<Vec<f64>>());
     let largest = full.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
