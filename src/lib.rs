@@ -132,8 +132,7 @@ mod mesh;
 pub mod method;
 mod model;
 #[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod plot;
+mod plot;
 mod progress;
 #[cfg(feature = "app")]
 #[doc(hidden)]

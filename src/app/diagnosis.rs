@@ -238,7 +238,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
     }
-    moved_points(simulation).iter().for_each(|point| add(said(point)));
+    moved_points(simulation.scene(), simulation.mesh()).iter().for_each(|point| add(said(point)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         let is_new = |text: &String| remedy.is_none_or(|remedy| remedy.text != sentence(text));
         path.claims().map(|claim| said(&claim)).filter(is_new).for_each(&mut add);
@@ -322,7 +322,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         });
         return lines;
     }
-    lines.extend(moved_points(simulation).iter().map(|point| sentence(&said(point))));
+    lines.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(|point| sentence(&said(point))));
     if *simulation.status() == Status::Accepted {
         let residual = number(two_digits(simulation.residual()));
         let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));

@@ -53,6 +53,8 @@ pub(crate) struct Readout<'a> {
     pub is_computing_rho: bool,
     /// Fraction of the reference solution's computation that is done; `None` if none is in progress.
     pub reference_progress: Option<f64>,
+    /// Range of the displayed field's values in the drawn state.
+    pub value_range: [f64; 2],
     /// `true` if the last equilibrium is drawn in place of a state that diverges.
     pub shows_converged: bool,
     /// Measures of the reliability of the result.

@@ -98,7 +98,8 @@ pub(super) enum Command {
     /// element, or for each integrator.
     Limits(LimitsArgs),
     /// Choose element, mesh and method of a static scene for a required error and time: measure finer and finer meshes
-    /// on this machine until both are met, and print the choice and the reason.
+    /// on this machine until both are met, and print the choice and the reason. Every solve runs to its end; `study`
+    /// also measures solves that stop early.
     #[command(
         after_help = "Exit codes: 0 both are met, 1 no setting meets them (the best one is printed), 2 bad input or usage."
     )]

@@ -162,7 +162,7 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
         limits.push("the body passes through itself: contact is not modelled".to_owned());
     }
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
-    limits.extend(moved_points(simulation).iter().map(ToString::to_string));
+    limits.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
     limits
         .extend(simulation.motion().and_then(|motion| motion.ledger().drift_warning()).map(|drift| drift.to_string()));
@@ -194,7 +194,7 @@ fn limits_of_auto(scene: &Scene, solution: &Solution, reference: Option<&Referen
 pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let CurveArgs { scene, outputs, of } = args;
     let source = scene::Source::from(scene);
-    let scene = validated(&source)?;
+    let (scene, _) = validated(&source)?;
     // Report invalid names before computing the path.
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
     outputs.check()?;
@@ -244,7 +244,7 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let scene = validated(source)?;
+    let (scene, _) = validated(source)?;
     let watch = Watch::new();
     let (result, interrupted) = match scene.analysis {
         Analysis::Static => {
@@ -269,7 +269,7 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
 }
 
 pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let scene = validated(source)?;
+    let (scene, _) = validated(source)?;
     let watch = Watch::new();
     let memory = PeakMemory::watch();
     let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
@@ -298,7 +298,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let TuneArgs { scene, error, time, write } = args;
     write.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".toml"], ".toml"))?;
     let source = scene::Source::from(scene);
-    let scene = validated(&source)?;
+    let (scene, _) = validated(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
     let demand = Demand { max_error_percent: error, max_time_ms: time };
     let watch = Watch::new();

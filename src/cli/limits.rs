@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
 use super::progress::Watch;
-use super::{CliError, json, named, simulate, text};
+use super::{CliError, json, named, text, validated};
 use crate::format::{engineering, three_digits};
 use crate::plot::{self, AxisScale};
 use crate::scene::{self, Scene};
@@ -20,9 +20,8 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let LimitsArgs { scene, json, outputs, linear } = args;
     let source = scene::Source::from(scene);
     outputs.check()?;
-    let (scene, simulation) = simulate(&source)?;
-    let moved: Vec<String> = moved_points(&simulation).iter().map(ToString::to_string).collect();
-    drop(simulation);
+    let (scene, system) = validated(&source)?;
+    let moved: Vec<String> = moved_points(&scene, system.mesh()).iter().map(ToString::to_string).collect();
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);

@@ -211,12 +211,12 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
 }
 
 /// Opens a scene, and checks that it can be simulated.
-fn validated(source: &scene::Source) -> Result<Scene, CliError> {
+fn validated(source: &scene::Source) -> Result<(Scene, Arc<System>), CliError> {
     let scene = scene::open(source)?;
     let problem = System::for_display(&scene).and_then(|system| Problem::new(&scene, Arc::new(system)));
     let problem = problem.map_err(|error| refused(source, error.into()))?;
     warn_of_mesh(source, &scene, problem.system());
-    Ok(scene)
+    Ok((scene, problem.system().clone()))
 }
 
 /// Adds the place in the scene file to the reason for which a scene cannot be simulated.

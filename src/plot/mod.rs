@@ -13,6 +13,8 @@ pub use axes::AxisScale;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;
-pub use trade::{LARGEST_ERROR, SMALLEST_ERROR, motion_study, scaling, study};
+#[cfg(feature = "app")]
+pub use trade::{LARGEST_ERROR, SMALLEST_ERROR};
+pub use trade::{motion_study, scaling, study};
 #[cfg(feature = "app")]
 pub(crate) use {axes::ScaledAxis, limits::rating_color};

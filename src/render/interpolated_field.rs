@@ -216,11 +216,6 @@ impl InterpolatedField {
             }
         }
     }
-
-    /// Returns the range of values that the colour map covers; see [`Field::range`].
-    pub(crate) fn range(&self, mesh: &Mesh) -> [f64; 2] {
-        self.field.range(self.largest(mesh))
-    }
 }
 
 /// Returns a weighted sum of components; `None` if one is missing or the sum is not finite.

@@ -355,7 +355,7 @@ impl Meshes {
             Some(beam) => {
                 let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
                 let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
-                let moved = points_off_nodes(scene, &meshes.mesh()?);
+                let moved = moved_points(scene, &meshes.mesh()?);
                 Ok((meshes, moved))
             }
             None => {
@@ -370,7 +370,7 @@ impl Meshes {
                     return Err(StudyError::TooFine { elements: own.element_count() });
                 }
                 // The same nodes are used for the scene's points on every mesh, including the scene's own.
-                let moved = points_off_nodes(scene, &own);
+                let moved = moved_points(scene, &own);
                 snap(scene, &own);
                 let straight = if own.element() == element {
                     own
@@ -442,14 +442,10 @@ fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
     supports.chain(loads).collect()
 }
 
-/// Returns the points of a simulation's scene, of supports and forces that act on nodes, at which its mesh has no node.
+/// Returns the points of a scene, of supports and forces that act on nodes, whose nearest node of its mesh is farther away
+/// than rounding errors.
 #[must_use]
-pub fn moved_points(simulation: &Simulation) -> Vec<MovedPoint> {
-    points_off_nodes(simulation.scene(), simulation.system().mesh())
-}
-
-/// Returns the points of a scene whose nearest node is farther away than rounding errors.
-fn points_off_nodes(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
+pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();
     let on_nodes = points(scene).into_iter().filter(|point| point.acts_on_node(mesh));

@@ -439,6 +439,13 @@ impl Strip {
             (None, end) if percent.is_none() && (end.is_none() || self.converges_again_from(range).is_some()) => {
                 Some(sentence!("not within %{percent} %", percent = number(USABLE)))
             }
+            // It does not converge beyond.
+            (None, Some(factor))
+                if let Some(percent) =
+                    percent.filter(|_| self.last_known().is_some_and(|(last, _)| last == factor)) =>
+            {
+                Some(sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor)))
+            }
             (None, Some(0.0)) if self.integrator.is_some() => {
                 Some(sentence!("not at %{load}", load = load_text(axis, range[0])))
             }

@@ -33,7 +33,7 @@ pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
     CriticalLoad, Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text,
 };
-pub use motion::MotionStudy;
+pub use motion::{MotionStudy, time_of_motion};
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Ranked, Ranking};
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]

@@ -1059,6 +1059,8 @@ fn integrators_are_compared_in_panes() {
     wait(&mut harness, "a second of motion", |lab| times(lab).iter().all(|t| *t > 1.0));
     let all = times(harness.state());
     assert!(all.iter().all(|t| (t - all[0]).abs() < 1e-9), "one clock: {all:?}");
+    // The motions wait while their times are measured.
+    assert!(harness.state().motion_panes().iter().all(|pane| pane.frame_seconds().is_some_and(|time| time > 0.0)));
     let drift = |lab: &Lab, kind: IntegratorKind| {
         let pane = lab.motion_panes().iter().find(|pane| pane.setting().integrator == Some(kind)).unwrap();
         let motion = pane.simulation().unwrap().motion().unwrap();

@@ -8,7 +8,6 @@ use crate::app::readout::Readout;
 use crate::app::view_options::Magnification;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::text::with_keys;
-use crate::render::interpolated_field::InterpolatedField;
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::sentence;
 use crate::simulation::Field;
@@ -47,14 +46,14 @@ pub(super) fn options(
         .on_hover_text(tr("Keep the ends of the colour map fixed; otherwise they follow the values"))
         .changed()
     {
-        view.fixed_range = fixed.then(|| value_range(input, view));
+        view.fixed_range = fixed.then_some(input.value_range);
     }
     if let Some(range) = view.fixed_range {
         let (factor, unit) = view.field.display_unit();
         let span = limits::Limit { unit, min: -1e30, max: 1e30 };
         // The range of the current values, extended by half its width at both ends. It does not depend on the fixed
         // range, so the slider does not change while it is dragged.
-        let [low, high] = value_range(input, view).map(|end| factor * end);
+        let [low, high] = input.value_range.map(|end| factor * end);
         let span_now = high - low;
         let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
@@ -183,13 +182,4 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             }
         }
     });
-}
-
-/// Returns the range of the displayed field.
-fn value_range(input: &Readout<'_>, view: &ViewOptions) -> [f64; 2] {
-    let (simulation, mut field) = (input.simulation, InterpolatedField::default());
-    let mesh = simulation.system().mesh();
-    let reference = input.reference.map_or_else(Vec::new, |reference| reference.displacements_at(mesh.nodes()));
-    field.update(simulation, view.field, view.point_values(), &reference);
-    field.range(mesh)
 }

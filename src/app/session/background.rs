@@ -130,6 +130,11 @@ impl Background {
     pub(super) fn earlier_version(&mut self) -> Option<&mut Version> {
         self.work.rollback().map(|rollback| &mut rollback.version)
     }
+
+    /// Returns `true` while the scene of a newly opened document is not displayed yet.
+    pub(super) fn opens_document(&mut self) -> bool {
+        self.work.rollback().is_some_and(|rollback| rollback.is_another_document)
+    }
 }
 
 impl Session {

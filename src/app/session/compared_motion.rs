@@ -1,9 +1,8 @@
-//! Motion of one of several compared settings of a scene, whose time steps are timed.
+//! Motion of one of several compared settings of a scene.
 
 use std::sync::Arc;
 
 use nalgebra::Vector2;
-use web_time::Instant;
 
 use crate::app::session::compared_solve::Equations;
 use crate::app::task::background_solve::BackgroundSolve;
@@ -25,14 +24,12 @@ pub(crate) struct ComparedMotion {
     geometry: Option<Arc<DisplayGeometry>>,
     /// Reason for which there is no simulation.
     refused: Option<Sentence>,
-    /// Computing time of a step, s: an exponentially weighted mean.
-    seconds: Option<f64>,
 }
 
 impl ComparedMotion {
-    /// Returns the time step of the scene, s; `None` before the first [`Self::set_scene`].
-    pub(crate) fn time_step(&self) -> Option<f64> {
-        self.scene.as_ref().map(|scene| scene.dynamics.time_step)
+    /// Returns the scene; `None` before the first [`Self::set_scene`].
+    pub(crate) fn scene(&self) -> Option<&Scene> {
+        self.scene.as_ref()
     }
 
     /// Returns the simulation; `None` if the scene cannot be set up.
@@ -43,11 +40,6 @@ impl ComparedMotion {
     /// Returns the reason for which there is no motion, or for which it has stopped.
     pub(crate) fn failure(&self) -> Option<Sentence> {
         self.refused.clone().or_else(|| self.simulation()?.status().failure_sentence())
-    }
-
-    /// Returns the computing time of a step, s.
-    pub(crate) fn step_seconds(&self) -> Option<f64> {
-        self.seconds
     }
 
     /// Returns `true` if there is a motion that has not become unstable.
@@ -86,7 +78,7 @@ impl ComparedMotion {
         let made = match self.simulation.take().filter(|_| goes_on) {
             Some(mut simulation) => simulation.change_scene(&wanted).map(|()| simulation),
             None => {
-                (self.setting_up, self.geometry, self.seconds) = (None, None, None);
+                (self.setting_up, self.geometry) = (None, None);
                 let model = Equations::of(equations, &wanted).map_or(Model::New, Model::Equations);
                 if wanted.unknowns() > MAX_PANE_UNKNOWNS {
                     self.set_up(&wanted, model);
@@ -141,15 +133,11 @@ impl ComparedMotion {
 
     /// Makes one time step, unless the motion has become unstable.
     pub(crate) fn step(&mut self) {
-        const FADING: f64 = 0.95;
-        if !self.is_sound() {
-            return;
+        if self.is_sound()
+            && let Some(simulation) = &mut self.simulation
+        {
+            simulation.step();
         }
-        let Some(simulation) = &mut self.simulation else { return };
-        let begun = Instant::now();
-        simulation.step();
-        let seconds = begun.elapsed().as_secs_f64();
-        self.seconds = Some(self.seconds.map_or(seconds, |mean| FADING * mean + (1.0 - FADING) * seconds));
     }
 
     /// Returns the displacement of the first probe, m.
@@ -174,11 +162,11 @@ mod tests {
         assert!(motion.set_scene(fall(9.81, IntegratorKind::TrBdf2), &[]));
         (0..5).for_each(|_| motion.step());
         let tip = motion.tip().unwrap();
-        assert!(tip.y < 0.0 && motion.step_seconds().is_some());
+        assert!(tip.y < 0.0);
         assert!(!motion.set_scene(fall(20.0, IntegratorKind::TrBdf2), &[]), "the motion continues");
         assert_eq!(motion.tip(), Some(tip));
         assert!(motion.set_scene(fall(20.0, IntegratorKind::ImplicitEuler), &[]));
-        assert!(motion.step_seconds().is_none() && motion.tip() == Some(Vector2::zeros()));
+        assert_eq!(motion.tip(), Some(Vector2::zeros()));
     }
 
     /// Neither another integrator nor another damping makes the mesh again; a large motion is set up in the background.
@@ -220,10 +208,9 @@ mod tests {
             motion.step();
         }
         assert!(motion.failure().is_some() && !motion.is_sound());
-        let (stopped, seconds) = (motion.simulation().unwrap().state().clone(), motion.step_seconds());
+        let stopped = motion.simulation().unwrap().state().clone();
         motion.step();
         assert!(*motion.simulation().unwrap().state() == stopped, "an unstable motion makes no more steps");
-        assert_eq!(motion.step_seconds(), seconds, "a step that was not made is not timed");
         motion.reset();
         assert!(motion.is_sound() && motion.failure().is_none());
     }

@@ -16,6 +16,7 @@ use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
 use crate::study::{
     Effort, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, SolveFromRest, StudyError, time_from_rest,
+    time_of_motion,
 };
 
 /// Load–displacement curve of a scene.
@@ -43,6 +44,8 @@ facts! {
     RhoFact by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
     /// Time and result of a solve from rest.
     TimeFact = "time": SolveFromRest, |scene, observe| Ok(time_from_rest(scene, observe));
+    /// Computing time per simulated second of a motion, ms.
+    MotionTimeFact = "motion-time": f64, |scene, observe| Ok(time_of_motion(scene, observe));
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, observe| Ok(natural_frequency(scene, observe));
 }

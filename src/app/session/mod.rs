@@ -390,6 +390,7 @@ impl Session {
         }
         let before = self.simulation.scene().clone();
         self.simulation.change_scene(&scene)?;
+        let is_another_document = self.background.opens_document();
         self.drop_background();
         if !has_mesh_of(&scene, &before) {
             self.geometry = Arc::new(DisplayGeometry::new(self.simulation.system().mesh()));
@@ -399,6 +400,10 @@ impl Session {
         self.scene_changed(&before);
         let known = self.linear.take();
         self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
+        if is_another_document {
+            self.start_document();
+            self.reset();
+        }
         Ok(())
     }
 

@@ -208,6 +208,18 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     assert!(tip(&session) > 1.0, "the pull lifts the tip");
     session.grab(Grab { release: true, ..Grab::default() });
     assert_eq!(numbers(&session), before);
+    // So has an iterate that has been accepted.
+    let mut accepting = cantilever(-100.0);
+    accepting.solver.accept_after = 2;
+    session.apply(Edit::Scene("Accept", Box::new(accepting))).unwrap();
+    session.solve(ShownFacts::default());
+    let accepted = numbers(&session);
+    session.grab(Grab { start: Some(point), ..Grab::default() });
+    (0..10).for_each(|_| session.iterate(1));
+    session.grab(Grab { release: true, ..Grab::default() });
+    assert!(numbers(&session) == accepted && !session.iterates(), "{:?}", accepted.0);
+    session.apply(Edit::Undo).unwrap();
+    session.solve(ShownFacts::default());
     // A load that has changed meanwhile counts.
     session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
     session.apply(with_force(&session, -200.0)).unwrap();
@@ -315,6 +327,20 @@ fn restored_edits_know_what_their_file_contained() {
         recovery.discard_left();
         recovery.keep(None).unwrap();
     }
+}
+
+/// A document whose body is too large to be displayed at once starts over, also where an edit makes the body small first.
+#[test]
+fn a_large_document_that_becomes_small_starts_over() {
+    let mut session = session(cantilever(-100.0));
+    session.solve(ShownFacts::default());
+    let large = large(6);
+    let document = Document::new(Source { name: "large".into(), assignments: Vec::new() }, large.clone());
+    session.apply(Edit::Restore(Box::new((document, large)))).unwrap();
+    assert!(session.is_working() && !session.take_changed().document);
+    let small = Edit::Scene("Cells along", Box::new(cantilever(-1000.0)));
+    assert!(session.apply(small).unwrap().document && !session.is_working());
+    assert!(session.iterates() && tip(&session) == 0.0, "it starts from rest");
 }
 
 /// Returns a cantilever with about this many thousand unknowns.

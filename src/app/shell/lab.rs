@@ -254,7 +254,7 @@ impl Lab {
     #[must_use]
     pub fn iterates(&self) -> bool {
         if self.compares_motions() {
-            return self.desk.session.is_running() && self.desk.motions.moves();
+            return self.desk.session.is_running() && self.desk.motions.moves() && !self.desk.motions.is_timing;
         }
         self.desk.session.iterates()
     }
@@ -333,6 +333,7 @@ impl Lab {
             is_computing_rho: facts.rho.is_pending(session.scene()),
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
+            value_range: viewport.body().value_range(),
             shows_converged: viewport.shows_converged(),
             scene: session.scene(),
             original: &session.document().original,

@@ -171,6 +171,11 @@ impl BodyMesh {
         self.map = palette.map(field);
     }
 
+    /// Returns the range of the field's values in the current state.
+    pub(crate) fn value_range(&self) -> [f64; 2] {
+        self.field.field().range(self.largest)
+    }
+
     /// Returns `true` if the field has a value at a drawn point.
     pub(crate) fn has_values(&self) -> bool {
         self.components.iter().any(Option::is_some)

@@ -1,8 +1,7 @@
 //! Values at the point under the pointer, and at a pinned point.
 
 use egui::{
-    Align2, Area, CollapsingHeader, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui, Vec2,
-    WidgetInfo, vec2,
+    Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 use nalgebra::{Matrix2, Vector2};
 
@@ -12,8 +11,12 @@ use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 
-/// Size of the card of a point while its matrices are folded, points.
-const CARD: Vec2 = vec2(300.0, 288.0);
+/// Size of the card of a point while its matrices are folded, points; of a card in a low view, whose values are in two
+/// columns.
+const CARD: Vec2 = vec2(300.0, 262.0);
+const LOW_CARD: Vec2 = vec2(520.0, 148.0);
+/// Height below which a view is low, and the smallest width of one in which a card has two columns, points.
+const LOW: Vec2 = vec2(600.0, 520.0);
 /// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;
 
@@ -164,14 +167,33 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
+/// Returns the number of columns of values on a card in a view.
+fn card_columns(view: Rect) -> usize {
+    if view.height() < LOW.y && view.width() >= LOW.x { 2 } else { 1 }
+}
+
+/// Returns the size of a card in a view, points.
+fn card_size(view: Rect) -> Vec2 {
+    if card_columns(view) == 1 { CARD } else { LOW_CARD }
+}
+
 /// Returns the position of a card with this alignment in a view.
 fn card_position(view: Rect, align: Align2) -> Pos2 {
     /// Room for the line key above, and for the colour bar and the status in the lower corners, points.
     const ABOVE: f32 = 44.0;
     const CORNER: f32 = 84.0;
     const SIDE: f32 = 14.0;
-    let below = if align == Align2::CENTER_BOTTOM { SIDE } else { CORNER };
-    align.pos_in_rect(&Rect::from_min_max(view.min + vec2(SIDE, ABOVE), view.max - vec2(SIDE, below)))
+    let ([left, right], below) =
+        if align == Align2::CENTER_BOTTOM { (beside(view), SIDE) } else { ([SIDE; 2], CORNER) };
+    align.pos_in_rect(&Rect::from_min_max(view.min + vec2(left, ABOVE), view.max - vec2(right, below)))
+}
+
+/// Returns the room left and right of a card at the lower side of a view for the status and the colour bar, points. In
+/// a low view the status is in the bar below, and the scale alone is in the left corner.
+fn beside(view: Rect) -> [f32; 2] {
+    const BAR: f32 = 290.0;
+    const SCALE: f32 = 96.0;
+    [if card_columns(view) == 2 { SCALE } else { BAR }, BAR]
 }
 
 /// Returns the alignment in a view with which a card hides least: not its point at `at`, as few of the points of a body as
@@ -179,12 +201,11 @@ fn card_position(view: Rect, align: Align2) -> Pos2 {
 pub(crate) fn card_align(view: Rect, body: &[Pos2], at: Pos2, tips: &[Pos2]) -> Align2 {
     /// Part of a body for which a tip is hidden.
     const TIP: f32 = 0.15;
-    /// Width of a view in which a card has room between the status and the colour bar, points.
-    const WIDE: f32 = 2.0 * 290.0 + CARD.x;
+    let size = card_size(view);
     let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-    let middle = Some(Align2::CENTER_BOTTOM).filter(|_| view.width() >= WIDE);
+    let middle = Some(Align2::CENTER_BOTTOM).filter(|_| view.width() >= beside(view).iter().sum::<f32>() + size.x);
     let cost = |align: Align2| {
-        let card = align.anchor_size(card_position(view, align), CARD);
+        let card = align.anchor_size(card_position(view, align), size);
         let hidden = |points: &[Pos2]| points.iter().filter(|at| card.contains(**at)).count() as f32;
         let part = hidden(body) / body.len().max(1) as f32;
         if card.contains(at) { f32::INFINITY } else { part + TIP * hidden(tips) }
@@ -206,21 +227,27 @@ pub(crate) fn show_card(
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
     let (id, position) = (egui::Id::unique("probe"), card_position(view, align));
-    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(align.anchor_size(position, CARD));
+    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(align.anchor_size(position, card_size(view)));
     painter.line_segment([at, card.clamp(at)], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
     paint_principal(painter, at, point, color);
     let area = Area::new(id).order(Order::Middle).pivot(align).fixed_pos(position).constrain_to(view);
-    let card =
-        area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, point, is_kept, axes)).inner);
+    let card = area.show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| card_content(ui, (point, is_kept), card_columns(view), axes)).inner
+    });
     card.inner
 }
 
-fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes) -> Option<CardRequest> {
+fn card_content(
+    ui: &mut Ui,
+    (point, is_kept): (&PointState, bool),
+    columns: usize,
+    axes: &mut Axes,
+) -> Option<CardRequest> {
     let mut request = None;
     ui.spacing_mut().item_spacing.y = 3.0;
-    let place = metres(point.rest);
+    let title = fill!("Point %{place}", place = metres(point.rest));
     let (kind, tip) = match point.values {
         PointValues::Recovered => (
             "recovered at the nodes",
@@ -228,14 +255,33 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
         ),
         PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
     };
+    let id = egui::Id::unique("probe matrices");
+    let mut shows_matrices = ui.memory(|memory| memory.data.get_temp(id)).unwrap_or(false);
+    let matrices = matrices_of(point);
+    let rows = rows_of(point, *axes);
+    let mut buttons = |ui: &mut Ui, axes: Axes| {
+        if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
+            return Some(CardRequest::Copy(copied_text(&title, point, axes, &rows)));
+        }
+        let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
+        if !is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
+            return Some(CardRequest::Keep);
+        }
+        let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+        ui.toggle_value(&mut shows_matrices, names).on_hover_text(tr("Shows these matrices"));
+        None
+    };
     ui.horizontal(|ui| {
-        ui.strong(fill!("Point %{place}", place = place.as_str()));
+        ui.strong(&title);
         let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
         close.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr("Close the card")));
         if close.clicked() {
             request = Some(CardRequest::Close);
         }
         ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
+        if columns > 1 {
+            request = request.take().or(buttons(ui, *axes));
+        }
     });
     // In linear theory the axes of the material do not rotate.
     if !point.is_linear {
@@ -246,52 +292,60 @@ fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, axes: &mut Axes)
             }
         });
     }
-    let rows = rows_of(point, *axes);
-    // Rows of text need less height than those of controls.
-    ui.spacing_mut().interact_size.y = 16.0;
-    Grid::new("probe values").num_columns(2).spacing([12.0, 1.0]).show(ui, |ui| {
-        for (name, text, tip) in &rows {
-            ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
-            ui.label(text).on_hover_text(tr(tip));
-            ui.end_row();
-        }
-    });
-    let matrices = [
-        ("F", &point.gradient, "Deformation gradient ∂x/∂X"),
-        ("R", &point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
-        ("S", &point.stretch, "Stretch of the polar decomposition F = R S"),
-    ];
-    // Linear theory has neither R nor S.
-    let matrices = &matrices[..if point.is_linear { 1 } else { 3 }];
-    let title = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
-    CollapsingHeader::new(title).id_salt("probe matrices").show(ui, |ui| {
-        Grid::new("probe matrices").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-            for (name, matrix, tip) in matrices {
-                ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
-                ui.label(RichText::new(matrix_rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
+    ui.scope(|ui| {
+        // Rows of text need less height than those of controls.
+        ui.spacing_mut().interact_size.y = 16.0;
+        let height = rows.len().div_ceil(columns);
+        Grid::new("probe values").num_columns(2 * columns).spacing([12.0, 1.0]).show(ui, |ui| {
+            for row in 0..height {
+                for (name, text, tip) in rows.iter().skip(row).step_by(height) {
+                    ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
+                    ui.label(text).on_hover_text(tr(tip));
+                }
                 ui.end_row();
             }
         });
     });
-    ui.horizontal(|ui| {
-        if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
-            let title = fill!("Point %{place}", place = place.as_str());
-            let axes = match *axes {
-                _ if point.is_linear => None,
-                Axes::Space => Some("space x, y"),
-                Axes::Material => Some("material X, Y"),
-            };
-            let axes = axes.map(|name| format!("{}\t{}", tr("Stress in the axes of"), tr(name)));
-            let rows = rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name)));
-            let lines = std::iter::once(title).chain(axes).chain(rows);
-            request = Some(CardRequest::Copy(lines.map(|line| line + "\n").collect()));
-        }
-        let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
-        if !is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
-            request = Some(CardRequest::Keep);
-        }
-    });
+    if columns == 1 {
+        ui.horizontal(|ui| request = request.take().or(buttons(ui, *axes)));
+    }
+    if shows_matrices {
+        Grid::new("probe matrices").spacing([12.0, 3.0]).show(ui, |ui| {
+            for (name, matrix, tip) in &matrices {
+                ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
+                ui.label(RichText::new(matrix_rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
+                if columns == 1 {
+                    ui.end_row();
+                }
+            }
+        });
+    }
+    ui.memory_mut(|memory| memory.data.insert_temp(id, shows_matrices));
     request
+}
+
+/// Returns the matrices of a point, with their names and tooltips.
+fn matrices_of(point: &PointState) -> Vec<(&'static str, Matrix2<f64>, &'static str)> {
+    let mut matrices = vec![
+        ("F", point.gradient, "Deformation gradient ∂x/∂X"),
+        ("R", point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
+        ("S", point.stretch, "Stretch of the polar decomposition F = R S"),
+    ];
+    // Linear theory has neither R nor S.
+    matrices.truncate(if point.is_linear { 1 } else { 3 });
+    matrices
+}
+
+/// Returns the values of a card as text, one on each line.
+fn copied_text(title: &str, point: &PointState, axes: Axes, rows: &[Row]) -> String {
+    let axes = match axes {
+        _ if point.is_linear => None,
+        Axes::Space => Some("space x, y"),
+        Axes::Material => Some("material X, Y"),
+    };
+    let axes = axes.map(|name| format!("{}\t{}", tr("Stress in the axes of"), tr(name)));
+    let rows = rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name)));
+    std::iter::once(title.to_owned()).chain(axes).chain(rows).map(|line| line + "\n").collect()
 }
 
 #[cfg(test)]
@@ -307,22 +361,21 @@ mod tests {
         let (nodes, tip) = (nodes.collect::<Vec<_>>(), pos2(919.0, 422.0));
         for &at in &nodes {
             let align = card_align(view, &nodes, at, &[tip]);
-            let card = align.anchor_size(card_position(view, align), CARD);
+            let card = align.anchor_size(card_position(view, align), card_size(view));
             assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
         }
     }
 
-    /// In a low view a card hides the tip of an arrow rather than a third of the beam.
+    /// In a low view a card hides the tip of an arrow rather than a part of the beam.
     #[test]
-    fn a_card_in_a_low_view_hides_little_of_a_beam() {
-        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 536.0));
+    fn a_card_in_a_low_view_hides_nothing_of_a_beam() {
+        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 456.0));
         let nodes = (0..=40_u8).flat_map(|i| [196.0, 216.0, 236.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
         let (nodes, tips) = (nodes.collect::<Vec<_>>(), [pos2(919.0, 290.0), pos2(490.0, 290.0)]);
-        for &at in nodes.iter().filter(|at| !(340.0..660.0).contains(&at.x)) {
+        for &at in &nodes {
             let align = card_align(view, &nodes, at, &tips);
-            let card = align.anchor_size(card_position(view, align), CARD);
-            let hidden = nodes.iter().filter(|at| card.contains(**at)).count();
-            assert!(!card.contains(at) && 6 * hidden < nodes.len(), "{at:?}: {card:?} hides {hidden}");
+            let card = align.anchor_size(card_position(view, align), card_size(view));
+            assert!(nodes.iter().all(|at| !card.contains(*at)), "{at:?}: {card:?}");
         }
     }
 }

@@ -234,7 +234,12 @@ pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
     match parse(text, limit.unit) {
         Ok(number) if number.is_finite() => limit.check(number).map(|()| number).map_err(|error| (&error).into()),
         Ok(_) | Err(UnitError::NoNumber { .. }) => {
-            Err((&limit.expected(&format!("\u{201c}{}\u{201d}", text.trim()))).into())
+            let example = editable(12.0, limit.unit);
+            Err(sentence!(
+                "expected a number, such as %{example}, got \u{201c}%{got}\u{201d}",
+                example,
+                got = text.trim()
+            ))
         }
         Err(error) => Err((&error).into()),
     }

@@ -4,7 +4,9 @@ use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
-use crate::app::session::facts::{CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, RhoFact, TimeFact};
+use crate::app::session::facts::{
+    CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, TimeFact,
+};
 use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
@@ -23,6 +25,7 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<LimitsFact>>(),
     entry::<FactWork<PathFact>>(),
     entry::<FactWork<TimeFact>>(),
+    entry::<FactWork<MotionTimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
     entry::<FactWork<ExactLine>>(),
     entry::<FactWork<RhoFact>>(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use nalgebra::Vector2;
+use web_time::Instant;
 
 use self::plan::{Job, MeshPlan, Plan, Samples, cells};
 pub use self::reference::MotionReference;
@@ -282,6 +283,12 @@ const RUNS: usize = 5;
 /// Number of steps after which the time of a shortened motion is known.
 const MIN_STEPS: u32 = 500;
 
+/// Longest time in which a displayed motion is measured, s, and the smallest number of its steps that are measured.
+const MAX_TIME_OF_MOTION: f64 = 0.3;
+const MIN_STEPS_OF_LARGE: f64 = 4.0;
+/// Number of steps after which a measured motion asks if it goes on: to ask takes time, too.
+const STEPS_BETWEEN_QUESTIONS: u32 = 16;
+
 /// Approximate fraction of a study's time spent on the reference solution.
 const REFERENCE_SHARE: f64 = 0.1;
 /// Approximate fraction of a study's time spent on the reference motion of every mesh.
@@ -506,19 +513,55 @@ impl FirstRun {
     /// Returns the computing time per simulated second, ms, measured by repeating the run.
     fn milliseconds(&self, studied: Studied<'_>, mesh: &Meshed) -> Result<f64, StudyError> {
         let mut simulation = Simulation::with_system(&self.setting.apply(studied.scene), mesh.system.clone())?;
-        simulation.keep_ledger(false);
-        // Warms up caches and clocks, and initialises everything that is computed once per simulation.
-        run(&mut simulation, self.steps.min(self.steps_of_sample));
-        let mut simulated = 0.0;
-        let runs = Runs { count: 1..=RUNS, enough: studied.plan.timing };
-        let time = median_time(runs, &mut simulation, Simulation::reset, |simulation| {
-            run(simulation, self.steps);
-            simulated = simulation.state().time();
-        });
-        // A motion that stops in its first step counts as long as that step.
-        let seconds = if simulated > 0.0 { simulated } else { self.setting.time_step };
-        Ok(time.as_secs_f64().max(Duration::from_nanos(1).as_secs_f64()) * 1e3 / seconds)
+        let warm_up = self.steps.min(self.steps_of_sample);
+        Ok(milliseconds_per_second(&mut simulation, warm_up, self.steps, studied.plan.timing, &|| true))
     }
+}
+
+/// Returns the computing time per simulated second of a scene's motion from its start, ms, measured over the time that a
+/// quick study simulates, or the beginning of it where it takes long; `None` for a scene at rest, and if the scene cannot be solved or the computation is cancelled.
+#[must_use]
+pub fn time_of_motion(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
+    let goes_on = || observe(Progress::at(0.0)).is_continue();
+    let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_some() && goes_on())?;
+    let plan = Extent::Quick.plan();
+    let steps = (Samples::of(scene, plan).ok()?.duration() / scene.dynamics.time_step).round().max(1.0);
+    let steps = if steps > f64::from(plan.most_steps) { MIN_STEPS } else { steps as u32 };
+    let begun = Instant::now();
+    run(&mut simulation, 1);
+    let of_step = begun.elapsed().as_secs_f64();
+    simulation.reset();
+    let steps = steps.min((MAX_TIME_OF_MOTION / of_step).max(MIN_STEPS_OF_LARGE) as u32);
+    let milliseconds = milliseconds_per_second(&mut simulation, 1, steps, plan.timing, &goes_on);
+    goes_on().then_some(milliseconds)
+}
+
+/// Returns the computing time per simulated second of the first `steps` steps of a motion, ms, without the energy
+/// ledger, after `warm_up` steps; it repeats them for the time `timing`, and stops when `goes_on` is `false`.
+fn milliseconds_per_second(
+    simulation: &mut Simulation,
+    warm_up: u32,
+    steps: u32,
+    timing: Duration,
+    goes_on: &dyn Fn() -> bool,
+) -> f64 {
+    simulation.keep_ledger(false);
+    // Warms up caches and clocks, and initialises everything that is computed once per simulation.
+    run(simulation, warm_up);
+    let step = simulation.scene().dynamics.time_step;
+    let mut simulated = 0.0;
+    let runs = Runs { count: 1..=RUNS, enough: timing };
+    let time = median_time(runs, simulation, Simulation::reset, |simulation| {
+        let mut left = steps;
+        while left > 0 && goes_on() {
+            run(simulation, left.min(STEPS_BETWEEN_QUESTIONS));
+            left = left.saturating_sub(STEPS_BETWEEN_QUESTIONS);
+        }
+        simulated = simulation.state().time();
+    });
+    // A motion that stops in its first step counts as long as that step.
+    let seconds = if simulated > 0.0 { simulated } else { step };
+    time.as_secs_f64().max(Duration::from_nanos(1).as_secs_f64()) * 1e3 / seconds
 }
 
 /// Computes up to `steps` steps, until the motion stops.

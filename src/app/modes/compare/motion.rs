@@ -12,6 +12,9 @@ use crate::app::language::{fill, joined, said, sentence, tr};
 use crate::app::session::clock::{FRAMES, RealTimeClock};
 use crate::app::session::compared_motion::ComparedMotion;
 use crate::app::session::compared_solve::Equations;
+use crate::app::session::facts::MotionTimeFact;
+use crate::app::task::keyed::Keyed;
+use crate::app::task::thread::POLL;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::widgets::palette::Palette;
@@ -28,6 +31,8 @@ pub struct MotionPane {
     setting: PaneSetting,
     motion: ComparedMotion,
     display: PaneDisplay,
+    /// Computing time per simulated second, ms.
+    time: Keyed<MotionTimeFact>,
 }
 
 impl MotionPane {
@@ -43,6 +48,18 @@ impl MotionPane {
         self.motion.simulation()
     }
 
+    /// Returns the computing time of a frame at 60 Hz, s; `None` until it has been measured.
+    #[must_use]
+    pub fn frame_seconds(&self) -> Option<f64> {
+        Some(self.time.get(self.motion.scene()?)? / 1e3 / FRAMES)
+    }
+
+    /// Requests the computing time; returns `true` while it is pending.
+    fn request_time(&mut self) -> bool {
+        let scene = self.motion.scene().filter(|_| self.motion.is_sound());
+        scene.is_some_and(|scene| self.time.request(scene))
+    }
+
     /// Returns the area of the body in the window, points.
     #[must_use]
     pub fn place(&self) -> Option<Rect> {
@@ -52,7 +69,7 @@ impl MotionPane {
 
 impl ComparedPane for MotionPane {
     fn new(setting: PaneSetting) -> Self {
-        Self { setting, motion: ComparedMotion::default(), display: PaneDisplay::default() }
+        Self { setting, motion: ComparedMotion::default(), display: PaneDisplay::default(), time: Keyed::default() }
     }
 
     fn own_setting(&self) -> PaneSetting {
@@ -98,6 +115,8 @@ pub(crate) struct MotionCompare {
     largest_displacement: f64,
     /// Playing time, s: longer than the simulated time in slow motion.
     played: f64,
+    /// `true` while the computing time of a pane is measured: the motions wait, because they would slow it down.
+    pub is_timing: bool,
 }
 
 impl Default for MotionCompare {
@@ -108,6 +127,7 @@ impl Default for MotionCompare {
             swept: None,
             largest_displacement: 0.0,
             played: 0.0,
+            is_timing: false,
         }
     }
 }
@@ -150,13 +170,13 @@ impl MotionCompare {
 
     /// Makes one time step in all panes.
     pub(crate) fn step(&mut self) {
-        let time_step = self.panes.list.iter().find_map(|pane| pane.motion.time_step());
+        let time_step = self.panes.list.iter().find_map(|pane| Some(pane.motion.scene()?.dynamics.time_step));
         self.played += time_step.unwrap_or_default() / self.clock.speed();
         self.motions().for_each(ComparedMotion::step);
     }
 
     /// Applies the scene, and makes the time steps that are due at `now`, s. All panes are at the same time: a slow one
-    /// slows all of them down, and they wait for those that are being set up. `own` are the equations of the body in
+    /// slows all of them down, and they wait for those that are being set up or timed. `own` are the equations of the body in
     /// Explore.
     pub(crate) fn advance(&mut self, scene: &Scene, own: &Equations, now: f64, running: bool) {
         let mut starts_over = false;
@@ -169,7 +189,7 @@ impl MotionCompare {
         if starts_over {
             self.reset();
         }
-        if !running || self.is_setting_up() || !self.moves() {
+        if !running || self.is_setting_up() || self.is_timing || !self.moves() {
             return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
@@ -247,6 +267,12 @@ impl MotionCompare {
         let whole = ui.available_rect_before_wrap();
         let layout = self.panes.lay_out(ui, 0);
         self.fit_camera(ui, input);
+        // One pane after the other is timed, after a drag.
+        self.is_timing =
+            !ui.input(|i| i.pointer.any_down()) && self.panes.list.iter_mut().any(MotionPane::request_time);
+        if self.is_timing {
+            ui.ctx().request_repaint_after(POLL);
+        }
         let interaction =
             self.panes.show(ui, &layout, (input, &[]), |panes, ui, number| header(panes, ui, number, input));
         let left = grid::magnification_key(ui, layout.key, self.panes.magnification);
@@ -320,17 +346,13 @@ fn result(ui: &mut Ui, name: &str, pane: &MotionPane, first: Option<&MotionPane>
     let spoken = format!("{name}: {text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(tr(
-        "Computing time of the last frames at 60 Hz, with drawing between them: frames in a row, as in Budget, may take \
-         half the time; energy that the integrator has added; distance of the first probe from the first pane's at the \
-         same time",
+        "Computing time of a frame at 60 Hz, measured as in Budget; energy that the integrator has added; distance of the \
+         first probe from the first pane's at the same time",
     ));
 }
 
 fn numbers(pane: &MotionPane, first: Option<&MotionPane>) -> String {
-    let cost = pane.motion.step_seconds().zip(pane.motion.time_step()).map(|(seconds, step)| {
-        let frame = seconds / step / FRAMES;
-        fill!("%{time} a frame", time = engineering(two_digits(frame), "s"))
-    });
+    let cost = pane.frame_seconds().map(|frame| fill!("%{time} a frame", time = engineering(two_digits(frame), "s")));
     let drift = pane
         .simulation()
         .and_then(Simulation::motion)

@@ -21,6 +21,8 @@ use crate::study::section_chart::{self, COMPONENTS, STRESSES};
 #[derive(Debug)]
 struct Cuts {
     of: (State, Scene),
+    /// `true` if the computation ended unexpectedly.
+    has_failed: bool,
     /// Sections of the scene.
     own: Vec<Result<Section, SectionError>>,
     /// Sections along the beam; none if the body has no axis.
@@ -37,6 +39,18 @@ impl Cuts {
             contexts: section_chart::contexts(&all, simulation),
             own,
             along,
+            has_failed: false,
+            of: (simulation.state().clone(), simulation.scene().clone()),
+        }
+    }
+
+    /// Returns no sections of a simulation, because their computation ended unexpectedly.
+    fn failed(simulation: &Simulation) -> Self {
+        Self {
+            contexts: section_chart::contexts(&[], simulation),
+            own: Vec::new(),
+            along: Vec::new(),
+            has_failed: true,
             of: (simulation.state().clone(), simulation.scene().clone()),
         }
     }
@@ -75,7 +89,8 @@ impl SectionPlot {
             match task.poll() {
                 Update::None | Update::Progress(()) => return true,
                 Update::Done(cuts) => self.cuts = Some(*cuts),
-                Update::Died => {}
+                // The same computation would end in the same way.
+                Update::Died => self.cuts = Some(Cuts::failed(simulation)),
             }
             self.computing = None;
         }
@@ -132,6 +147,7 @@ impl SectionPlot {
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
             None => {
                 let reason = match cuts {
+                    Some(cuts) if cuts.has_failed => "the computation ended unexpectedly",
                     Some(_) => "No section has been added.",
                     None => "Sections are computed after the solve.",
                 };
