@@ -282,7 +282,7 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
 
 /// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or
 /// moves a support.
-fn load_text(scene: &Scene) -> Option<String> {
+pub(crate) fn load_text(scene: &Scene) -> Option<String> {
     let magnitude = |load: &Load| match *load {
         Load::Force { force: [x, y], .. } => (x.hypot(y), "N"),
         Load::Gravity { acceleration: [x, y], .. } => (x.hypot(y), "m/s²"),

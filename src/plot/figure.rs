@@ -117,7 +117,7 @@ fn on_paper(ink: Ink) -> Color {
         Ink::Exact => [0x00, 0x7d, 0x73],
         Ink::Method(method) => color(method.id(), false),
         Ink::Unstable => [0xbe, 0x14, 0x1e],
-        Ink::Scene => [0x1c, 0x21, 0x28],
+        Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
     }
 }
 

@@ -7,10 +7,10 @@ const COLORS: &[(&str, [[u8; 3]; 2])] = &[
     ("warped", [[128, 50, 190], [202, 160, 255]]),
     ("newton", [[0, 100, 180], [90, 200, 250]]),
     ("auto", [[0, 120, 80], [110, 220, 140]]),
-    ("tr-bdf2", [[0, 120, 80], [110, 220, 140]]),
-    ("energy-momentum", [[0, 100, 180], [90, 200, 250]]),
+    ("tr-bdf2", [[85, 110, 0], [190, 225, 80]]),
+    ("energy-momentum", [[185, 20, 110], [255, 150, 205]]),
     ("implicit-euler", [[190, 20, 30], [255, 105, 97]]),
-    ("symplectic-euler", [[200, 90, 0], [240, 150, 60]]),
+    ("symplectic-euler", [[115, 75, 50], [200, 165, 135]]),
 ];
 
 /// Grey, used for unknown names.
@@ -33,6 +33,19 @@ mod tests {
     use super::COLORS;
     use crate::dynamics::INTEGRATORS;
     use crate::method::METHODS;
+
+    /// A colour means one method or one integrator.
+    #[test]
+    fn colours_differ() {
+        for dark in [0, 1] {
+            for (i, (a, own)) in COLORS.iter().enumerate() {
+                for (b, other) in &COLORS[i + 1..] {
+                    let apart = own[dark].iter().zip(other[dark]).map(|(a, b)| u32::from(a.abs_diff(b))).sum::<u32>();
+                    assert!(apart > 80, "{a} and {b}: {apart}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn every_entry_of_the_registries_has_a_colour_and_every_colour_an_entry() {

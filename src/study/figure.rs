@@ -31,8 +31,10 @@ impl FigureQuantity {
 /// Colour of a series, by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The exact solution.
+    /// The reference solution.
     Exact,
+    /// Beam theory, which may differ from the reference solution.
+    BeamTheory,
     /// A method.
     Method(MethodKind),
     /// Unstable equilibria.

@@ -98,7 +98,7 @@ fn stress_of(
     };
     let method = Ink::Method(scene.solver.method);
     let mut series =
-        vec![series(names[0], method, Mark::Line, recovered), series(names[1], Ink::Scene, Mark::Dashes, beam())];
+        vec![series(names[0], method, Mark::Line, recovered), series(names[1], Ink::BeamTheory, Mark::Dashes, beam())];
     series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
     let mut rows: Vec<FigureRow> =
         series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();

@@ -169,8 +169,9 @@ fn numbers_are_those_of_solve() {
                 // ρ is that of the equilibrium that Newton's method finds.
                 let newton = solve(&scene.with_method(MethodKind::Newton));
                 let rho = newton["fixed_point_rho"].as_f64().filter(|_| newton["status"] == "converged");
-                let rho = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} per", rho_text(rho)));
+                let rho = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} ", rho_text(rho)));
                 let seen = shown.starting_with("ρ ").unwrap();
+                assert!(!seen.contains("per iteration"), "{what}: {seen} is not that of the body that is drawn");
                 assert!(seen.starts_with(&rho) && shown.row("Mesh error") == "\u{2013}", "{what}: {seen}, {rho}");
                 assert!(shown.starting_with("Converged").is_none(), "{what}: {:?}", shown.0);
                 diverged += 1;

@@ -769,7 +769,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     let mut harness = harness("cantilever");
     harness.key_press(Key::B);
     harness.run();
-    assert!(harness.query_by_label_contains("Nothing measured yet").is_some());
+    assert!(harness.query_by_label_contains("Not measured yet").is_some());
     assert!(harness.get_by_label("Apply the fastest").accesskit_node().is_disabled());
     harness.get_by_label("Measure").click();
     harness.step();

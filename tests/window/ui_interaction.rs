@@ -231,7 +231,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     // ρ at the equilibrium that is not reached.
     harness.state_mut().solve();
     harness.run();
-    harness.get_by_label_contains("per iteration");
+    harness.get_by_label_contains("ρ 4.9 at 176 kN");
     harness.get_by_label("Use newton").click();
     harness.run();
     assert!(harness.query_by_label_contains("not reached").is_none());

@@ -174,7 +174,7 @@ fn color(palette: &Palette, ink: Ink) -> Color32 {
         Ink::Exact => palette.exact,
         Ink::Method(method) => palette.method(method),
         Ink::Unstable => palette.error,
-        Ink::Scene => palette.text,
+        Ink::BeamTheory | Ink::Scene => palette.text,
     }
 }
 

@@ -50,12 +50,17 @@ fn scroll_by_keys(ui: &egui::Ui) {
 pub(crate) fn show(ctx: &Context, open: &mut bool) {
     /// Width of the window, points, below which an entry has its keys above its text.
     const TWO_COLUMNS: f32 = 900.0;
+    /// Width from which the list is in two parts side by side, and the largest width of a text in it, points.
+    const TWO_LISTS: f32 = 1230.0;
+    const WIDEST: f32 = 390.0;
+    /// Height of the list in two parts, points.
+    const HIGHEST: f32 = 600.0;
     /// Space left and right of the list in a narrow window, points.
     const SIDE: f32 = 40.0;
     if !*open {
         return;
     }
-    let width = ctx.content_rect().width();
+    let (width, height) = (ctx.content_rect().width(), ctx.content_rect().height() - 80.0);
     egui::Window::new(tr("Keys and mouse"))
         .id(egui::Id::unique("help"))
         .open(open)
@@ -63,7 +68,8 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .resizable(false)
         // The list is higher than a small window.
         .vscroll(true)
-        .max_height(ctx.content_rect().height() - 80.0)
+        .default_size(if width < TWO_LISTS { [600.0, height] } else { [TWO_LISTS - 60.0, height.min(HIGHEST)] })
+        .max_height(height)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             scroll_by_keys(ui);
@@ -78,11 +84,24 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
                 }
                 return;
             }
-            egui::Grid::new("shortcuts").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
-                for (keys, does) in rows {
-                    ui.strong(keys);
-                    ui.label(does);
-                    ui.end_row();
+            let rows: Vec<_> = rows.collect();
+            let halves = rows.chunks(if width < TWO_LISTS { rows.len() } else { rows.len().div_ceil(2) });
+            ui.spacing_mut().interact_size.y = 18.0;
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = 32.0;
+                for (i, half) in halves.enumerate() {
+                    let list = egui::Grid::new(("shortcuts", i)).num_columns(2).max_col_width(if width < TWO_LISTS {
+                        width
+                    } else {
+                        WIDEST
+                    });
+                    list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {
+                        for (keys, does) in half {
+                            ui.strong(keys);
+                            ui.label(*does);
+                            ui.end_row();
+                        }
+                    });
                 }
             });
         });

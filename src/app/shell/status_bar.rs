@@ -1,7 +1,7 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
 use crate::app::diagnosis::{
-    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, rho, rho_number,
+    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, load_text, rho, rho_number,
 };
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
@@ -136,7 +136,13 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
         entries.push(BarNumber {
             name: "ρ",
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
-            word: rho.map_or(Cow::default(), |_| tr("per iteration").into()),
+            word: match load_text(input.scene) {
+                _ if rho.is_none() => Cow::default(),
+                _ if !input.shows_converged => tr("per iteration").into(),
+                // The equilibrium that is sought is not drawn.
+                Some(load) => fill!("at %{load}", load = load).into(),
+                None => tr("at the full load").into(),
+            },
             tip: tr(
                 "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
                  diverges",

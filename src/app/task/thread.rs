@@ -14,6 +14,8 @@ use crate::app::platform;
 
 /// Time between two polls of a background task.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
+/// Time between two polls of a measurement of time, which drawing would disturb.
+pub(crate) const QUIET_POLL: Duration = Duration::from_millis(200);
 
 #[derive(Serialize, Deserialize)]
 enum Message<P, T> {

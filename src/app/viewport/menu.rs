@@ -108,6 +108,10 @@ fn additions(
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
     .to_vec();
+    // A second support of a node changes nothing.
+    if scene.supports.iter().any(|support| support.place == Place::At(node) && support.fix.len() == 2) {
+        entries.remove(1);
+    }
     if let Some(edge) = edge {
         let [usual, _] = moment_range(present, &scene.material, system);
         let text = fill!("Add a moment on %{edge}", edge = tr(edge));

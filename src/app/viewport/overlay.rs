@@ -112,8 +112,16 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
-    outlines(painter, rect, overlay, &Palette::new(visuals));
+    let palette = Palette::new(visuals);
+    if overlay.wanted.is_some() {
+        dim(painter, rect, &palette);
+    }
+    outlines(painter, rect, overlay, &palette);
     on_body(painter, rect, overlay, visuals, None);
+    if let Some((note, color)) = overlay.note {
+        let at = rect.center_top() + vec2(0.0, 8.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 24.0);
+    }
 }
 
 /// Paints the outlines of the body, of the body at rest, and of other solutions.

@@ -528,8 +528,11 @@ impl BodyView {
         let size = self.size();
         let (session, is_motion) = (content.session, content.session.is_motion());
         let status = session.simulation().status();
-        let is_sound =
-            if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() || self.shows_converged };
+        let is_sound = match is_motion {
+            true => !matches!(status, Status::Stopped(_)),
+            // The outlines around it are hidden, which is no reason to come closer.
+            false => status.is_success() || self.shows_converged && !self.is_in_view(content),
+        };
         let is_stepped = !is_motion && !session.is_running();
         if is_sound || (content.shows_iterate() || is_stepped) && self.is_of_usual_size(content) {
             let (mut low, mut high) = content.mesh().bounds();
@@ -563,6 +566,14 @@ impl BodyView {
         if self.camera.aim(fitted, self.eases.then_some(dt)) {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Returns `true` if the view has the drawn body and the arrows.
+    fn is_in_view(&self, content: &Content<'_>) -> bool {
+        let (projection, view) = (self.projection(), self.rect);
+        let tips = self.arrows(content).into_iter().map(|arrow| arrow.tip());
+        let points = self.body.points().iter().map(|point| projection.point(*point));
+        points.chain(tips).all(|point| view.contains(point))
     }
 
     /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.

@@ -532,7 +532,8 @@ pub fn time_of_motion(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     let of_step = begun.elapsed().as_secs_f64();
     simulation.reset();
     let steps = steps.min((MAX_TIME_OF_MOTION / of_step).max(MIN_STEPS_OF_LARGE) as u32);
-    let milliseconds = milliseconds_per_second(&mut simulation, 1, steps, plan.timing, &goes_on);
+    // A window that displays the motion has just opened, and disturbs the first runs.
+    let milliseconds = milliseconds_per_second(&mut simulation, steps, steps, Extent::Full.plan().timing, &goes_on);
     goes_on().then_some(milliseconds)
 }
 

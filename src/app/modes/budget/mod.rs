@@ -263,7 +263,7 @@ fn settings(
             }
             let text = match (budget.error, budget.study) {
                 (Some(error), _) => RichText::new(said(error)).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new(tr("Nothing measured yet: it takes about a minute.")).small(),
+                (None, None) => RichText::new(tr("Not measured yet: about a minute.")).small(),
                 (None, Some(_)) if !budget.current => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new(tr("The body or its load has changed since.")).small().color(color)
@@ -317,7 +317,7 @@ fn settings(
         let apply = apply
             .on_hover_text(tr("Use the fastest setting that meets both limits, and whose iteration converges"))
             .on_disabled_hover_text(tr(match (budget.study, budget.current) {
-                (None, _) => "Nothing measured yet: it takes about a minute.",
+                (None, _) => "Not measured yet: about a minute.",
                 (Some(_), true) => "No measured setting meets both limits",
                 (Some(_), false) => "The body or its load has changed since.",
             }));

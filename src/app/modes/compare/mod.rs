@@ -13,7 +13,7 @@ use crate::app::diagnosis::{coarse_text, error_color, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
-use crate::app::task::thread::POLL;
+use crate::app::task::thread::{POLL, QUIET_POLL};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay;
@@ -179,7 +179,7 @@ impl Compare {
             ctx.request_repaint_after(POLL);
         } else if !holds && self.panes.list.iter_mut().any(Pane::request_time) {
             // One pane after the other is timed.
-            ctx.request_repaint_after(POLL);
+            ctx.request_repaint_after(QUIET_POLL);
         }
     }
 

@@ -14,7 +14,7 @@ use crate::app::session::compared_motion::ComparedMotion;
 use crate::app::session::compared_solve::Equations;
 use crate::app::session::facts::MotionTimeFact;
 use crate::app::task::keyed::Keyed;
-use crate::app::task::thread::POLL;
+use crate::app::task::thread::QUIET_POLL;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::widgets::palette::Palette;
@@ -271,7 +271,7 @@ impl MotionCompare {
         self.is_timing =
             !ui.input(|i| i.pointer.any_down()) && self.panes.list.iter_mut().any(MotionPane::request_time);
         if self.is_timing {
-            ui.ctx().request_repaint_after(POLL);
+            ui.ctx().request_repaint_after(QUIET_POLL);
         }
         let interaction =
             self.panes.show(ui, &layout, (input, &[]), |panes, ui, number| header(panes, ui, number, input));

@@ -1,5 +1,7 @@
 //! Pane of the comparison of equilibria: a solve of the scene with settings of its own, and its display.
 
+use std::sync::Arc;
+
 use egui::{Color32, Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
@@ -14,7 +16,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
 use crate::render::Camera;
 use crate::scene::Scene;
-use crate::simulation::Simulation;
+use crate::simulation::{Equilibrium, Simulation, Status};
 use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
@@ -24,6 +26,8 @@ pub struct Pane {
     pub(super) solve: ComparedSolve,
     pub(super) display: PaneDisplay,
     pub(super) error: Option<f64>,
+    /// Last equilibrium, drawn in place of a state that diverges.
+    equilibrium: Option<Simulation>,
     /// Time of the solve from rest.
     time: Keyed<TimeFact>,
 }
@@ -135,6 +139,23 @@ impl Pane {
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
+    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges. If the first state
+    /// diverges, the last equilibrium is the body at rest without load.
+    fn keep_equilibrium(&mut self) {
+        let Some(simulation) = self.solve.displayed() else { return };
+        let is_of = |kept: &&Simulation| Arc::ptr_eq(kept.system(), simulation.system());
+        let kept = self.equilibrium.as_ref().filter(is_of);
+        if *simulation.status() == Status::Converged {
+            if !kept.is_some_and(|kept| kept.state() == simulation.state() && kept.scene() == simulation.scene()) {
+                self.equilibrium = simulation.equilibrium().map(Equilibrium::snapshot);
+            }
+        } else if kept.is_none() && self.solve.has_failed() {
+            let mut scene = simulation.scene().clone();
+            scene.scale_loads(0.0);
+            self.equilibrium = Simulation::with_system(&scene, simulation.system().clone()).ok();
+        }
+    }
+
     /// Updates the displayed mesh.
     pub(super) fn update_display(
         &mut self,
@@ -144,7 +165,9 @@ impl Pane {
         known: &[Equations],
     ) {
         let is_sound = self.solve.is_sound();
-        if let Some(simulation) = self.solve.displayed() {
+        self.keep_equilibrium();
+        let equilibrium = self.equilibrium.as_ref().filter(|_| self.solve.has_failed());
+        if let Some(simulation) = equilibrium.or_else(|| self.solve.displayed()) {
             self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
@@ -160,7 +183,7 @@ impl Pane {
 impl ComparedPane for Pane {
     fn new(setting: PaneSetting) -> Self {
         let solve = ComparedSolve::new(setting.iterations);
-        Self { setting, solve, display: PaneDisplay::default(), error: None, time: Keyed::default() }
+        Self { setting, solve, display: PaneDisplay::default(), error: None, equilibrium: None, time: Keyed::default() }
     }
 
     fn own_setting(&self) -> PaneSetting {
@@ -193,6 +216,11 @@ impl ComparedPane for Pane {
     }
 
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay) {
-        (self.solve.scene().map(|scene| (scene, 0.0)), &mut self.display)
+        let equilibrium = self.equilibrium.as_ref().filter(|_| self.solve.has_failed()).map(Simulation::scene);
+        (equilibrium.or_else(|| self.solve.scene()).map(|scene| (scene, 0.0)), &mut self.display)
+    }
+
+    fn unreached(&self) -> Option<&Scene> {
+        self.solve.scene().filter(|_| self.solve.has_failed() && self.equilibrium.is_some())
     }
 }

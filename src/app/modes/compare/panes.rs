@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use super::grid::{self, Grid};
 use super::setting::{PANES, PaneSetting};
-use crate::app::diagnosis::Errors;
+use crate::app::diagnosis::{Errors, equilibrium_text};
 use crate::app::language::{fill, tr};
 use crate::app::session::compared_solve::Equations;
 use crate::app::session::playback::Playback;
@@ -116,6 +116,11 @@ pub(super) trait ComparedPane {
 
     /// Returns the displayed scene and its simulated time, s, if there is one; and the display.
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay);
+
+    /// Returns the scene whose state diverges, if an equilibrium is displayed in its place.
+    fn unreached(&self) -> Option<&Scene> {
+        None
+    }
 
     fn display_mut(&mut self) -> &mut PaneDisplay {
         self.parts().1
@@ -333,10 +338,10 @@ impl<P: ComparedPane> Panes<P> {
         let (Some(controller), Some(pane)) = (&mut self.controller, self.list.get_mut(number)) else {
             return Interaction::default();
         };
-        let condition = pane.condition();
+        let (condition, wanted) = (pane.condition(), pane.unreached().cloned());
         let (model, display) = pane.parts();
         let projection = Projection { camera: controller.camera(), rect: place };
-        let forces = model.and_then(|(scene, time)| display.forces(scene, time, input));
+        let forces = model.and_then(|(scene, time)| display.forces(wanted.as_ref().unwrap_or(scene), time, input));
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&projection));
         let system = display.system.as_deref();
         let targets = HitTargets {
@@ -362,11 +367,12 @@ impl<P: ComparedPane> Panes<P> {
         let camera = controller.camera();
         let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
         if let Some(((scene, time), system)) = model.zip(system) {
+            let note = wanted.as_ref().map(|wanted| equilibrium_text(scene, wanted));
             let overlay = Overlay {
                 sections: &[],
                 apart: false,
                 scene,
-                wanted: None,
+                wanted: wanted.as_ref(),
                 system,
                 geometry: &display.geometry,
                 options: input.view,
@@ -374,7 +380,7 @@ impl<P: ComparedPane> Panes<P> {
                 positions: &display.body_mesh.nodes,
                 magnification: self.magnification,
                 ghost: None,
-                exact,
+                exact: if wanted.is_some() { &[] } else { exact },
                 errors: Errors::default(),
                 time,
                 direction: input.direction,
@@ -385,7 +391,7 @@ impl<P: ComparedPane> Panes<P> {
                 playback: &self.still,
                 color_range: display.body_mesh.range,
                 has_values: display.body_mesh.has_values(),
-                note: None,
+                note: note.as_deref().map(|note| (note, palette.text)),
             };
             overlay::body(&painter, place, &overlay, ui.visuals());
         }
@@ -394,6 +400,8 @@ impl<P: ComparedPane> Panes<P> {
         }
         match condition {
             Condition::Result | Condition::Unfinished => {}
+            // An equilibrium in its place is dimmed already.
+            Condition::Failed if wanted.is_some() => {}
             Condition::Failed => overlay::dim(&painter, place, &palette),
             Condition::Outdated => {
                 overlay::dim(&painter, place, &palette);

@@ -211,9 +211,14 @@ impl Trace {
         }
     }
 
+    /// Returns the displacement of the reference solution at a load, m, if it is known.
+    fn reference_at(&self, load: f64) -> Option<Vector2<f64>> {
+        self.references.iter().find(|dot| dot.0 == load).map(|dot| dot.1)
+    }
+
     /// Returns the displacement of the reference solution under a load if it is known, else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
-        let reference = self.references.iter().find(|dot| dot.0 == load).map(|dot| dot.1);
+        let reference = self.reference_at(load);
         let piece = || self.line().windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
         let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
         reference.or_else(|| piece().map(between))
@@ -312,15 +317,18 @@ impl Trace {
             points,
         };
         let exact_series = [
-            series(tr("exact beam"), Ink::Exact, Mark::Line, false, exact(self.line())),
+            series(tr("exact beam"), Ink::BeamTheory, Mark::Line, false, exact(self.line())),
             series(tr("reference"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
         ];
         let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
         let mut rows = Vec::new();
         if !all.is_empty() {
             let value = self.exact_at(axis.magnitude).map(pair).unwrap_or_default();
-            let (name, error) = (tr("reference").to_owned(), String::new());
-            rows.push(FigureRow { name, ink: Ink::Exact, mark: Mark::Line, value, error, is_bad: false });
+            let (name, ink, mark) = match self.reference_at(axis.magnitude) {
+                Some(_) => (tr("reference"), Ink::Exact, Mark::Plus),
+                None => (tr("exact beam"), Ink::BeamTheory, Mark::Line),
+            };
+            rows.push(FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false });
         }
         let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
         for pane in panes {

@@ -146,20 +146,19 @@ fn curve_title(scene: &Scene) -> String {
 
 fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let LoadAxis { name, unit, full } = LoadAxis::of(scene);
-    let linear = Ink::Method(MethodKind::Linear);
     let line = |value: fn(&Sample) -> Vector2<f64>| -> Vec<FigurePoint> {
         let samples = curve.samples.iter();
         samples.map(|s| figure::point(s.factor * full, value(s))).collect()
     };
     let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
     let mut all = vec![
-        series(tr("linear beam theory").to_owned(), linear, Mark::Line, true, line(|s| s.linear)),
-        series(tr("exact beam").to_owned(), Ink::Exact, Mark::Line, false, line(|s| s.exact)),
+        series(tr("linear beam theory").to_owned(), Ink::BeamTheory, Mark::Dashes, true, line(|s| s.linear)),
+        series(tr("exact beam").to_owned(), Ink::BeamTheory, Mark::Line, false, line(|s| s.exact)),
     ];
     let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.exact)).collect();
     let departs = departure_text(&curve.departures, (full, unit));
     if let Some((name, _)) = &departs {
-        all.push(series(name.clone(), linear, Mark::Ring, false, departures));
+        all.push(series(name.clone(), Ink::BeamTheory, Mark::Ring, false, departures));
     }
     for point in &curve.methods {
         let converged = point.status == Status::Converged;
@@ -173,7 +172,8 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let value = |series: &FigureSeries| match series.mark {
         Mark::Ring => departs.as_ref().map(|(_, loads)| loads.clone()),
         Mark::Cross => Some(tr("not converged").to_owned()),
-        Mark::Line => at_load.map(|s| pair(if series.ink == Ink::Exact { s.exact } else { s.linear })),
+        Mark::Line => at_load.map(|s| pair(s.exact)),
+        Mark::Dashes => at_load.map(|s| pair(s.linear)),
         _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
     };
     let row = |series: &FigureSeries| FigureRow {
