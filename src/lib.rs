@@ -131,7 +131,9 @@ mod mesh;
 #[doc(hidden)]
 pub mod method;
 mod model;
+// The page draws fewer pictures than the commands.
 #[cfg(feature = "cli")]
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, unused_imports))]
 mod plot;
 mod progress;
 #[cfg(feature = "app")]

@@ -9,13 +9,12 @@ use super::edge::no_such_edge;
 use super::hold::{Hold, check_held, fixed_unknowns};
 use super::{Edge, Kinematics, Pattern};
 use crate::element::Elements;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
 use crate::sentence::{Sentence, sentence};
 use crate::solver::{SolverError, Symbolic};
 use crate::state::{State, StateError};
-use crate::stress::Recovery;
 
 /// Reason why the equations of a scene could not be set up.
 ///

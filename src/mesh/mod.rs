@@ -12,11 +12,13 @@ mod beam;
 mod crossing;
 mod gmsh;
 mod locate;
+mod recovery;
 mod refine;
 
 pub(crate) use beam::{axis_angle, bent, straightened};
 pub use gmsh::GmshError;
 pub use locate::MaterialPoint;
+pub use recovery::Recovery;
 
 /// Error of a mesh. Elements are numbered from 0.
 ///

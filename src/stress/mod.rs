@@ -18,13 +18,11 @@ use crate::scene::{Material, Plane};
 use crate::state::State;
 
 mod estimate;
-mod recovery;
 mod singularity;
 #[cfg(feature = "cli")]
 mod warning;
 
 pub use estimate::ErrorEstimate;
-pub use recovery::Recovery;
 pub use singularity::Singularity;
 #[cfg(feature = "cli")]
 pub(crate) use warning::{inversion_warning, strain_warning};

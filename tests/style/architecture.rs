@@ -17,7 +17,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("model", &["model"]),
     ("kinematics", &["rotation", "displacement", "material", "state", "continuation", "exact_beam"]),
     ("element", &["element"]),
-    ("mesh", &["mesh", "article", "stress/recovery"]),
+    ("mesh", &["mesh", "article"]),
     ("scene files", &["scene"]),
     ("solver", &["solver"]),
     ("assembly", &["assembly"]),
