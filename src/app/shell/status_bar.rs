@@ -21,6 +21,11 @@ use crate::format::{engineering, grouped, two_digits};
 use crate::scene::MethodKind;
 use crate::scene::Scene;
 
+/// Name of the error, and the least width of the slot of its remark, points: what follows stays in place when the remark
+/// changes.
+const ERROR: &str = "ERROR";
+const ERROR_REMARK: f32 = 178.0;
+
 /// In a status bar narrower than this, points, the numbers have no bars.
 const BARS: f32 = 820.0;
 
@@ -64,10 +69,12 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
                 let gaps = ui.spacing().item_spacing.x * texts.len().saturating_sub(1) as f32;
                 let mut room = ui.available_width() - gaps - texts.iter().map(Texts::width).sum::<f32>();
                 for (entry, texts) in entries.into_iter().zip(texts) {
-                    let remark = texts.remark_width();
+                    let (is_error, remark) = (entry.name == ERROR, texts.remark_width());
                     let has_remark = remark <= room;
-                    room -= if has_remark { remark } else { 0.0 };
-                    number(ui, &palette, entry, texts, has_remark);
+                    let slot = if is_error && wide { ERROR_REMARK.max(remark) } else { remark };
+                    let slot = if slot <= room { slot } else { remark };
+                    room -= if has_remark { slot } else { 0.0 };
+                    number(ui, &palette, entry, texts, has_remark.then_some(slot));
                 }
             });
         });
@@ -97,7 +104,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
     let mut entries = vec![
         BarNumber {
-            name: "ERROR",
+            name: ERROR,
             value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
             word: match (doubt, errors.source) {
                 // A large error has a source, whatever else is to be doubted.
@@ -237,13 +244,13 @@ impl Texts {
     }
 }
 
-/// Shows a name, its number, its bar and, if it has room, its remark.
-fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, has_remark: bool) -> Response {
+/// Shows a name, its number, its bar and, in its slot if there is one, its remark. The width of a slot is in points.
+fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, slot: Option<f32>) -> Response {
     let BarNumber { name, value, word, tip, color, ratio } = entry;
-    let remark_width = if has_remark { texts.remark_width() } else { 0.0 };
-    let size = vec2(texts.width() + remark_width, ui.spacing().interact_size.y);
+    let remark_width = texts.remark_width();
+    let size = vec2(texts.width() + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
     let Texts { title, number, number_width, has_bar, remark } = texts;
-    let (ratio, remark) = (ratio.filter(|_| has_bar), remark.filter(|_| has_remark));
+    let (ratio, remark) = (ratio.filter(|_| has_bar), remark.filter(|_| slot.is_some()));
     let word = if remark.is_some() { word.as_ref() } else { "" };
     let name = tr(name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
