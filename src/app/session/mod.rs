@@ -719,14 +719,9 @@ impl Session {
     /// Stores a copy of an equilibrium, to be displayed when a later state diverges. If the first state diverges, the
     /// last equilibrium is the body at rest without load.
     pub(crate) fn keep_converged(&mut self) {
-        let simulation = &self.simulation;
-        let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
-        if *simulation.status() == Status::Converged && !self.converged.as_ref().is_some_and(is_kept) {
-            self.converged = simulation.equilibrium().map(Equilibrium::snapshot);
-        } else if matches!(simulation.status(), Status::Diverged(_)) && self.converged().is_none() {
-            let mut scene = self.scene.clone();
-            scene.scale_loads(0.0);
-            self.converged = Simulation::with_system(&scene, simulation.system().clone()).ok();
+        let fails = matches!(self.simulation.status(), Status::Diverged(_));
+        if let Some(found) = equilibrium_to_keep(&self.simulation, self.converged.as_ref(), fails) {
+            self.converged = Some(found);
         }
     }
 
@@ -825,6 +820,27 @@ impl Session {
     pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
         self.playback.take_unstable()
     }
+}
+
+/// Returns a copy of an equilibrium that is to be displayed when a later state on its mesh diverges, in place of the one
+/// that is `kept`; if the first state `fails`, the last equilibrium is the body at rest without load. Returns `None` if the
+/// one that is kept stays.
+pub(crate) fn equilibrium_to_keep(
+    simulation: &Simulation,
+    kept: Option<&Simulation>,
+    fails: bool,
+) -> Option<Simulation> {
+    let kept = kept.filter(|kept| Arc::ptr_eq(kept.system(), simulation.system()));
+    if *simulation.status() == Status::Converged {
+        let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
+        return simulation.equilibrium().filter(|_| !kept.is_some_and(is_kept)).map(Equilibrium::snapshot);
+    }
+    if !fails || kept.is_some() {
+        return None;
+    }
+    let mut scene = simulation.scene().clone();
+    scene.scale_loads(0.0);
+    Simulation::with_system(&scene, simulation.system().clone()).ok()
 }
 
 /// Returns `true` if two scenes have the same mesh.

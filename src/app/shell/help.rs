@@ -61,6 +61,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         return;
     }
     let (width, height) = (ctx.content_rect().width(), ctx.content_rect().height() - 80.0);
+    let is_one_list = width < TWO_LISTS;
     egui::Window::new(tr("Keys and mouse"))
         .id(egui::Id::unique("help"))
         .open(open)
@@ -68,7 +69,7 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .resizable(false)
         // The list is higher than a small window.
         .vscroll(true)
-        .default_size(if width < TWO_LISTS { [600.0, height] } else { [TWO_LISTS - 60.0, height.min(HIGHEST)] })
+        .default_size(if is_one_list { [600.0, height] } else { [TWO_LISTS - 60.0, height.min(HIGHEST)] })
         .max_height(height)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
@@ -85,16 +86,13 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
                 return;
             }
             let rows: Vec<_> = rows.collect();
-            let halves = rows.chunks(if width < TWO_LISTS { rows.len() } else { rows.len().div_ceil(2) });
+            let widest = if is_one_list { width } else { WIDEST };
+            let halves = rows.chunks(if is_one_list { rows.len() } else { rows.len().div_ceil(2) });
             ui.spacing_mut().interact_size.y = 18.0;
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = 32.0;
                 for (i, half) in halves.enumerate() {
-                    let list = egui::Grid::new(("shortcuts", i)).num_columns(2).max_col_width(if width < TWO_LISTS {
-                        width
-                    } else {
-                        WIDEST
-                    });
+                    let list = egui::Grid::new(("shortcuts", i)).num_columns(2).max_col_width(widest);
                     list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {
                         for (keys, does) in half {
                             ui.strong(keys);

@@ -176,8 +176,8 @@ impl MotionCompare {
     }
 
     /// Applies the scene, and makes the time steps that are due at `now`, s. All panes are at the same time: a slow one
-    /// slows all of them down, and they wait for those that are being set up or timed. `own` are the equations of the body in
-    /// Explore.
+    /// slows all of them down, and they wait for those that are being set up or timed. `own` are the equations of the body
+    /// in Explore.
     pub(crate) fn advance(&mut self, scene: &Scene, own: &Equations, now: f64, running: bool) {
         let mut starts_over = false;
         let known = self.panes.list.iter().filter_map(|pane| pane.motion.equations());

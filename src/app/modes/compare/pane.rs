@@ -1,13 +1,12 @@
 //! Pane of the comparison of equilibria: a solve of the scene with settings of its own, and its display.
 
-use std::sync::Arc;
-
 use egui::{Color32, Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
+use crate::app::session::equilibrium_to_keep;
 use crate::app::session::facts::TimeFact;
 use crate::app::task::keyed::Keyed;
 use crate::app::view_options::ViewOptions;
@@ -16,7 +15,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
 use crate::render::Camera;
 use crate::scene::Scene;
-use crate::simulation::{Equilibrium, Simulation, Status};
+use crate::simulation::Simulation;
 use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
@@ -139,20 +138,11 @@ impl Pane {
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
-    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges. If the first state
-    /// diverges, the last equilibrium is the body at rest without load.
+    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges.
     fn keep_equilibrium(&mut self) {
         let Some(simulation) = self.solve.displayed() else { return };
-        let is_of = |kept: &&Simulation| Arc::ptr_eq(kept.system(), simulation.system());
-        let kept = self.equilibrium.as_ref().filter(is_of);
-        if *simulation.status() == Status::Converged {
-            if !kept.is_some_and(|kept| kept.state() == simulation.state() && kept.scene() == simulation.scene()) {
-                self.equilibrium = simulation.equilibrium().map(Equilibrium::snapshot);
-            }
-        } else if kept.is_none() && self.solve.has_failed() {
-            let mut scene = simulation.scene().clone();
-            scene.scale_loads(0.0);
-            self.equilibrium = Simulation::with_system(&scene, simulation.system().clone()).ok();
+        if let Some(found) = equilibrium_to_keep(simulation, self.equilibrium.as_ref(), self.solve.has_failed()) {
+            self.equilibrium = Some(found);
         }
     }
 
