@@ -12,7 +12,7 @@
 //! t = (cos θ, sin θ), m = (−sin θ, cos θ), ε = n·t / EA, γ = n·m / GA (both 0 for the elastica), θ(0) = 0, M(L) =
 //! M_tip. The equations are solved by multiple shooting with RK4, along the path of equilibria from zero load.
 
-use nalgebra::{DMatrix, DVector, Matrix4, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::continuation::{Continuation, Critical, CriticalMode, PathEquations};
 use crate::model::{Analysis, Axis, Load, Place, Plane, Scene, Support};
@@ -102,50 +102,6 @@ impl ClampedBeam {
             };
         }
         state
-    }
-
-    /// Returns the lowest angular frequency of small vibrations without loads, rad/s, for a mass per length (kg/m) and
-    /// a rotary inertia per length (kg m): Timoshenko beam; without shear compliance and rotary inertia,
-    /// Euler–Bernoulli beam. `None` if there is none below the upper bound β = 4 of the search.
-    ///
-    /// With amplitudes w, θ, M, V over the length: w′ = θ + V/GA, θ′ = M/EI, M′ = −V − ω² J θ, V′ = −ω² m w; w and θ
-    /// vanish at the clamp, M and V at the tip.
-    #[must_use]
-    pub fn lowest_frequency(&self, mass: f64, rotary_inertia: f64) -> Option<f64> {
-        let Self { length, bending, shear_compliance, .. } = *self;
-        let shear = bending * shear_compliance / (length * length);
-        let rotary = rotary_inertia / (mass * length * length);
-        // In units of the length and EI, β⁴ = ω² m L⁴/EI.
-        let at_tip = |beta: f64| {
-            let mu = beta.powi(4);
-            #[rustfmt::skip]
-            let slope = Matrix4::new(
-                0.0, 1.0, 0.0, shear,
-                0.0, 0.0, 1.0, 0.0,
-                0.0, -mu * rotary, 0.0, -1.0,
-                -mu, 0.0, 0.0, 0.0,
-            );
-            let end = slope.exp();
-            end.fixed_view::<2, 2>(2, 2).determinant()
-        };
-        /// Upper bound of β, between the first two roots of the slender beam, 1.875 and 4.694.
-        const MAX_BETA: f64 = 4.0;
-        const SCAN: f64 = 0.05;
-        let (mut low, mut high) = (SCAN, 2.0 * SCAN);
-        while at_tip(high) > 0.0 {
-            (low, high) = (high, high + SCAN);
-            if high > MAX_BETA {
-                return None;
-            }
-        }
-        while high - low > 1e-14 * high {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if at_tip(middle) > 0.0 { low = middle } else { high = middle }
-        }
-        Some(low * low * (bending / mass).sqrt() / (length * length))
     }
 
     /// Linearizes multiple shooting at the unknowns θₖ, Mₖ (M in units of EI/L): returns the Jacobian and the residual.

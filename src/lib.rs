@@ -115,8 +115,7 @@ pub mod assembly;
 pub mod cli;
 mod continuation;
 mod displacement;
-#[doc(hidden)]
-pub mod dynamics;
+mod dynamics;
 #[doc(hidden)]
 pub mod element;
 #[doc(hidden)]

@@ -201,9 +201,8 @@ pub struct Momentum {
 
 impl Momentum {
     /// Computes the momentum of a state.
-    #[doc(hidden)]
     #[must_use]
-    pub fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
+    pub(crate) fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
         let mut nodal = state.velocity.clone();
         match inertia {
             Inertia::Consistent => mass.multiply(&state.velocity, &mut nodal),

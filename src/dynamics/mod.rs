@@ -20,6 +20,8 @@ mod report;
 mod stage;
 mod step;
 mod symplectic_euler;
+#[cfg(test)]
+mod tests;
 mod tr_bdf2;
 
 pub use ledger::{Ledger, Momentum};
@@ -75,6 +77,7 @@ macro_rules! registry {
 
         impl IntegratorKind {
             /// Returns the registry entry.
+            #[doc(hidden)]
             #[must_use]
             pub fn entry(self) -> &'static IntegratorEntry {
                 match self {
@@ -93,6 +96,12 @@ registry! {
 }
 
 impl IntegratorKind {
+    /// Returns all integrators, in the order of the registry.
+    #[doc(hidden)]
+    pub fn all() -> impl Iterator<Item = Self> + Clone {
+        INTEGRATORS.iter().map(|entry| entry.kind)
+    }
+
     /// Returns the name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {

@@ -2,9 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use warpbeam::assembly::{Forces, Mass, Matrix};
-use warpbeam::dynamics::{Inertia, Momentum};
 use warpbeam::element::Tangent;
-use warpbeam::{IntegratorKind, Scene, Simulation, Status};
+use warpbeam::{IntegratorKind, Momentum, Scene, Simulation, Status};
 
 use super::scene;
 
@@ -30,9 +29,21 @@ pub fn momentum(simulation: &Simulation) -> Momentum {
     simulation.solution().motion.unwrap().momentum
 }
 
-/// Returns the first mode of a small body, scaled to 1 mm, from the matrices of linear theory at rest and the
-/// integrator's mass matrix.
+/// Returns the first mode of a small body, scaled to 1 mm.
 pub fn first_mode(simulation: &Simulation) -> Vec<Vector2<f64>> {
+    let mut u = vec![Vector2::zeros(); simulation.system().mesh().nodes().len()];
+    simulation.system().pattern().add_free(vibration(simulation).0.as_slice(), 1e-3, &mut u);
+    u
+}
+
+/// Returns the lowest angular frequency of a small body, rad/s.
+pub fn lowest_frequency(simulation: &Simulation) -> f64 {
+    vibration(simulation).1
+}
+
+/// Returns the slowest vibration about rest of a small body, from the matrices of linear theory and the integrator's
+/// mass matrix: the amplitudes of the free unknowns, at most 1, and the angular frequency, rad/s.
+fn vibration(simulation: &Simulation) -> (DVector<f64>, f64) {
     let system = simulation.system();
     let (n, nodes) = (system.dofs(), system.mesh().nodes().len());
     let mut sparse = Matrix::new(system.pattern());
@@ -49,23 +60,24 @@ pub fn first_mode(simulation: &Simulation) -> Vec<Vector2<f64>> {
         stiffness.set_column(i, &DVector::from_column_slice(&column));
         nodal.fill(Vector2::zeros());
         system.pattern().add_free(&unit, 1.0, &mut nodal);
-        match simulation.scene().dynamics.integrator.entry().inertia {
-            Inertia::Consistent => mass.multiply(&nodal, &mut moved),
-            Inertia::Lumped => moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect(),
+        // Explicit integrators have lumped masses.
+        if simulation.scene().dynamics.integrator.entry().is_explicit() {
+            moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect();
+        } else {
+            mass.multiply(&nodal, &mut moved);
         }
         system.pattern().restrict(&moved, &mut column);
         inertia.set_column(i, &DVector::from_column_slice(&column));
     }
     // Inverse iteration.
     let cholesky = stiffness.cholesky().unwrap();
-    let mut mode = DVector::from_element(n, 1.0);
+    let (mut mode, mut growth) = (DVector::from_element(n, 1.0), 1.0);
     for _ in 0..60 {
         mode = cholesky.solve(&(&inertia * mode));
-        mode /= mode.amax();
+        growth = mode.amax();
+        mode /= growth;
     }
-    let mut u = vec![Vector2::zeros(); nodes];
-    system.pattern().add_free(mode.as_slice(), 1e-3, &mut u);
-    u
+    (mode, 1.0 / growth.sqrt())
 }
 
 pub fn beam(cells: u32, slenderness: f64) -> Scene {

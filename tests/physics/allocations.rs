@@ -4,11 +4,10 @@
 use crate::common::{ids_of, scene};
 use allocation_counter::measure;
 use nalgebra::Vector2;
-use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::Analysis;
-use warpbeam::{LoadId, MethodKind, Simulation};
+use warpbeam::{IntegratorKind, LoadId, MethodKind, Simulation};
 
 /// Number of first steps that may allocate, because some memory is allocated on first use.
 const FIRST: u32 = 3;
@@ -20,7 +19,9 @@ fn allocations(mut work: impl FnMut()) -> u64 {
 #[test]
 fn time_steps_allocate_nothing() {
     for id in ids_of(Analysis::Dynamic) {
-        for (integrator, element) in INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e))) {
+        for (integrator, element) in
+            IntegratorKind::all().map(IntegratorKind::entry).flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)))
+        {
             for (iterations, method) in [(1, MethodKind::Newton), (0, MethodKind::Newton), (1, MethodKind::Linear)] {
                 let mut scene = scene(id);
                 scene.set_element(element.kind);

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use crate::common::{ids_of, sampled, scene};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::{Forces, Kinematics, Mass};
-use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::scene::Analysis;
 use warpbeam::{IntegratorKind, Material, MethodKind, Scene, Simulation, Status};
@@ -71,7 +70,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
 /// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases, and are then stopped.
 #[test]
 fn random_pulls_never_break_a_motion() {
-    let kinds = || INTEGRATORS.iter().flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)));
+    let kinds = || IntegratorKind::all().map(IntegratorKind::entry).flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)));
     let cases = ids_of(Analysis::Dynamic).into_iter().flat_map(|id| kinds().map(move |(i, e)| (id, i, e)));
     for (id, integrator, element) in sampled(cases, 8) {
         let mut scene = scene(id);
@@ -244,7 +243,7 @@ fn the_mouse_spring_has_its_stated_stiffness() {
 #[test]
 fn a_body_goes_along_with_a_steady_pointer() {
     let (h, velocity) = (1.0 / 60.0, Vector2::new(0.3, -0.2));
-    for integrator in INTEGRATORS {
+    for integrator in IntegratorKind::all().map(IntegratorKind::entry) {
         for iterations in if integrator.is_explicit() { 1..=1 } else { 0..=1 } {
             let mut scene = Scene::beam(1.0, 0.5).with_cells(4, 2).with_material(Material::new(1e5, 0.3));
             scene.material.density = 100.0;

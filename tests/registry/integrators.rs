@@ -4,16 +4,12 @@ use std::f64::consts::TAU;
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
-use warpbeam::assembly::Mass;
-use warpbeam::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
-use warpbeam::{Material, MethodKind, Simulation, Status};
+use warpbeam::{IntegratorKind, Material, MethodKind, Simulation, Status};
 
-use crate::common::motion::{beam, first_mode, momentum, run, with};
+use crate::common::motion::{beam, first_mode, lowest_frequency, momentum, run, with};
 use crate::{Test, suite};
 
-type Entry = &'static IntegratorEntry;
-
-const TESTS: &[Test<Entry>] = &[
+const TESTS: &[Test<IntegratorKind>] = &[
     ("the_error_has_the_stated_order_in_the_step", the_error_has_the_stated_order_in_the_step),
     ("a_free_body_falls", a_free_body_falls),
     ("a_pulse_leaves_its_impulse", a_pulse_leaves_its_impulse),
@@ -24,20 +20,21 @@ const TESTS: &[Test<Entry>] = &[
 ];
 
 pub fn trials() -> Vec<Trial> {
-    suite("integrator", INTEGRATORS.iter().map(|i| (i.id.to_owned(), *i)), TESTS)
+    suite("integrator", IntegratorKind::all().map(|kind| (kind.id().to_owned(), kind)), TESTS)
 }
 
 /// Returns a step that suits the integrator; for explicit ones, a step far below the critical one.
-fn step(entry: Entry, implicit: f64) -> f64 {
-    if entry.is_explicit() { 2e-4 } else { implicit }
+fn step(kind: IntegratorKind, implicit: f64) -> f64 {
+    if kind.entry().is_explicit() { 2e-4 } else { implicit }
 }
 
 /// For three steps, each half of the one before, the differences of the results fall by 2 to the integrator's order.
-fn the_error_has_the_stated_order_in_the_step(entry: Entry) {
+fn the_error_has_the_stated_order_in_the_step(kind: IntegratorKind) {
     // The explicit integrator is stable only at steps this much smaller.
-    let (coarse, steps): (f64, u32) = if entry.is_explicit() { (1.0 / 7680.0, 3840) } else { (1.0 / 480.0, 240) };
+    let (coarse, steps): (f64, u32) =
+        if kind.entry().is_explicit() { (1.0 / 7680.0, 3840) } else { (1.0 / 480.0, 240) };
     let tip = |halvings: u32| {
-        let mut scene = beam(8, 10.0).moving(entry.kind, coarse * 0.5_f64.powi(halvings as i32));
+        let mut scene = beam(8, 10.0).moving(kind, coarse * 0.5_f64.powi(halvings as i32));
         scene.dynamics.iterations = 0;
         scene.solver.tolerance = 1e-12;
         let mut simulation = Simulation::new(&scene).unwrap();
@@ -53,19 +50,19 @@ fn the_error_has_the_stated_order_in_the_step(entry: Entry) {
     };
     let [a, b, c] = [0, 1, 2].map(tip);
     let order = ((a - b).norm() / (b - c).norm()).log2();
-    let expected = if entry.order == 1 { 0.9..1.1 } else { 1.8..2.2 };
+    let expected = if kind.entry().order == 1 { 0.9..1.1 } else { 1.8..2.2 };
     assert!(expected.contains(&order), "{order}: {a} {b} {c}");
 }
 
 /// A free body falls as Galileo's law says: second-order integrators are exact, Euler's is off by g h t/2.
-fn a_free_body_falls(entry: Entry) {
-    let h = step(entry, 0.01);
-    let mut scene = with("spin", entry.kind, h, 1, 1.0).gravity([0.0, -9.81]);
+fn a_free_body_falls(kind: IntegratorKind) {
+    let h = step(kind, 0.01);
+    let mut scene = with("spin", kind, h, 1, 1.0).gravity([0.0, -9.81]);
     (scene.start.spin, scene.start.velocity) = (0.0, [0.5, 3.0]);
     let simulation = run(&scene);
-    let late = if entry.order == 1 { 0.5 * 9.81 * h } else { 0.0 };
+    let late = if kind.entry().order == 1 { 0.5 * 9.81 * h } else { 0.0 };
     // The explicit integrator's lumped masses differ from the consistent nodal weights, which excites small vibrations.
-    let close = if entry.is_explicit() { 1e-4 } else { 1e-9 };
+    let close = if kind.entry().is_explicit() { 1e-4 } else { 1e-9 };
     let expected = Vector2::new(0.5, 3.0 - 0.5 * 9.81 - late);
     let fallen = simulation.probe("end").unwrap();
     assert!((fallen - expected).norm() < close, "{fallen} {expected}");
@@ -74,8 +71,8 @@ fn a_free_body_falls(entry: Entry) {
 }
 
 /// A pulse changes the momentum of a free body by its impulse, F · duration/2.
-fn a_pulse_leaves_its_impulse(entry: Entry) {
-    let mut scene = with("spin", entry.kind, step(entry, 2e-3), 1, 0.3).force([0.5, 0.0], [0.0, 40.0]).pulse(0.05, 0.2);
+fn a_pulse_leaves_its_impulse(kind: IntegratorKind) {
+    let mut scene = with("spin", kind, step(kind, 2e-3), 1, 0.3).force([0.5, 0.0], [0.0, 40.0]).pulse(0.05, 0.2);
     scene.start.spin = 0.0;
     let linear = momentum(&run(&scene)).linear;
     // Sums over a period of sin² are exact unless the pulse begins or ends within a step.
@@ -84,16 +81,16 @@ fn a_pulse_leaves_its_impulse(entry: Entry) {
 
 /// The ledger balances with all entries at once: weight, pulses of a force and a moment, damping, a mouse spring that
 /// pulls and is released, and an edit.
-fn the_ledger_closes(entry: Entry) {
-    let h = step(entry, 1.0 / 120.0);
-    let mut scene = with("swing", entry.kind, h, 1, 1.0)
+fn the_ledger_closes(kind: IntegratorKind) {
+    let h = step(kind, 1.0 / 120.0);
+    let mut scene = with("swing", kind, h, 1, 1.0)
         .force("right", [0.0, 30.0])
         .pulse(0.1, 0.3)
         .moment("right", 5.0)
         .moment("right", 20.0)
         .pulse(0.0, 0.2);
     scene.dynamics.damping.mass = 0.3;
-    scene.dynamics.damping.stiffness = if entry.is_explicit() { 1e-5 } else { 1e-3 };
+    scene.dynamics.damping.stiffness = if kind.entry().is_explicit() { 1e-5 } else { 1e-3 };
     scene.solver.tolerance = 1e-10;
     let mut simulation = Simulation::new(&scene).unwrap();
     let steps = (1.0 / h).round() as u32;
@@ -126,15 +123,14 @@ fn the_ledger_closes(entry: Entry) {
 }
 
 /// Rayleigh damping: after whole periods, a small first mode keeps exp(−(a + b ω²) t) of its energy.
-fn damping_removes_the_energy_of_rayleighs_formula(entry: Entry) {
-    let rate: f64 = if entry.is_explicit() { 7680.0 } else { 960.0 };
+fn damping_removes_the_energy_of_rayleighs_formula(kind: IntegratorKind) {
+    let rate: f64 = if kind.entry().is_explicit() { 7680.0 } else { 960.0 };
     let kept = |mass: f64, stiffness: f64| {
-        let mut scene = beam(8, 10.0).moving(entry.kind, 1.0 / rate);
+        let mut scene = beam(8, 10.0).moving(kind, 1.0 / rate);
         (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
         (scene.dynamics.iterations, scene.dynamics.duration) = (0, 3.0);
         let mut simulation = Simulation::new(&scene).unwrap();
-        let m = Mass::new(simulation.system(), scene.material.area_density());
-        let omega = lowest_frequency(simulation.problem(), &m).unwrap();
+        let omega = lowest_frequency(&simulation);
         simulation.start_from(&first_mode(&simulation)).unwrap();
         let before = simulation.motion().unwrap().ledger().total();
         let steps = (TAU / omega * rate).round();
@@ -146,15 +142,15 @@ fn damping_removes_the_energy_of_rayleighs_formula(entry: Entry) {
     };
     // The integrator's own dissipation is divided out.
     let undamped = kept(0.0, 0.0);
-    for damping in [(0.1, 0.0), (0.0, if entry.is_explicit() { 1e-3 } else { 0.01 })] {
+    for damping in [(0.1, 0.0), (0.0, if kind.entry().is_explicit() { 1e-3 } else { 0.01 })] {
         let off = kept(damping.0, damping.1) / undamped;
         assert!((off - 1.0).abs() < 0.003, "{damping:?}: {off}");
     }
 }
 
 /// Under small loads, linear theory gives the same motion as the corotational formulation.
-fn linear_theory_is_the_limit_of_small_loads(entry: Entry) {
-    let mut scene = with("swing", entry.kind, step(entry, 1.0 / 60.0), 1, 1.0);
+fn linear_theory_is_the_limit_of_small_loads(kind: IntegratorKind) {
+    let mut scene = with("swing", kind, step(kind, 1.0 / 60.0), 1, 1.0);
     scene.scale_loads(1e-6);
     let tip = |method| run(&scene.clone().with_method(method)).probe("tip").unwrap();
     let [corotated, linear] = [MethodKind::Newton, MethodKind::Linear].map(tip);
@@ -163,11 +159,11 @@ fn linear_theory_is_the_limit_of_small_loads(entry: Entry) {
 
 /// The same scene gives bitwise the same motion, with or without a ledger. A snapshot continues as the original does,
 /// and a reset starts again from the beginning.
-fn motion_is_reproduced_to_the_last_bit(entry: Entry) {
-    let scene = if entry.is_explicit() {
-        with("swing", entry.kind, 2e-4, 1, 0.1)
+fn motion_is_reproduced_to_the_last_bit(kind: IntegratorKind) {
+    let scene = if kind.entry().is_explicit() {
+        with("swing", kind, 2e-4, 1, 0.1)
     } else {
-        with("flick", entry.kind, 1.0 / 120.0, 1, 0.5)
+        with("flick", kind, 1.0 / 120.0, 1, 0.5)
     };
     let (mut a, mut b) = (Simulation::new(&scene).unwrap(), Simulation::new(&scene).unwrap());
     b.keep_ledger(false);

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
-use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::method::METHODS;
 use warpbeam::method::Reason;
 use warpbeam::scene::Analysis;
@@ -44,7 +43,7 @@ pub fn trials() -> Vec<Trial> {
 
 /// Every integrator that is not explicit runs a dynamic scene to its end, and its energy ledger balances.
 fn the_scene_runs_to_its_end(id: &'static str) {
-    for integrator in INTEGRATORS.iter().filter(|i| !i.is_explicit()) {
+    for integrator in IntegratorKind::all().map(IntegratorKind::entry).filter(|i| !i.is_explicit()) {
         let mut scene = scene(id);
         scene.dynamics.integrator = integrator.kind;
         let mut simulation = Simulation::new(&scene).unwrap();
@@ -63,7 +62,9 @@ fn the_scene_runs_to_its_end(id: &'static str) {
 /// Runs a few steps of every integrator on every element, explicit integrators within their critical step.
 fn the_scene_moves_under_every_integrator_and_element(id: &'static str) {
     let elements = scene(id).elements();
-    for (integrator, element) in INTEGRATORS.iter().flat_map(|i| elements.clone().map(move |e| (i, e.entry()))) {
+    for (integrator, element) in
+        IntegratorKind::all().map(IntegratorKind::entry).flat_map(|i| elements.clone().map(move |e| (i, e.entry())))
+    {
         let mut scene = scene(id);
         scene.dynamics.integrator = integrator.kind;
         scene.set_element(element.kind);

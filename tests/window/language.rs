@@ -11,12 +11,11 @@ use egui::{FontId, Key, Modifiers, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use warpbeam::app::{Lab, Language, Settings, parse_panes};
-use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::{Source, registry};
 use warpbeam::study::{Extent, Study};
-use warpbeam::{Field, Scene, Simulation};
+use warpbeam::{Field, IntegratorKind, Scene, Simulation};
 
 /// Returns the Chinese texts by their English ones.
 fn catalogue() -> BTreeMap<String, String> {
@@ -329,7 +328,9 @@ fn every_named_entry_of_the_library_is_in_the_catalogue() {
     let known = catalogue();
     let mut texts: Vec<String> = Vec::new();
     texts.extend(METHODS.iter().flat_map(|entry| [entry.id, entry.about]).map(str::to_owned));
-    texts.extend(INTEGRATORS.iter().flat_map(|entry| [entry.id, entry.about]).map(str::to_owned));
+    texts.extend(
+        IntegratorKind::all().map(IntegratorKind::entry).flat_map(|entry| [entry.id, entry.about]).map(str::to_owned),
+    );
     texts.extend(ELEMENTS.iter().map(|entry| entry.about.to_owned()));
     texts.extend(Field::ALL.into_iter().map(|field| field.name().to_owned()));
     for built_in in registry::BUILT_IN {

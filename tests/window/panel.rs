@@ -9,7 +9,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::dynamics::INTEGRATORS;
 use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, MethodKind, Plane, Source};
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
@@ -975,13 +974,15 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
         let mut harness = harness_of(id);
         harness.key_press(Key::E);
         harness.run_steps(2);
-        for (integrator, plot) in INTEGRATORS.iter().zip(["Energy", "Tip", "Phase", "Spectrum"]) {
+        for (integrator, plot) in
+            IntegratorKind::all().map(IntegratorKind::entry).zip(["Energy", "Tip", "Phase", "Spectrum"])
+        {
             let mut scene = harness.state().scene().clone();
             scene.dynamics.integrator = integrator.kind;
             harness.state_mut().set_scene(scene).unwrap();
             // The other integrators are shown beside the first one, and hidden again.
             if ["Energy", "Tip"].contains(&plot) {
-                INTEGRATORS.iter().for_each(|other| harness.state_mut().compare_with(other.kind));
+                IntegratorKind::all().for_each(|other| harness.state_mut().compare_with(other));
             }
             harness.get_by_role_and_label(Role::Button, plot).click();
             harness.run_steps(2);
