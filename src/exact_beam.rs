@@ -216,12 +216,6 @@ impl ClampedBeam {
         self.path(1.0, 1).pop().map(|p| p.tip)
     }
 
-    /// Returns the same beam without stretch and shear: the elastica.
-    #[must_use]
-    pub fn elastica(self) -> Self {
-        Self { stretch_compliance: 0.0, shear_compliance: 0.0, ..self }
-    }
-
     /// Returns the tip's displacement in linear beam theory: P L³/3EI, q L⁴/8EI, M L²/2EI across, F L/EA and q L²/2EA
     /// along, and the shear's P L/GA and q L²/2GA.
     #[must_use]
@@ -380,3 +374,6 @@ impl ExactBeam {
         Some([around(&rest), around(&axis)])
     }
 }
+
+#[cfg(test)]
+mod tests;

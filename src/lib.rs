@@ -118,8 +118,7 @@ mod displacement;
 mod dynamics;
 #[doc(hidden)]
 pub mod element;
-#[doc(hidden)]
-pub mod exact_beam;
+mod exact_beam;
 pub mod export;
 #[doc(hidden)]
 pub mod format;

@@ -101,9 +101,7 @@ pub struct Row {
     pub alpha: f64,
     /// Angle of the load, rad.
     pub angle: f64,
-    pub elastica: nalgebra::Vector2<f64>,
     pub reissner: nalgebra::Vector2<f64>,
-    pub reissner_angle: f64,
 }
 
 /// Reads the reference table of clamped beams.
@@ -120,9 +118,7 @@ pub fn cantilever_table() -> Vec<Row> {
                 length_over_height: v[0],
                 alpha: v[1],
                 angle: v[2].to_radians(),
-                elastica: nalgebra::Vector2::new(v[3], v[4]),
                 reissner: nalgebra::Vector2::new(v[5], v[6]),
-                reissner_angle: v[7],
             }
         })
         .collect()

@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
 use warpbeam::article::stiffness::ElementStiffness;
 use warpbeam::assembly::{Forces, Matrix, Problem, System};
 use warpbeam::element::{Lame, QuadraturePoint, Tangent, side_weights, warped_strain};
-use warpbeam::exact_beam::error_percent;
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::{ElementKind, Load, Material, Mesh, MethodKind, Plane, Scene, Simulation, Status};
 
@@ -371,12 +370,12 @@ fn q4_bends_with_few_cells() {
     for (id, [along, across], bound) in cases {
         let scene = crate::common::scene(id).with_element(ElementKind::Q4).with_cells(along, across);
         let scene = scene.with_method(MethodKind::Newton);
-        let reference = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
+        let reference = warpbeam::Reference::of(&scene).unwrap().first().unwrap();
         let mut simulation = Simulation::new(&scene).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);
         assert_eq!(simulation.certify().stable, Some(true));
         let solution = simulation.solution();
-        let error = error_percent(solution.probes[0].u, reference).unwrap();
+        let error = reference.error_percent(&solution.probes[0]).unwrap();
         println!("{id} {along} x {across}: {error:.3} %, {} solves", simulation.iterations());
         assert!(error <= bound, "{id} {along} × {across}: {error} %");
         assert!(along == 5 || simulation.iterations() <= 9, "{id} {along} × {across}: {}", simulation.iterations());

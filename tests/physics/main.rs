@@ -16,7 +16,6 @@ mod dynamics;
 mod edits;
 mod elements;
 mod equilibria;
-mod exact_beams;
 mod gmsh;
 mod grab;
 mod load_path;
