@@ -106,8 +106,8 @@
 #[cfg(feature = "app")]
 #[doc(hidden)]
 pub mod app;
-#[doc(hidden)]
-pub mod article;
+#[cfg(feature = "app")]
+mod article;
 #[doc(hidden)]
 pub mod assembly;
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]

@@ -1,6 +1,6 @@
 //! Affine maps from the corners of a triangle before and after deformation (article eqs. 4–15).
 
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 /// Reason why there is no affine map.
@@ -23,7 +23,7 @@ pub enum AffineError {
 
 /// Lower bound of area over squared length: a few hundred rounding errors. It rejects slivers whose maps would consist
 /// of rounding errors, at the cost of some that could still be solved.
-pub const DEGENERATE: f64 = 1e-13;
+const DEGENERATE: f64 = 1e-13;
 
 /// Affine map x ↦ M x + d in the plane (eqs. 4–9).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,17 +61,7 @@ impl Affine2 {
         let linear = moved * edges.try_inverse().ok_or(collinear)?;
         Ok(Self { linear, translation: deformed[0] - linear * rest[0] })
     }
-
-    /// Returns M x + d.
-    #[must_use]
-    pub fn apply(&self, x: Vector2<f64>) -> Vector2<f64> {
-        self.linear * x + self.translation
-    }
-
-    /// Returns the homogeneous matrix of eq. (9), which is translation times linear part, eq. (28).
-    #[must_use]
-    pub fn homogeneous(&self) -> Matrix3<f64> {
-        let (m, d) = (&self.linear, &self.translation);
-        Matrix3::new(m.m11, m.m12, d.x, m.m21, m.m22, d.y, 0.0, 0.0, 1.0)
-    }
 }
+
+#[cfg(test)]
+mod tests;

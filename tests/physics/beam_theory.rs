@@ -1,11 +1,7 @@
-//! Tests of whole beams: beam theory, equilibrium, the article's frame, and independence of the frame of reference.
+//! Tests of whole beams: beam theory, equilibrium, and independence of the frame of reference.
 
 use crate::common::{scene, scene_with, solved};
-use nalgebra::{DMatrix, DVector, Vector2};
-use warpbeam::article::affine::Affine2;
-use warpbeam::article::stiffness::ElementStiffness;
-use warpbeam::element::QuadraturePoint;
-use warpbeam::rotation::{Rotation, polar};
+use warpbeam::rotation::Rotation;
 use warpbeam::{Load, MethodKind, Place, Scene, Simulation, Solution, Status};
 
 fn solution(scene: &Scene) -> Solution {
@@ -97,68 +93,6 @@ fn the_result_does_not_depend_on_the_frame_of_reference() {
             for (u, v) in reference.displacement().iter().zip(simulation.displacement()) {
                 assert!((turn.apply(*u) - v).norm() < 1e-9 * size, "{id} {degrees}°");
             }
-        }
-    }
-}
-
-/// The article's frame, computed with its own dense matrices: m_cMatRK, m_cMatRKRT, R K X, 24 → 20, solve, 20 → 24,
-/// element maps, polar decomposition. Every frame of `warped` gives the same positions.
-#[test]
-fn warped_frames_are_the_articles_frames() {
-    let scene = scene("article");
-    let mut simulation = Simulation::new(&scene).unwrap();
-    let mesh = simulation.system().mesh().clone();
-    assert_eq!((mesh.nodes().len(), mesh.element_count(), simulation.system().dofs()), (12, 10, 20));
-    let rest = DVector::from_iterator(24, mesh.nodes().iter().flat_map(|x| [x.x, x.y]));
-    let dead = simulation.problem().loads().dead_force();
-    let load = DVector::from_iterator(24, dead.iter().flat_map(|f| [f.x, f.y]));
-    let entry = mesh.element().entry();
-    let elements: Vec<(Vec<usize>, ElementStiffness)> = mesh
-        .elements()
-        .map(|t| {
-            let corners = [t[0], t[1], t[2]].map(|n| mesh.nodes()[n as usize]);
-            let unknowns = t.iter().flat_map(|&n| [2 * n as usize, 2 * n as usize + 1]).collect();
-            let point = QuadraturePoint::<3>::new(entry, &corners, entry.points[0].at, entry.points[0].weight);
-            (unknowns, ElementStiffness::new(&[point], scene.material.membrane()))
-        })
-        .collect();
-    let mut r = vec![Rotation::IDENTITY; 10];
-    let mut x = rest.clone();
-    for frame in 0..15 {
-        let (mut a, mut b) = (DMatrix::zeros(24, 24), load.clone());
-        for ((unknowns, stiffness), &r) in elements.iter().zip(&r) {
-            let rkrt = stiffness.rkrt(r);
-            let element_rest = DVector::from_iterator(6, unknowns.iter().map(|&i| rest[i]));
-            let offset = stiffness.force_offset(r, &element_rest);
-            for (p, &i) in unknowns.iter().enumerate() {
-                b[i] += offset[p];
-                for (q, &j) in unknowns.iter().enumerate() {
-                    a[(i, j)] += rkrt[(p, q)];
-                }
-            }
-        }
-        // 24 → 20: the clamped nodes are the first two; their known positions go to the right-hand side.
-        let free: Vec<usize> = (4..24).collect();
-        let reduced = a.select_rows(&free).select_columns(&free);
-        let known = a.select_rows(&free).columns(0, 4) * rest.rows(0, 4);
-        let solved = reduced.lu().solve(&(b.select_rows(&free) - known)).unwrap();
-        x.rows_mut(4, 20).copy_from(&solved);
-        for (r, t) in r.iter_mut().zip(mesh.elements()) {
-            let corner = |n: u32| Vector2::new(x[2 * n as usize], x[2 * n as usize + 1]);
-            let map = Affine2::from_triangle(
-                [t[0], t[1], t[2]].map(|n| mesh.nodes()[n as usize]),
-                [t[0], t[1], t[2]].map(corner),
-            );
-            *r = polar(&map.unwrap().linear).unwrap();
-        }
-        simulation.step();
-        for (n, u) in simulation.displacement().iter().enumerate() {
-            let ours = mesh.nodes()[n] + u;
-            let theirs = Vector2::new(x[2 * n], x[2 * n + 1]);
-            assert!((ours - theirs).norm() < 1e-9, "frame {frame}, node {n}: {ours} {theirs}");
-        }
-        for (ours, theirs) in simulation.state().rotations().iter().zip(&r) {
-            assert!((ours.angle() - theirs.angle()).abs() < 1e-9, "frame {frame}");
         }
     }
 }

@@ -1,86 +1,14 @@
-//! Compares elements with independent numbers. Tests that every element must pass are in `tests/registry`.
+//! Compares elements with independent numbers. Tests that every element must pass are in `tests/registry`, those of the
+//! stiffness of triangles in `src/article/stiffness`.
 
 use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
-use warpbeam::article::stiffness::ElementStiffness;
 use warpbeam::assembly::{Forces, Matrix, Problem, System};
-use warpbeam::element::{Lame, QuadraturePoint, Tangent, side_weights, warped_strain};
+use warpbeam::element::{Lame, Tangent, side_weights, warped_strain};
 use warpbeam::rotation::{Rotation, polar};
 use warpbeam::{ElementKind, Load, Material, Mesh, MethodKind, Plane, Scene, Simulation, Status};
 
-const X: [[f64; 2]; 3] = [[0.0, 0.0], [2.0, 0.3], [0.4, 1.1]];
-const MOVED: [[f64; 2]; 3] = [[0.1, -0.2], [0.9, 1.7], [-0.8, 0.7]];
-
 fn material(plane: Plane) -> Material {
     Material { young: 100.0, poisson: 0.3, density: 1.0, thickness: 0.5, plane }
-}
-
-/// Returns the quadrature points of an element with these rest nodes.
-fn points<const N: usize>(kind: ElementKind, nodes: [[f64; 2]; N]) -> Vec<QuadraturePoint<N>> {
-    let rest = nodes.map(Vector2::from);
-    kind.entry().points.iter().map(|p| QuadraturePoint::new(kind.entry(), &rest, p.at, p.weight)).collect()
-}
-
-/// The first two rows of Ke match numbers computed independently in rational arithmetic.
-#[test]
-fn t3_stiffness_matches_independent_numbers() {
-    let rows = [
-        (
-            Plane::Stress,
-            [20.287405, 10.989011, -8.664413, -6.868132, -11.622992, -4.120879],
-            [10.989011, 36.770921, -5.494505, 4.385038, -5.494505, -41.155959],
-        ),
-        (
-            Plane::Strain,
-            [22.189349, 14.792899, -11.279586, -5.917160, -10.909763, -8.875740],
-            [14.792899, 44.378698, -10.724852, 6.286982, -4.068047, -50.665680],
-        ),
-    ];
-    for (plane, first, second) in rows {
-        let ke = ElementStiffness::new(&points(ElementKind::T3, X), material(plane).membrane()).ke;
-        for column in 0..6 {
-            assert!((ke[(0, column)] - first[column]).abs() < 1e-6, "{plane:?} {ke}");
-            assert!((ke[(1, column)] - second[column]).abs() < 1e-6, "{plane:?} {ke}");
-        }
-        assert!((ke.transpose() - &ke).norm() < 1e-12);
-    }
-}
-
-/// F, R, S, the warped force and the energy of the same triangle in a deformed state.
-#[test]
-fn t3_warped_force_matches_independent_numbers() {
-    let cases = [
-        (Plane::Stress, [4.826830, -2.485061, 3.753278, 0.968050, -8.580108, 1.517011], 0.755058787),
-        (Plane::Strain, [5.870381, -4.010955, 4.666842, 1.760800, -10.537223, 2.250155], 0.934735414),
-    ];
-    for (plane, expected, energy) in cases {
-        let moduli = material(plane).membrane();
-        let points = points(ElementKind::T3, X);
-        let [point] = points[..] else { unreachable!("one point") };
-        let u = [0, 1, 2].map(|i| Vector2::from(MOVED[i]) - Vector2::from(X[i]));
-        let h = point.displacement_gradient(&u);
-        let f = Matrix2::identity() + h;
-        assert!((f - Matrix2::new(0.552885, -1.019231, 0.875, 0.5)).amax() < 1e-6);
-        let r = polar(&f).unwrap();
-        assert!((r.c - 0.485831).abs() < 1e-6 && (r.s - 0.874053).abs() < 1e-6);
-        let s = r.matrix().transpose() * f;
-        assert!((s - Matrix2::new(1.033405, -0.058148, -0.058148, 1.133777)).amax() < 1e-6);
-        assert!((warped_strain(r, &h) - (s - Matrix2::identity())).amax() < 1e-14);
-        let force = point.warped_force(moduli, r, &h);
-        for (a, force) in force.iter().enumerate() {
-            assert!((force.x - expected[2 * a]).abs() < 1e-6 && (force.y - expected[2 * a + 1]).abs() < 1e-6);
-        }
-        let strain = warped_strain(r, &h);
-        let psi = point.area * 0.5 * moduli.stress(&strain).dot(&strain);
-        assert!((psi - energy).abs() < 1e-9, "{psi}");
-        assert!((point.area * moduli.energy_density(&strain) - energy).abs() < 1e-9);
-        // Eq. (2) with matrices: R Ke (Rᵀ x − X).
-        let stiffness = ElementStiffness::new(&[point], moduli);
-        let flat = |p: [[f64; 2]; 3]| DVector::from_iterator(6, p.into_iter().flatten());
-        let written_out = stiffness.rkrt(r) * flat(MOVED) - stiffness.force_offset(r, &flat(X));
-        for (ours, theirs) in force.iter().flat_map(|f| [f.x, f.y]).zip(written_out.iter()) {
-            assert!((ours - theirs).abs() < 1e-12);
-        }
-    }
 }
 
 /// Uniaxial stress: axial strain p/E, lateral −ν p/E (the numbers of SOFA's LinearElasticity_test).
@@ -110,45 +38,6 @@ fn plane_strain_has_no_strain_out_of_the_plane() {
     let exx = (stress.m11 - m.poisson * (stress.m22 + szz)) / m.young;
     assert!((exx - strain.m11).abs() < 1e-15);
     assert!((m.elasticity_matrix().m11 - (lambda + 2.0 * mu)).abs() < 1e-12);
-}
-
-/// The first two rows of the T6 stiffness match numbers computed independently in rational arithmetic.
-#[test]
-fn t6_stiffness_matches_independent_numbers() {
-    let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-    let nodes = [X[0], X[1], X[2], middle(X[0], X[1]), middle(X[1], X[2]), middle(X[2], X[0])];
-    let points = points(ElementKind::T6, nodes);
-    let rows = [
-        (
-            Plane::Stress,
-            [
-                20.287405, 10.989011, 2.888138, 2.289377, 3.874331, 1.373626, -11.552550, -9.157509, 0.0, 0.0,
-                -15.497323, -5.494505,
-            ],
-            [
-                10.989011, 36.770921, 1.831502, -1.461679, 1.831502, 13.718653, -7.326007, 5.846717, 0.0, 0.0,
-                -7.326007, -54.874613,
-            ],
-        ),
-        (
-            Plane::Strain,
-            [
-                22.189349, 14.792899, 3.759862, 1.972387, 3.636588, 2.958580, -15.039448, -7.889546, 0.0, 0.0,
-                -14.546351, -11.834320,
-            ],
-            [
-                14.792899, 44.378698, 3.574951, -2.095661, 1.356016, 16.888560, -14.299803, 8.382643, 0.0, 0.0,
-                -5.424063, -67.554241,
-            ],
-        ),
-    ];
-    for (plane, first, second) in rows {
-        let ke = ElementStiffness::new(&points, material(plane).membrane()).ke;
-        for column in 0..12 {
-            assert!((ke[(0, column)] - first[column]).abs() < 1e-6, "{plane:?} {column} {ke}");
-            assert!((ke[(1, column)] - second[column]).abs() < 1e-6, "{plane:?} {column} {ke}");
-        }
-    }
 }
 
 fn dead_force(scene: &Scene) -> Vec<Vector2<f64>> {

@@ -1,13 +1,10 @@
-//! Tests of the article's formulas: affine maps, the SVD and its interpretation, the
-//! 3×3 iteration, its examples and errata.
+//! Tests of the article's formulas: the SVD and its interpretation, the 3×3 iteration, its examples and errata. Tests
+//! of its affine maps are in `src/article/affine`.
 
-mod affine;
 mod decomposition;
 
-use affine::{Affine3, Affine3Error, Diagonal, quadrilateral_maps, triangle_system};
 use decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
-use warpbeam::article::affine::{Affine2, AffineError};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use warpbeam::rotation::polar;
 
 /// Erratum: with eq. (38) as printed, c = a √(a² + b²), the result is not a rotation.
@@ -20,120 +17,6 @@ fn erratum_eq_38_lacks_the_reciprocal() {
     let r = polar(&f).unwrap();
     assert!((r.c - a / root).abs() < 1e-15 && (r.s - b / root).abs() < 1e-15);
     assert!((r.c - 0.485831).abs() < 1e-6 && (r.s - 0.874053).abs() < 1e-6);
-}
-
-fn corners<const N: usize>(points: [[f64; 2]; N]) -> [Vector2<f64>; N] {
-    points.map(Vector2::from)
-}
-
-const TRIANGLE: [[f64; 2]; 3] = [[0.3, -0.2], [2.1, 0.4], [0.9, 1.7]];
-
-/// Checks that the article's system (13) and the direct map agree: P a = y.
-fn assert_solves_the_system(rest: [Vector2<f64>; 3], deformed: [Vector2<f64>; 3], map: &Affine2) {
-    let m = map.homogeneous();
-    let a = SVector::<f64, 6>::from_row_slice(&[m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 0)], m[(1, 1)], m[(1, 2)]]);
-    let y = SVector::<f64, 6>::from_fn(|row, _| deformed[row % 3][row / 3]);
-    assert!((triangle_system(rest) * a - y).norm() < 1e-12);
-}
-
-#[test]
-fn article_example_1_nothing_moves() {
-    let rest = corners(TRIANGLE);
-    let map = Affine2::from_triangle(rest, rest).unwrap();
-    assert!((map.homogeneous() - Matrix3::identity()).norm() < 1e-14);
-    assert_solves_the_system(rest, rest, &map);
-}
-
-#[test]
-fn article_example_2_a_translation() {
-    let rest = corners(TRIANGLE);
-    let deformed = rest.map(|p| p + Vector2::new(6.0, 7.0));
-    let map = Affine2::from_triangle(rest, deformed).unwrap();
-    let expected = Matrix3::new(1.0, 0.0, 6.0, 0.0, 1.0, 7.0, 0.0, 0.0, 1.0);
-    assert!((map.homogeneous() - expected).norm() < 1e-13);
-    assert_solves_the_system(rest, deformed, &map);
-}
-
-#[test]
-fn article_example_3_onto_a_line_but_not_back() {
-    let (k, b) = (0.5, -1.0);
-    let rest = corners(TRIANGLE);
-    let deformed = rest.map(|p| Vector2::new(p.x, k * p.x + b));
-    let map = Affine2::from_triangle(rest, deformed).unwrap();
-    let expected = Matrix3::new(1.0, 0.0, 0.0, k, 0.0, b, 0.0, 0.0, 1.0);
-    assert!((map.homogeneous() - expected).norm() < 1e-13);
-    assert!(map.linear.determinant().abs() < 1e-14);
-    assert_solves_the_system(rest, deformed, &map);
-    assert!(matches!(Affine2::from_triangle(deformed, rest), Err(AffineError::CollinearCorners { .. })));
-}
-
-#[test]
-fn collinear_corners_are_refused_at_every_size() {
-    for scale in [1e-150, 1e-3, 1.0, 1e6, 1e150] {
-        let rest = corners([[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]]).map(|p| p * scale);
-        assert!(matches!(Affine2::from_triangle(rest, rest), Err(AffineError::CollinearCorners { .. })), "{scale}");
-        let rest = corners(TRIANGLE).map(|p| p * scale);
-        let map = Affine2::from_triangle(rest, rest).unwrap();
-        assert!((map.linear - Matrix2::identity()).norm() < 1e-13, "{scale}");
-    }
-    let point = corners([[1.0, 1.0]; 3]);
-    assert!(matches!(Affine2::from_triangle(point, point), Err(AffineError::CollinearCorners { .. })));
-    let nan = corners([[f64::NAN, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-    assert_eq!(Affine2::from_triangle(nan, nan), Err(AffineError::NotFinite));
-}
-
-#[test]
-fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
-    let rest = corners([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
-    let deformed = corners([[0.0, 0.0], [2.0, 0.3], [2.5, 1.6], [-0.2, 1.0]]);
-    let one_three = quadrilateral_maps(rest, deformed, Diagonal::OneThree).unwrap();
-    let two_four = quadrilateral_maps(rest, deformed, Diagonal::TwoFour).unwrap();
-    // Each map takes its corners to their deformed positions.
-    for (map, corners) in
-        [(one_three[0], [0, 1, 2]), (one_three[1], [0, 2, 3]), (two_four[0], [0, 1, 3]), (two_four[1], [1, 2, 3])]
-    {
-        for i in corners {
-            assert!((map.apply(rest[i]) - deformed[i]).norm() < 1e-13);
-        }
-    }
-    // All four maps differ: the quadrilateral has no single map, and the diagonal matters.
-    let maps = [one_three[0], one_three[1], two_four[0], two_four[1]];
-    for (i, a) in maps.iter().enumerate() {
-        for b in &maps[..i] {
-            assert!((a.linear - b.linear).norm() > 0.1);
-        }
-    }
-    // The maps agree if the deformation is affine.
-    let affine = rest.map(|p| Vector2::new(1.0 + 2.0 * p.x - p.y, 0.5 * p.x + 3.0 * p.y));
-    let a = quadrilateral_maps(rest, affine, Diagonal::OneThree).unwrap();
-    let b = quadrilateral_maps(rest, affine, Diagonal::TwoFour).unwrap();
-    for map in [a[1], b[0], b[1]] {
-        assert!((map.homogeneous() - a[0].homogeneous()).norm() < 1e-13);
-    }
-}
-
-#[test]
-fn a_tetrahedron_has_one_map() {
-    let rest = [[0.1, 0.0, 0.2], [1.3, 0.1, 0.0], [0.2, 1.1, -0.1], [0.0, 0.3, 0.9]].map(Vector3::from);
-    let m = Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564);
-    let d = Vector3::new(1.0, -2.0, 3.0);
-    let map = Affine3::from_tetrahedron(rest, rest.map(|p| m * p + d)).unwrap();
-    assert!((map.linear - m).norm() < 1e-12 && (map.translation - d).norm() < 1e-12);
-    assert!((map.homogeneous().fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12);
-    // A general solver gives the same for all twelve rows of eq. (24).
-    let p = SMatrix::<f64, 12, 12>::from_fn(|row, column| {
-        let corner = rest[row % 4];
-        if row / 4 == column / 4 { [corner.x, corner.y, corner.z, 1.0][column % 4] } else { 0.0 }
-    });
-    let y = SVector::<f64, 12>::from_fn(|row, _| (m * rest[row % 4] + d)[row / 4]);
-    let a = p.lu().solve(&y).unwrap();
-    for (row, entries) in a.as_slice().chunks(4).enumerate() {
-        for (column, &entry) in entries.iter().enumerate() {
-            assert!((map.homogeneous()[(row, column)] - entry).abs() < 1e-11);
-        }
-    }
-    let flat = rest.map(|p| Vector3::new(p.x, p.y, p.x + p.y));
-    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(Affine3Error::CoplanarCorners));
 }
 
 /// Eq. (26): a shear is a rotation, a stretch and a rotation, with the printed singular values and factors.
@@ -156,9 +39,7 @@ fn article_eq_26_svd_of_a_shear() {
 /// Eqs. (28), (30): a plane translation as a 3×3 matrix has the printed singular values.
 #[test]
 fn article_eq_30_svd_of_a_translation() {
-    let rest = corners(TRIANGLE);
-    let map = Affine2::from_triangle(rest, rest.map(|p| p + Vector2::new(6.0, 7.0))).unwrap();
-    let translation = map.homogeneous();
+    let translation = Matrix3::new_translation(&Vector2::new(6.0, 7.0));
     let p = polar_from_svd(&translation).unwrap();
     let mut stretches = p.right.symmetric_eigenvalues().as_slice().to_vec();
     stretches.sort_by(|a, b| b.total_cmp(a));
@@ -245,9 +126,6 @@ fn the_3x3_iteration_at_the_extremes() {
 #[test]
 fn numbers_out_of_range_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
-        assert!(Affine2::from_triangle([Vector2::new(bad, 0.0); 3], [Vector2::zeros(); 3]).is_err());
-        assert!(Affine3::from_tetrahedron([Vector3::repeat(bad); 4], [Vector3::zeros(); 4]).is_err());
-        assert!(quadrilateral_maps([Vector2::repeat(bad); 4], [Vector2::zeros(); 4], Diagonal::OneThree).is_err());
         let matrix = Matrix3::repeat(bad);
         assert!(polar3(&matrix).is_err() && proper_rotation3(&matrix).is_err());
         match polar_from_svd(&matrix) {
