@@ -3,9 +3,10 @@
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 use super::edge::{no_such_edge, node_at};
+use super::held_points::{HeldPoint, axes, point_weights};
 use crate::format::number;
 use crate::mesh::Mesh;
-use crate::scene::{Analysis, Axis, Invalid, Place, Support};
+use crate::scene::{Analysis, Invalid, Place, Support};
 use crate::sentence::sentence;
 
 /// Returns the unknowns (2 · node + axis) that supports fix: `true` for fixed ones.
@@ -18,24 +19,25 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bo
             }
         }
     }
-    if fixed.iter().all(|&f| f) {
-        let message = sentence!("expected at least one node that can move, got supports that fix every node");
-        return Err(Invalid::new("support", message));
-    }
     Ok(fixed)
 }
 
-/// Returns the nodes of a support; `key` is its table in the scene.
+/// Rejects supports that leave no unknown; `dependent` is the number of unknowns that held points eliminate.
+pub(super) fn check_any_free(fixed: &[bool], dependent: usize) -> Result<(), Invalid> {
+    if fixed.iter().filter(|&&fixed| !fixed).count() <= dependent {
+        let message = sentence!("expected at least one node that can move, got supports that fix every node");
+        return Err(Invalid::new("support", message));
+    }
+    Ok(())
+}
+
+/// Returns the nodes of a support; none if it holds a point between nodes. `key` is its table in the scene.
 pub(super) fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<u32>, Invalid> {
     match &support.place {
         Place::Edge(name) => mesh.edge_nodes(name).ok_or_else(|| no_such_edge(mesh, name, key)),
+        Place::At(_) if point_weights(support, mesh).is_some() => Ok(Vec::new()),
         Place::At(at) => Ok(vec![node_at(mesh, *at, key)?]),
     }
-}
-
-/// Returns the axes, x and y, that a support fixes: `true` for fixed ones.
-pub(super) fn axes(support: &Support) -> [bool; 2] {
-    [Axis::X, Axis::Y].map(|axis| support.fix.contains(&axis))
 }
 
 /// Rigid motions that the supports leave to a body.
@@ -83,9 +85,16 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
 
 impl Hold {
     /// Determines the rigid motions; `is_grid` for a rectangle of cells, which has no hinges.
-    pub(super) fn of(mesh: &Mesh, fixed: &[bool], is_grid: bool) -> Self {
+    pub(super) fn of(mesh: &Mesh, fixed: &[bool], points: &[HeldPoint], is_grid: bool) -> Self {
         let (parts, part_of) = mesh.parts();
         let mut held_nodes = vec![Vec::new(); parts];
+        for point in points {
+            // All nodes of an element are in one part.
+            let part = point.weights.first().and_then(|&(node, _)| part_of.get(node as usize));
+            if let Some(nodes) = part.and_then(|&part| held_nodes.get_mut(part as usize)) {
+                nodes.push((point.at, point.axes.as_slice()));
+            }
+        }
         for ((x, fixed), &part) in mesh.nodes().iter().zip(fixed.chunks_exact(2)).zip(&part_of) {
             // Nodes without an element are in no part.
             if let (true, Some(nodes)) = (fixed.contains(&true), held_nodes.get_mut(part as usize)) {
@@ -94,7 +103,7 @@ impl Hold {
         }
         let loose = held_nodes.iter().filter(|nodes| !is_held(nodes)).count();
         let hinged = if is_grid { None } else { mesh.hinged_parts() };
-        let hinge = hinged.and_then(|(parts, of_node)| loose_hinge(mesh, fixed, parts, &of_node));
+        let hinge = hinged.and_then(|(parts, of_node)| loose_hinge(mesh, fixed, points, parts, &of_node));
         Self { parts, loose, hinge }
     }
 }
@@ -102,13 +111,13 @@ impl Hold {
 /// Returns the hinge between parts that can move relative to each other although supports hold the body: the Gram
 /// matrix of the constraints of supports and hinges on the parts' rigid motions is singular. Of the nodes at which
 /// parts meet, returns the one about which they rotate most.
-fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) -> Option<u32> {
+fn loose_hinge(mesh: &Mesh, fixed: &[bool], points: &[HeldPoint], parts: usize, of_node: &[Vec<u32>]) -> Option<u32> {
     const SINGULAR: f64 = 1e-10;
     let (low, high) = mesh.bounds();
     let (centre, size) = ((low + high) * 0.5, (high - low).norm());
-    // Displacements of a node by the two translations and the rotation of a part.
-    let modes = |node: usize| {
-        let arm = (mesh.nodes()[node] - centre) / size;
+    // Displacements of a point by the two translations and the rotation of a part.
+    let modes = |at: Vector2<f64>| {
+        let arm = (at - centre) / size;
         [Vector3::new(1.0, 0.0, -arm.y), Vector3::new(0.0, 1.0, arm.x)]
     };
     let mut gram = DMatrix::<f64>::zeros(3 * parts, 3 * parts);
@@ -121,12 +130,23 @@ fn loose_hinge(mesh: &Mesh, fixed: &[bool], parts: usize, of_node: &[Vec<u32>]) 
         }
     };
     for (node, own) in of_node.iter().enumerate() {
-        for (axis, mode) in modes(node).iter().enumerate() {
+        for (axis, mode) in modes(mesh.nodes()[node]).iter().enumerate() {
             if let (Some(&first), true) = (own.first(), fixed[2 * node + axis]) {
                 add(&[(first, 1.0)], mode);
             }
             for &other in own.iter().skip(1) {
                 add(&[(own[0], 1.0), (other, -1.0)], mode);
+            }
+        }
+    }
+    for point in points {
+        // A node at which parts meet belongs to several of them; the element of the point is in the one common to its nodes.
+        let of = |&(node, _): &(u32, f64)| of_node[node as usize].as_slice();
+        let own = point.weights.first().into_iter().flat_map(of);
+        let common = own.copied().find(|part| point.weights.iter().all(|weight| of(weight).contains(part)));
+        for (mode, _) in modes(point.at).iter().zip(point.axes).filter(|(_, held)| *held) {
+            if let Some(part) = common {
+                add(&[(part, 1.0)], mode);
             }
         }
     }

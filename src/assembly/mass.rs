@@ -109,11 +109,12 @@ impl Mass {
 
     /// Adds `factor` times M to a matrix over the free unknowns.
     pub(crate) fn add_to(&self, factor: f64, matrix: &mut Matrix) {
-        let values = matrix.slots();
-        for MassEntry { mass, slots, .. } in &self.entries {
-            for &slot in slots {
-                values[slot as usize] += factor * mass;
+        matrix.sum(|values| {
+            for MassEntry { mass, slots, .. } in &self.entries {
+                for &slot in slots {
+                    values[slot as usize] += factor * mass;
+                }
             }
-        }
+        });
     }
 }

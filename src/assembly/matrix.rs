@@ -1,21 +1,29 @@
 //! Values of a sparse symmetric matrix.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix2;
 
 use super::Pattern;
+use super::pattern::Condensed;
 
 /// Values of a symmetric matrix over the free unknowns: the lower triangle, in the order of a [`Pattern`].
 #[derive(Clone, Debug)]
 pub struct Matrix {
-    /// One slot more than the pattern: entries of fixed unknowns are added there and never read.
+    /// One slot more than the pattern: entries of fixed unknowns are added there and never read. Then those of unknowns
+    /// that depend on others.
     values: Vec<f64>,
+    /// Number of entries of the pattern.
+    entries: usize,
+    condensed: Arc<Condensed>,
 }
 
 impl Matrix {
     /// Returns the zero matrix.
     #[must_use]
     pub fn new(pattern: &Pattern) -> Self {
-        Self { values: vec![0.0; pattern.entries() + 1] }
+        let (entries, condensed) = (pattern.entries(), pattern.condensed().clone());
+        Self { values: vec![0.0; entries + 1 + condensed.entries], entries, condensed }
     }
 
     /// Sets every value to zero.
@@ -26,28 +34,35 @@ impl Matrix {
     /// Returns the stored values.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        &self.values[..self.values.len() - 1]
+        &self.values[..self.entries]
     }
 
-    /// Returns the values for summation, indexed by slots as in [`Pattern::slot`].
-    pub(crate) fn slots(&mut self) -> &mut [f64] {
-        &mut self.values
+    /// Sums values, indexed by slots as in [`Pattern::slot`].
+    pub(crate) fn sum<T>(&mut self, add: impl FnOnce(&mut [f64]) -> T) -> T {
+        let result = add(&mut self.values);
+        for &(from, to, factor) in &self.condensed.terms {
+            self.values[to as usize] += factor * self.values[self.entries + 1 + from as usize];
+        }
+        self.values[self.entries..].fill(0.0);
+        result
     }
 
     /// Adds wᵢ wⱼ B for weighted nodes i, j at the slots of [`Pattern::block_slots`]; B is symmetric.
     pub(super) fn add_blocks(&mut self, slots: &[u32], weights: &[(u32, f64)], block: &Matrix2<f64>) {
-        let mut slots = slots.iter();
-        let mut add = |value: f64| {
-            if let Some(&slot) = slots.next() {
-                self.values[slot as usize] += value;
+        self.sum(|values| {
+            let mut slots = slots.iter();
+            let mut add = |value: f64| {
+                if let Some(&slot) = slots.next() {
+                    values[slot as usize] += value;
+                }
+            };
+            for (i, &(_, a)) in weights.iter().enumerate() {
+                for &(_, b) in &weights[..i] {
+                    [block.m11, block.m12, block.m21, block.m22].into_iter().for_each(|v| add(v * a * b));
+                }
+                [block.m11, block.m21, block.m22].into_iter().for_each(|v| add(v * a * a));
             }
-        };
-        for (i, &(_, a)) in weights.iter().enumerate() {
-            for &(_, b) in &weights[..i] {
-                [block.m11, block.m12, block.m21, block.m22].into_iter().for_each(|v| add(v * a * b));
-            }
-            [block.m11, block.m21, block.m22].into_iter().for_each(|v| add(v * a * a));
-        }
+        });
     }
 
     /// Iterates over the diagonal.

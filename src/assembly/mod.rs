@@ -6,6 +6,7 @@
 //! - [`Problem`]: a system with its material, loads and probes; forces, tangents and energies of a state.
 
 mod edge;
+mod held_points;
 mod hold;
 mod kinematics;
 mod loads;

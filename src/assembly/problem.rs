@@ -287,11 +287,14 @@ impl Problem {
     ) {
         internal.fill(Vector2::zeros());
         magnitude.fill(Vector2::zeros());
-        let matrix = tangent.map(|(tangent, matrix)| {
-            matrix.clear();
-            MatrixSum { tangent, slots: self.system.slots(), values: matrix.slots() }
-        });
-        work(self.system.elements(), self.material.membrane(), internal, magnitude, matrix);
+        let (elements, moduli) = (self.system.elements(), self.material.membrane());
+        let Some((tangent, matrix)) = tangent else {
+            work(elements, moduli, internal, magnitude, None);
+            return;
+        };
+        matrix.clear();
+        let slots = self.system.slots();
+        matrix.sum(|values| work(elements, moduli, internal, magnitude, Some(MatrixSum { tangent, slots, values })));
     }
 
     /// Adds the loads' part, at this load factor and for a body at rest, to a tangent of the elements, N/m: the mouse
@@ -325,7 +328,7 @@ impl Problem {
         if residual == 0.0 {
             return 0.0;
         }
-        let scale = pattern.norm(magnitude).max(pattern.norm(external));
+        let scale = pattern.norm_of_bounds(magnitude).max(pattern.norm(external));
         let bound =
             if self.supports.move_the_body() { self.supports.rounding(&self.system, &state.displacement) } else { 0.0 };
         if residual <= bound {
@@ -354,7 +357,7 @@ impl Problem {
             *bound += (magnitude * sums + external.abs() + residual.abs()) * UNIT;
         }
         let pattern = self.system.pattern();
-        let bound = pattern.norm(scratch) / pattern.norm(magnitude).max(pattern.norm(external));
+        let bound = pattern.norm_of_bounds(scratch) / pattern.norm_of_bounds(magnitude).max(pattern.norm(external));
         bound.is_finite().then_some(bound)
     }
 

@@ -1,11 +1,13 @@
-//! Supports on nodes, with their prescribed displacements.
+//! Supports on nodes and at points between them, with their prescribed displacements.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::hold::{axes, nodes_of};
+use super::held_points::{Constraint, HeldPoints, axes, point_weights};
+use super::hold::nodes_of;
 use super::{Kinematics, Matrix, NodeWeights, System};
 use crate::displacement::Displacement;
 use crate::element::{MatrixSum, Rotations, Tangent};
@@ -15,15 +17,17 @@ use crate::rotation::Rotation;
 use crate::scene::{Invalid, Material, Place, Support};
 use crate::state::State;
 
-/// Support on the nodes of a mesh.
+/// Support on the nodes of a mesh, or at a point between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalSupport {
     /// Place in the scene.
     pub place: Place,
     /// Fixed nodes; for x and y, `true` if the component is fixed. A component fixed by several supports belongs to the
-    /// first.
+    /// first. Empty if a point between nodes is held.
     pub nodes: Vec<(u32, [bool; 2])>,
-    /// Nodes with their weights: the middle of an edge is their weighted mean.
+    /// Components, x and y, of a point between nodes that are fixed; `None` for a support on nodes.
+    pub point: Option<[bool; 2]>,
+    /// Nodes with their weights: the middle of an edge, or a point between nodes, is their weighted mean.
     pub weights: NodeWeights,
     /// Prescribed displacement at full load, m.
     pub displacement: Vector2<f64>,
@@ -63,6 +67,8 @@ impl NodalSupport {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Supports {
     all: Vec<NodalSupport>,
+    /// Equations of supports at points between nodes.
+    held: HeldPoints,
     moves: bool,
     largest_load_step: f64,
     /// Diagonal of the stiffness at rest over the free unknowns, N/m, if supports move.
@@ -90,14 +96,18 @@ impl Supports {
         for (i, support) in supports.iter().enumerate() {
             let key = format!("support.{i}");
             let nodes = nodes_of(support, mesh, &key)?;
-            let weights = match &support.place {
-                Place::Edge(name) => system.edge(name, &key)?.1.weights().to_vec(),
-                Place::At(_) => nodes.iter().map(|&node| (node, 1.0)).collect(),
+            let between = point_weights(support, mesh);
+            let point = between.is_some().then(|| axes(support));
+            let weights = match (&support.place, between) {
+                (Place::Edge(name), _) => system.edge(name, &key)?.1.weights().to_vec(),
+                (Place::At(_), Some(weights)) => weights,
+                (Place::At(_), None) => nodes.iter().map(|&node| (node, 1.0)).collect(),
             };
             let middle = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
             let place = support.place.clone();
             let (displacement, rotation) = (support.displacement.into(), support.turn);
-            let mut new = NodalSupport { place, nodes: Vec::new(), weights, displacement, rotation, middle };
+            let nodes_of_own = Vec::with_capacity(nodes.len());
+            let mut new = NodalSupport { place, nodes: nodes_of_own, point, weights, displacement, rotation, middle };
             for node in nodes {
                 let mut own = axes(support);
                 for (axis, own) in own.iter_mut().enumerate().filter(|(_, own)| **own) {
@@ -121,12 +131,83 @@ impl Supports {
             all.push(new);
         }
         let moves = all.iter().any(NodalSupport::moves);
-        let mut result = Self { all, moves, largest_load_step: 1.0, diagonal: Vec::new() };
+        let held = system.held_points().clone();
+        let mut result = Self { all, held, moves, largest_load_step: 1.0, diagonal: Vec::new() };
+        result.check_redundant(system)?;
         if moves {
             result.largest_load_step = result.load_step_within(mesh, LARGEST_TURN);
             result.set_stiffness(material, system);
         }
         Ok(result)
+    }
+
+    /// Rejects a held point to which other supports prescribe another displacement.
+    fn check_redundant(&self, system: &System) -> Result<(), Invalid> {
+        let mesh = system.mesh();
+        for (support, constraint) in &self.held.redundant {
+            for factor in [0.5, 1.0] {
+                let mut u = vec![Vector2::zeros(); mesh.nodes().len()];
+                for (node, axis, target) in self.targets(mesh, factor, Kinematics::Corotated) {
+                    u[node as usize][axis] = target;
+                }
+                let axis = constraint.terms.keys().next().map_or(0, |unknown| unknown % 2) as usize;
+                let moved: f64 = constraint.terms.iter().map(|(&unknown, c)| c * component(&u, unknown)).sum();
+                if (moved - self.target(constraint, axis, factor, Kinematics::Corotated)).abs() > SAME * system.size() {
+                    let message = "expected the displacement that other supports give this point, which they hold";
+                    return Err(Invalid::new(format!("support.{support}"), message));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns Σ h g of an equation between displacements along an axis, m.
+    fn target(&self, constraint: &Constraint, axis: usize, factor: f64, kinematics: Kinematics) -> f64 {
+        let g = |support: &NodalSupport| support.take(support.middle, factor, kinematics)[axis];
+        constraint.targets.iter().map(|(&support, h)| self.all.get(support).map_or(0.0, |support| h * g(support))).sum()
+    }
+
+    /// Iterates over the unknowns that depend on others, with their displacement, m, for those of the others.
+    fn dependent<'a>(
+        &'a self,
+        factor: f64,
+        kinematics: Kinematics,
+        u: &'a [Vector2<f64>],
+    ) -> impl Iterator<Item = (u32, f64)> + 'a {
+        self.held.dependent.iter().map(move |dependent| {
+            let on = &dependent.on;
+            let others: f64 = on.terms.iter().map(|(&unknown, c)| c * component(u, unknown)).sum();
+            (dependent.unknown, others + self.target(on, dependent.unknown as usize % 2, factor, kinematics))
+        })
+    }
+
+    /// Returns `true` if held points are at their positions for this load factor, up to rounding errors.
+    fn points_are_at(&self, factor: f64, kinematics: Kinematics, u: &[Vector2<f64>]) -> bool {
+        let largest = || u.iter().map(|u| u.amax()).fold(0.0, f64::max);
+        self.dependent(factor, kinematics, u)
+            .all(|(unknown, value)| (component(u, unknown) - value).abs() <= SAME * largest())
+    }
+
+    /// Iterates over the supports at points between nodes, with the force, N, of each on its point, for f_ext − f_int of
+    /// every node.
+    pub(crate) fn point_forces<'a>(
+        &'a self,
+        residual: &'a [Vector2<f64>],
+    ) -> impl Iterator<Item = (&'a NodalSupport, Vector2<f64>)> + 'a {
+        let points = self.all.iter().enumerate().filter(|(_, support)| support.point.is_some());
+        points.map(move |(i, support)| (support, self.held.force(i, residual)))
+    }
+
+    /// Returns f_ext − f_int of every node, N, with the forces of supports at points between nodes among f_ext: what is
+    /// left belongs to supports on nodes.
+    pub(crate) fn with_point_forces<'a>(&self, residual: &'a [Vector2<f64>]) -> Cow<'a, [Vector2<f64>]> {
+        let mut result = Cow::Borrowed(residual);
+        for (support, force) in self.point_forces(residual) {
+            for &(node, weight) in &support.weights {
+                result.to_mut()[node as usize] += force * weight;
+            }
+        }
+        result
     }
 
     /// Recomputes the stiffness for another material.
@@ -137,10 +218,12 @@ impl Supports {
         let (rest, mut matrix) = (system.at_rest(), Matrix::new(system.pattern()));
         let mut scratch = [rest.displacement.to_vec(), rest.displacement.to_vec()];
         let [force, magnitude] = &mut scratch;
-        let sum = MatrixSum { tangent: Tangent::WARPED, slots: system.slots(), values: matrix.slots() };
         let (elements, moduli) = (system.elements(), material.membrane());
         let rotations = Rotations::Given(&rest.rotations);
-        elements.linearize(moduli, rest.compensated(), rotations, force, magnitude, Some(sum));
+        matrix.sum(|values| {
+            let sum = MatrixSum { tangent: Tangent::WARPED, slots: system.slots(), values };
+            elements.linearize(moduli, rest.compensated(), rotations, force, magnitude, Some(sum));
+        });
         self.diagonal = matrix.diagonal(system.pattern()).collect();
     }
 
@@ -186,17 +269,23 @@ impl Supports {
         for (node, axis, target) in self.targets(mesh, factor, kinematics) {
             u.put(node, axis, target);
         }
+        let dependent: Vec<(u32, f64)> = self.dependent(factor, kinematics, u).collect();
+        for (unknown, value) in dependent {
+            u.put(unknown / 2, unknown as usize % 2, value);
+        }
     }
 
-    /// Returns `true` if the fixed components of a displacement are exactly those of [`Self::put`]. The comparison is
-    /// exact because after a full rotation they equal the rest position up to rounding, but the body is not at rest.
+    /// Returns `true` if the fixed components of a displacement are exactly those of [`Self::put`], and those of held
+    /// points up to rounding errors. The comparison of nodes is exact because after a full rotation they equal the rest position up to rounding, but the body is not at rest.
     pub(crate) fn are_at(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &[Vector2<f64>]) -> bool {
         self.targets(mesh, factor, kinematics).all(|(node, axis, target)| u[node as usize][axis] == target)
+            && self.points_are_at(factor, kinematics, u)
     }
 
     /// Returns `true` if the fixed components of a displacement are zero.
     pub(crate) fn are_at_rest(&self, u: &[Vector2<f64>]) -> bool {
         self.fixed().all(|(node, axis)| u[node as usize][axis] == 0.0)
+            && self.points_are_at(0.0, Kinematics::Corotated, u)
     }
 
     fn fixed(&self) -> impl Iterator<Item = (u32, usize)> {
@@ -212,10 +301,17 @@ impl Supports {
             let now = mesh.node(node) + u[node as usize];
             increments.entry(node).or_insert([now; 2])[1][axis] = mesh.node(node)[axis] + target;
         }
+        let points = self.all.iter().filter_map(|support| {
+            let moved: Vector2<f64> = support.weights.iter().map(|&(node, weight)| u[node as usize] * weight).sum();
+            let target = support.middle + support.take(support.middle, factor, Kinematics::Corotated);
+            let now = support.middle + moved;
+            Some([now, now.zip_zip_map(&target, &support.point?.into(), |now, to, fixed| if fixed { to } else { now })])
+        });
+        let increments: Vec<[Vector2<f64>; 2]> = increments.into_values().chain(points).collect();
         let count = increments.len().max(1) as f64;
         let [from, to] =
-            [0, 1].map(|end| increments.values().map(|increment| increment[end]).sum::<Vector2<f64>>() / count);
-        let (c, s) = increments.values().fold((0.0, 0.0), |(c, s), increment| {
+            [0, 1].map(|end| increments.iter().map(|increment| increment[end]).sum::<Vector2<f64>>() / count);
+        let (c, s) = increments.iter().fold((0.0, 0.0), |(c, s), increment| {
             let (a, b) = (increment[0] - from, increment[1] - to);
             (c + a.dot(&b), s + a.perp(&b))
         });
@@ -269,11 +365,17 @@ impl Supports {
     }
 }
 
+/// Rounding error of a displacement relative to the size of the body or of its displacement.
+const SAME: f64 = 1e-12;
+
+/// Returns the component of an unknown, 2 · node + axis.
+fn component(u: &[Vector2<f64>], unknown: u32) -> f64 {
+    u[unknown as usize / 2][unknown as usize % 2]
+}
+
 /// Returns `true` if two supports that both fix a component of a node prescribe the same displacement over their whole
 /// motion.
 fn agree(first: &NodalSupport, second: &NodalSupport, x: Vector2<f64>, axis: usize, size: f64) -> bool {
-    /// Rounding error relative to the size of the body.
-    const SAME: f64 = 1e-12;
     [0.5, 1.0].iter().all(|&factor| {
         let [a, b] = [first, second].map(|support| support.take(x, factor, Kinematics::Corotated)[axis]);
         (a - b).abs() <= SAME * (size + a.abs())

@@ -6,7 +6,8 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::edge::no_such_edge;
-use super::hold::{Hold, check_held, fixed_unknowns};
+use super::held_points::{HeldPoints, held_points};
+use super::hold::{Hold, check_any_free, check_held, fixed_unknowns};
 use super::{Edge, Kinematics, Pattern};
 use crate::element::Elements;
 use crate::mesh::{Mesh, Recovery};
@@ -102,6 +103,8 @@ impl MeshData {
 pub struct System {
     body: Arc<MeshData>,
     supports: Vec<Support>,
+    /// Equations of supports at points between nodes.
+    held: HeldPoints,
     /// Rigid motions that the supports leave.
     hold: Hold,
     /// Indices of edges whose nodes are coupled, for moments.
@@ -195,15 +198,18 @@ impl System {
 
     fn of_body(body: Arc<MeshData>, scene: &Scene) -> Result<Self, SystemError> {
         let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
+        let held = HeldPoints::solve(held_points(&scene.supports, &body.mesh), &fixed);
+        check_any_free(&fixed, held.dependent.len())?;
         let is_grid = matches!(body.origin, Origin::Beam(_));
-        let hold = Hold::of(&body.mesh, &fixed, is_grid);
+        let hold = Hold::of(&body.mesh, &fixed, &held.points, is_grid);
         check_held(hold, &body.mesh, scene.analysis)?;
         let coupled = moment_edges(&body.edges, scene);
         let groups: Vec<Vec<u32>> =
             coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
-        let pattern = Pattern::new(&body.mesh, &fixed, &groups);
+        let pattern = Pattern::new(&body.mesh, &fixed, &held, &groups);
         let supports = scene.supports.clone();
-        Ok(Self { body, supports, hold, coupled, pattern, slots: OnceLock::new(), symbolic: OnceLock::new() })
+        let (slots, symbolic) = (OnceLock::new(), OnceLock::new());
+        Ok(Self { body, supports, held, hold, coupled, pattern, slots, symbolic })
     }
 
     /// Computes the symbolic factorization.
@@ -240,6 +246,21 @@ impl System {
     #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
+    }
+
+    /// Returns the equations of supports at points between nodes.
+    pub(super) fn held_points(&self) -> &HeldPoints {
+        &self.held
+    }
+
+    /// Returns the points between nodes that supports hold, for these positions of the nodes, m, with `true` for fixed
+    /// components.
+    #[cfg(feature = "app")]
+    pub(crate) fn held_places(&self, positions: &[Vector2<f64>]) -> Vec<(Vector2<f64>, [bool; 2])> {
+        let place = |weights: &[(u32, f64)]| {
+            weights.iter().map(|&(node, weight)| Some(positions.get(node as usize)? * weight)).sum::<Option<_>>()
+        };
+        self.held.points.iter().filter_map(|point| Some((place(&point.weights)?, point.axes))).collect()
     }
 
     /// Returns the indices of every element's matrix entries; see [`crate::element::MatrixSum`].

@@ -161,7 +161,7 @@ impl Corrector {
         r.copy_from_slice(free);
         match guess {
             Some(guess) => {
-                pattern.restrict(guess, x);
+                pattern.select(guess, x);
                 matrix.multiply(pattern, x, z);
                 r.iter_mut().zip(&*z).for_each(|(r, z)| *r -= z);
             }

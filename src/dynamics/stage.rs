@@ -218,7 +218,7 @@ impl StageSolver<'_> {
             problem.loads().force(system, &state.displacement, self.kinematics, 1.0, &mut forces.external);
         }
         let pattern = system.pattern();
-        let mut scale = pattern.norm(&forces.magnitude).max(pattern.norm(&forces.external));
+        let mut scale = pattern.norm_of_bounds(&forces.magnitude).max(pattern.norm(&forces.external));
         for (i, residual) in forces.residual.iter_mut().enumerate() {
             *residual = forces.external[i] - forces.internal[i] + stage.start_force.map_or(Vector2::zeros(), |s| s[i]);
         }
@@ -275,7 +275,9 @@ impl StageSolver<'_> {
             damped_configuration(self.kinematics, stage, start, state, configuration);
             let (system, material) = (self.problem.system(), self.problem.material());
             let moduli = material.membrane().scaled(stage.damping * self.damping.stiffness * stage.rate);
-            system.elements().viscous_matrix(moduli, configuration, system.slots(), corrector.matrix.slots());
+            corrector.matrix.sum(|values| {
+                system.elements().viscous_matrix(moduli, configuration, system.slots(), values);
+            });
         }
         let matrix = &mut self.memory.corrector.matrix;
         let inertia = stage.inertia + stage.damping * self.damping.mass * stage.rate;
@@ -474,7 +476,7 @@ impl StageSolver<'_> {
     fn rounding(&mut self, state: &State) -> f64 {
         let pattern = self.problem.system().pattern();
         let corrector = &mut self.memory.corrector;
-        pattern.restrict(&state.displacement, &mut corrector.free);
+        pattern.select(&state.displacement, &mut corrector.free);
         let squares = corrector.matrix.diagonal(pattern).zip(&corrector.free).map(|(k, u)| (k * u).powi(2));
         ROUNDING * squares.sum::<f64>().sqrt()
     }

@@ -58,11 +58,14 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         }
     });
     timed(&mut solver.timings.solve, || {
-        let nodes = forces.residual.iter().zip(&*damping).zip(lumped).zip(system.pattern().mask());
+        let nodes = forces.residual.iter().zip(&*damping).zip(lumped);
+        for (i, ((f, d), m)) in nodes.enumerate() {
+            state.velocity[i] = start.velocity[i] + (f - d) * (h / m);
+        }
+        system.pattern().stop_fixed_by_impulses(&mut state.velocity, lumped);
         let displacement = state.displacement.overwrite();
-        for (i, (((f, d), m), mask)) in nodes.enumerate() {
-            state.velocity[i] = (start.velocity[i] + (f - d) * (h / m)).component_mul(mask);
-            displacement[i] = start.displacement[i] + state.velocity[i] * h;
+        for (i, (u, v)) in start.displacement.iter().zip(&state.velocity).enumerate() {
+            displacement[i] = u + v * h;
         }
     });
     if !is_finite(&state.displacement) || !is_finite(&state.velocity) {

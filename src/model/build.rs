@@ -174,6 +174,26 @@ impl Scene {
         self
     }
 
+    /// Adds a support that fixes a point of the body, m, in these directions, and not its nearest node.
+    ///
+    /// ```
+    /// use warpbeam::{Axis, Scene, Simulation};
+    ///
+    /// // The cells are 1 m long and high: there is no node at these points of the axis.
+    /// let beam = Scene::beam(10.0, 1.0).with_cells(10, 1).gravity([0.0, -9.81]);
+    /// let beam = beam.point_support([0.5, 0.0], &[Axis::X, Axis::Y]).point_support([9.5, 0.0], &[Axis::Y]);
+    /// let mut beam = Simulation::new(&beam)?;
+    /// beam.solve();
+    /// let [left, right] = [0, 1].map(|i| beam.support_reactions()[i].force.y);
+    /// assert!((left - right).abs() < 1e-6 * left);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn point_support(mut self, at: impl Into<Vector2<f64>>, fix: &[Axis]) -> Self {
+        self.supports.push(Support::point(at, fix));
+        self
+    }
+
     /// Prescribes a displacement, m, and a rotation about its middle, rad, for the support added last. Does nothing if
     /// the scene has no support.
     ///

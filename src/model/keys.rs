@@ -126,11 +126,13 @@ pub const KEYS: &[Key] = keys! {
         "Plane stress, as in a thin plate, or plane strain, as in a slice of a long body.";
 
     "support": Tables, Optional("A static scene needs at least one"), "",
-        "Held nodes. A pin holds a point in x and y, a roller in one direction, a clamp an edge in x and y. On an edge, a roller also keeps the edge from rotating. A dynamic scene without supports is a free body.";
+        "Held nodes or points. A pin holds a point in x and y, a roller in one direction, a clamp an edge in x and y. On an edge, a roller also keeps the edge from rotating. A dynamic scene without supports is a free body.";
     "support.edge": Text, Optional("edge or at is required"), r#""left""#,
         "Edge all of whose nodes are held.";
     "support.at": Pair(limits::COORDINATE), Optional("edge or at is required"), "[10.0, 0.0]",
-        "Point, at rest; the nearest node is held.";
+        "Point, at rest.";
+    "support.acts_on": Choice(&["node", "point"]), Default(r#""node""#), r#""point""#,
+        "Of a support with at: node holds the node nearest to the point; point holds the point itself, which moves with the nodes of the element there in proportion to their shape functions.";
     "support.fix": Choices(&["x", "y"]), Required(r#"the directions it fixes, as in ["x", "y"]"#), r#"["x", "y"]"#,
         "Directions that are held; at least one.";
     "support.displacement": Pair(limits::COORDINATE), Default("[0.0, 0.0]"), r#"[0.0, "-3 mm"]"#,

@@ -59,7 +59,7 @@ pub enum TableError {
     /// The keys are not those of a force.
     #[error("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")]
     Force,
-    /// The force acts on a point, and names an edge.
+    /// The force or support acts on a point, and names an edge.
     #[error("expected at = [x, y] with acts_on = \"point\", got an edge")]
     PointOfEdge,
     /// The keys are not those of gravity.
@@ -109,15 +109,19 @@ impl Place {
     }
 }
 
-/// Support: nodes that are fixed, or moved along a prescribed displacement.
+/// Support: nodes or a point that are fixed, or moved along a prescribed displacement.
 ///
 /// See [`Scene::add_support`](crate::Scene::add_support) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
 pub struct Support {
-    /// Edge with all its nodes, or point, which stands for the nearest node.
+    /// Edge with all its nodes, or point.
     pub place: Place,
+    /// `true` for a support of its point itself, which lies in an element: the displacement there is prescribed, through
+    /// the shape functions. `false` for one of the node nearest to the point. Without meaning on an edge, and outside the
+    /// body, where the nearest node is used.
+    pub at_point: bool,
     /// Fixed directions.
     pub fix: Vec<Axis>,
     /// Prescribed displacement, m, in the fixed directions; applied in load steps, with the loads.
@@ -128,10 +132,16 @@ pub struct Support {
 }
 
 impl Support {
-    /// Returns a support without prescribed displacement.
+    /// Returns a support of an edge, or of the node nearest to a point, without prescribed displacement.
     #[must_use]
     pub fn new(place: impl Into<Place>, fix: &[Axis]) -> Self {
-        Self { place: place.into(), fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
+        Self { place: place.into(), at_point: false, fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
+    }
+
+    /// Returns a support of a point of the body, m, and not of its nearest node.
+    #[must_use]
+    pub fn point(at: impl Into<Vector2<f64>>, fix: &[Axis]) -> Self {
+        Self { at_point: true, ..Self::new(at.into(), fix) }
     }
 
     /// Returns `true` if a displacement or rotation is prescribed.
@@ -142,7 +152,7 @@ impl Support {
 
     /// Returns `true` if both fix the same unknowns, whatever displacements they prescribe.
     pub(crate) fn fixes_as(&self, other: &Self) -> bool {
-        (&self.place, &self.fix) == (&other.place, &other.fix)
+        (&self.place, self.at_point, &self.fix) == (&other.place, other.at_point, &other.fix)
     }
 
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
@@ -335,6 +345,8 @@ struct SupportTable {
     edge: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "is_default", default)]
+    acts_on: ActsOn,
     fix: Vec<Axis>,
     #[serde(skip_serializing_if = "is_default", default)]
     displacement: [f64; 2],
@@ -345,15 +357,18 @@ struct SupportTable {
 impl TryFrom<SupportTable> for Support {
     type Error = TableError;
 
-    fn try_from(SupportTable { edge, at, fix, displacement, turn }: SupportTable) -> Result<Self, TableError> {
-        Ok(Self { place: Place::new(edge, at)?, fix, displacement, turn })
+    fn try_from(table: SupportTable) -> Result<Self, TableError> {
+        let SupportTable { edge, at, acts_on, fix, displacement, turn } = table;
+        let (place, at_point) = acts_on.place(edge, at)?;
+        Ok(Self { place, at_point, fix, displacement, turn })
     }
 }
 
 impl From<Support> for SupportTable {
     fn from(support: Support) -> Self {
-        let (edge, at) = support.place.keys();
-        Self { edge, at, fix: support.fix, displacement: support.displacement, turn: support.turn }
+        let Support { place, at_point, fix, displacement, turn } = support;
+        let (edge, at) = place.keys();
+        Self { acts_on: ActsOn::of(at_point, at), edge, at, fix, displacement, turn }
     }
 }
 
@@ -430,13 +445,28 @@ enum LoadKind {
     Moment,
 }
 
-/// Nodes on which a force at a point acts: the nearest one, or those of the element there.
+/// Nodes on which a force or support at a point acts: the nearest one, or those of the element there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum ActsOn {
     #[default]
     Node,
     Point,
+}
+
+impl ActsOn {
+    /// Returns the key of a place at `at`; without meaning on an edge.
+    fn of(at_point: bool, at: Option<[f64; 2]>) -> Self {
+        if at_point && at.is_some() { Self::Point } else { Self::Node }
+    }
+
+    /// Makes a place from the other two keys, with `true` if its point is meant and not the nearest node.
+    fn place(self, edge: Option<String>, at: Option<[f64; 2]>) -> Result<(Place, bool), TableError> {
+        match (Place::new(edge, at)?, self) {
+            (Place::Edge(_), Self::Point) => Err(TableError::PointOfEdge),
+            (place, own) => Ok((place, own == Self::Point)),
+        }
+    }
 }
 
 impl TryFrom<LoadTable> for Load {
@@ -446,10 +476,10 @@ impl TryFrom<LoadTable> for Load {
         let LoadTable { kind, edge, at, acts_on, force, acceleration, moment, pulse } = table;
         let at_point = acts_on == ActsOn::Point;
         match (kind, force, acceleration, moment) {
-            (LoadKind::Force, Some(force), None, None) => match Place::new(edge, at)? {
-                Place::Edge(_) if at_point => Err(TableError::PointOfEdge),
-                place => Ok(Self::Force { place, at_point, force, pulse }),
-            },
+            (LoadKind::Force, Some(force), None, None) => {
+                let (place, at_point) = acts_on.place(edge, at)?;
+                Ok(Self::Force { place, at_point, force, pulse })
+            }
             (LoadKind::Force, ..) => Err(TableError::Force),
             (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() && !at_point => {
                 Ok(Self::Gravity { acceleration, pulse })
@@ -479,8 +509,7 @@ impl From<Load> for LoadTable {
         match load {
             Load::Force { place, at_point, force, .. } => {
                 let (edge, at) = place.keys();
-                let acts_on = if at_point && at.is_some() { ActsOn::Point } else { ActsOn::Node };
-                Self { edge, at, acts_on, force: Some(force), ..empty(LoadKind::Force) }
+                Self { acts_on: ActsOn::of(at_point, at), edge, at, force: Some(force), ..empty(LoadKind::Force) }
             }
             Load::Moment { edge, moment, .. } => {
                 Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) }

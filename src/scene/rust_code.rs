@@ -183,13 +183,13 @@ impl Code {
 
     fn support(&mut self, support: &Support) {
         let place = place(&support.place);
-        match support.fix[..] == [Axis::X, Axis::Y] {
-            true => self.call("clamp", &[place]),
-            false => {
-                self.uses.insert("Axis");
-                let axes: Vec<String> = support.fix.iter().map(|axis| format!("Axis::{axis:?}")).collect();
-                self.call("support", &[place, format!("&[{}]", axes.join(", "))]);
-            }
+        if !support.at_point && support.fix[..] == [Axis::X, Axis::Y] {
+            self.call("clamp", &[place]);
+        } else {
+            self.uses.insert("Axis");
+            let name = if support.at_point { "point_support" } else { "support" };
+            let axes: Vec<String> = support.fix.iter().map(|axis| format!("Axis::{axis:?}")).collect();
+            self.call(name, &[place, format!("&[{}]", axes.join(", "))]);
         }
         if support.moves() {
             self.call("moved", &[pair(support.displacement), number(support.turn)]);

@@ -1,6 +1,6 @@
-//! Distributed loads between a line and the nodes in front of it.
+//! Loads and reactions between a line and the nodes in front of it.
 //!
-//! Weight and edge loads act on nodes in the discrete problem. The nodes in front of a line carry other loads than the
+//! Weight, edge loads, and forces and reactions at points act on nodes in the discrete problem. The nodes in front of a line carry other loads than the
 //! part of the body in front of it; the difference is that of the elements which the line crosses.
 
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector2;
 
 use super::cut::{Cut, Side};
-use crate::assembly::Problem;
+use crate::assembly::{Forces, Problem};
 use crate::element::{integrate_side, side_weights};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::scene::{Load, Place, Pulse};
@@ -39,16 +39,19 @@ impl Wrench {
     }
 }
 
-/// Returns, for an equilibrium, the distributed loads on the part of a body in front of a cut, minus those on the nodes
-/// in front: force, N, and moment about `middle`, N m.
+/// Returns, for an equilibrium, the loads and reactions on the part of a body in front of a cut, minus those on the nodes in
+/// front: force, N, and moment about `middle`, N m.
 pub(super) fn beyond_nodes(
     problem: &Problem,
     shape: &PlacedMesh<'_>,
     cut: &Cut,
-    load_factor: f64,
+    (load_factor, forces): (f64, &Forces),
     middle: Vector2<f64>,
 ) -> Wrench {
     let mut sum = Wrench::default();
+    for (support, force) in problem.supports().point_forces(forces.residual()) {
+        shape.add_point_load(cut, support.middle, force, middle, &mut sum);
+    }
     let factor = |pulse: &Option<Pulse>| load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(0.0));
     let mut weight = Vector2::zeros();
     for load in problem.scene_loads() {

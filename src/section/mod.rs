@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::assembly::{Kinematics, Problem, System};
+use crate::assembly::{Forces, Kinematics, Problem, System};
 use crate::element::Rotations;
 use crate::mesh::{axis_angle, straightened};
 use crate::model::{Beam, SectionLine};
@@ -134,13 +134,14 @@ impl Section {
         Vector2::new(tangent.y, -tangent.x)
     }
 
-    /// Computes the section of a state along a line. `load_factor` is that of an equilibrium, `None` in a motion;
+    /// Computes the section of a state with its forces along a line. `load_factor` is that of an equilibrium, `None` in a motion;
     /// `nodal` is the recovered stress of the state, `None` to leave out the stress along the line.
     pub(crate) fn of(
         problem: &Problem,
         state: &State,
         kinematics: Kinematics,
         load_factor: Option<f64>,
+        forces: &Forces,
         nodal: Option<&NodalStress>,
         line: SectionLine,
     ) -> Result<Self, SectionError> {
@@ -168,7 +169,8 @@ impl Section {
         };
         let middle = section.middle();
         let shape = PlacedMesh { mesh, positions: &positions };
-        let mut sum = load_factor.map(|factor| beyond_nodes(problem, &shape, &cut, factor, middle)).unwrap_or_default();
+        let mut sum =
+            load_factor.map(|factor| beyond_nodes(problem, &shape, &cut, (factor, forces), middle)).unwrap_or_default();
         for (node, force) in element_forces(problem, state, &cut) {
             sum.add(positions[node as usize] - middle, force);
         }

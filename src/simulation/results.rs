@@ -118,19 +118,27 @@ pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
     Energy { elastic: problem.elastic_energy(state), external, supports: None }
 }
 
-/// Returns the total reaction, f_int − f_ext on the fixed unknowns, with current lever arms about the origin.
+/// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with current lever arms about the
+/// origin.
 #[must_use]
 pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Wrench {
     let mut total = Wrench::default();
     let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
-    let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(forces.residual()));
+    let supports = problem.supports();
+    let residual = supports.with_point_forces(forces.residual());
+    let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(residual.iter()));
     for ((x, u), (mask, residual)) in nodes {
         total.add(x + u, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
+    }
+    for (support, force) in supports.point_forces(forces.residual()) {
+        let moved: Vector2<f64> =
+            support.weights.iter().map(|&(n, weight)| state.displacement[n as usize] * weight).sum();
+        total.add(support.middle + moved, force);
     }
     total
 }
 
-/// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes. An unknown fixed by
+/// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes, or the force on its point. An unknown fixed by
 /// several supports belongs to the first.
 #[must_use]
 pub fn support_reactions(
@@ -144,12 +152,18 @@ pub fn support_reactions(
         Kinematics::Linear => mesh.node(node),
         Kinematics::Corotated => mesh.node(node) + state.displacement[node as usize],
     };
-    let react = problem.supports().all().iter().map(|support| {
+    let supports = problem.supports();
+    let residual = supports.with_point_forces(forces.residual());
+    let mut points = supports.point_forces(forces.residual());
+    let react = supports.all().iter().map(|support| {
         let middle: Vector2<f64> = support.weights.iter().map(|&(node, weight)| place(node) * weight).sum();
         let mut total = Wrench::default();
         for &(node, own) in &support.nodes {
             let own = Vector2::from(own.map(|own| if own { 1.0 } else { 0.0 }));
-            total.add(place(node) - middle, -forces.residual()[node as usize].component_mul(&own));
+            total.add(place(node) - middle, -residual[node as usize].component_mul(&own));
+        }
+        if support.point.is_some() {
+            total.force += points.next().map_or_else(Vector2::zeros, |(_, force)| force);
         }
         let Wrench { force, moment } = total;
         let moved: Vector2<f64> =

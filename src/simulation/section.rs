@@ -15,7 +15,7 @@ impl Simulation {
     /// line exerts on the part behind. Takes a loop over the whole body.
     ///
     /// At rest they balance the loads and reactions on the part in front, also those between the line and the nodes. In
-    /// a motion, loads and inertia act on the nodes. Reactions always do.
+    /// a motion, loads, reactions and inertia act on the nodes. Reactions of supports on nodes always do.
     ///
     /// ```
     /// use warpbeam::{Scene, Section, SectionError, SectionForces, SectionLine, SectionPoint, Simulation};
@@ -57,7 +57,7 @@ impl Simulation {
 
     fn section_of(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
         let load_factor = self.equilibrium().map(Equilibrium::load_factor);
-        Section::of(self.problem(), self.state(), self.kinematics(), load_factor, nodal, line)
+        Section::of(self.problem(), self.state(), self.kinematics(), load_factor, self.forces(), nodal, line)
     }
 
     /// Computes as [`Self::section`] the sections normal to the axis of a beam at `count` points, evenly spaced from

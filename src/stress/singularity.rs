@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::assembly::Problem;
+use crate::assembly::{NodalSupport, Problem};
 use crate::mesh::{Mesh, Segment};
 use crate::scene::{Load, Material, Place, Plane};
 use crate::sentence::{Sentence, displayed, sentence};
@@ -62,13 +62,18 @@ impl Singularity {
     pub fn at(problem: &Problem, node: u32) -> Option<Self> {
         let mesh = problem.system().mesh();
         let is_there = |place: &Place| matches!(place, Place::At(at) if mesh.nearest_node((*at).into()) == node);
-        if problem.supports().all().iter().any(|s| is_there(&s.place)) {
+        let is_among = |weights: &[(u32, f64)]| weights.iter().any(|(own, _)| *own == node);
+        let holds = |support: &NodalSupport| match support.point {
+            Some(_) => is_among(&support.weights),
+            None => is_there(&support.place),
+        };
+        if problem.supports().all().iter().any(holds) {
             return Some(Self::PointSupport);
         }
         let acts = |load: &Load| match load {
             Load::Force { force: [0.0, 0.0], .. } => false,
             Load::Force { place: Place::At(at), at_point: true, .. } => {
-                mesh.weights_at((*at).into()).is_some_and(|weights| weights.iter().any(|(own, _)| *own == node))
+                mesh.weights_at((*at).into()).is_some_and(|weights| is_among(&weights))
             }
             Load::Force { place, .. } => is_there(place),
             _ => false,

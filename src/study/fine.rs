@@ -434,7 +434,7 @@ fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
             Place::Edge(_) => None,
         }
     }
-    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, false));
+    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, s.at_point));
     let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
         Load::Force { place, at_point, .. } => of("load", i, place, *at_point),
         _ => None,
@@ -463,7 +463,7 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
             *at = mesh.node(mesh.nearest_node((*at).into())).into();
         }
     };
-    scene.supports.iter_mut().for_each(|support| to_node(&mut support.place));
+    scene.supports.iter_mut().filter(|support| !support.at_point).for_each(|support| to_node(&mut support.place));
     for load in &mut scene.loads {
         if let Load::Force { place, at_point: false, .. } = load {
             to_node(place);

@@ -18,6 +18,7 @@ mod elements;
 mod equilibria;
 mod gmsh;
 mod grab;
+mod held_points;
 mod load_path;
 mod meshes;
 mod moments;

@@ -9,7 +9,9 @@ use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::viewport::arrow::force_range;
-use crate::app::viewport::menu::{acts_at_point, can_carry_moment, force_by_hand, is_free, with_probe};
+use crate::app::viewport::menu::{
+    acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand, with_probe,
+};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
@@ -252,7 +254,9 @@ pub(super) fn show(
             // A support that fixes no direction is removed.
             _ if fix.is_empty() => _ = scene.supports.remove(i),
             (Some(EdgeChange::Remove), _) => _ = scene.supports.remove(i),
-            (Some(EdgeChange::Move(to)), support) => support.place = to,
+            (Some(EdgeChange::Move(to)), support) => {
+                (support.at_point, support.place) = (acts_at_point(system.mesh(), &to), to);
+            }
             (None, support) => *support = refixed(support, &fix),
         }
         edited = Some(scene);
@@ -285,7 +289,7 @@ pub(super) fn show(
 /// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are
 /// kept.
 fn refixed(before: &Support, fix: &[Axis]) -> Support {
-    let mut support = Support::new(before.place.clone(), fix);
+    let mut support = Support { at_point: before.at_point, ..Support::new(before.place.clone(), fix) };
     for (i, axis) in [Axis::X, Axis::Y].into_iter().enumerate() {
         if fix.contains(&axis) {
             support.displacement[i] = before.displacement[i];
@@ -344,12 +348,17 @@ fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     let system = input.simulation.system();
     let is_taken = |place: &Place| match place {
         Place::Edge(name) => system.edges().iter().any(|edge| edge.name() == name && !is_free(system, edge)),
-        Place::At(at) => system.pattern().fixed(system.mesh().nearest_node((*at).into())) == [true, true],
+        Place::At(at) => {
+            let is_held = |support: &Support| support.place == *place && support.fix.len() == 2;
+            let node = system.mesh().nearest_node((*at).into());
+            let is_node_held = || system.pattern().fixed(node) == [true, true] && !acts_at_point(system.mesh(), place);
+            scene.supports.iter().any(is_held) || is_node_held()
+        }
     };
     let edges = system.edges().iter().map(|edge| Place::from(edge.name()));
     // A beam that is held at one end gets a roller under the other end.
     if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
-        scene.supports.push(Support::new(place, &[Axis::Y]));
+        scene.supports.push(support_by_hand(system.mesh(), place, &[Axis::Y]));
     }
     scene
 }

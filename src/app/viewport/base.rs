@@ -74,7 +74,7 @@ impl Bases<'_> {
             _ => None,
         });
         let supports =
-            (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.applied(&s.place, false)?)));
+            (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.applied(&s.place, s.at_point)?)));
         let probes = (0..).zip(probes).filter_map(|(i, probe)| match probe.place {
             Place::At(at) => Some((Object::Probe(i), self.drawn(at.into())?)),
             // A probe on an edge usually lies at the arrow of a load, so it has no base.
@@ -97,8 +97,7 @@ impl Bases<'_> {
     }
 
     /// Returns the place to which the pointer moves an object, and its drawn position, m: a named edge or a corner near
-    /// the pointer, else the point of the body there; `None` far from the body. Supports hold nodes, so that their points
-    /// are nodes.
+    /// the pointer, else the point of the body there; `None` far from the body.
     fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
         let mesh = self.mesh();
         let distance = |at: Vector2<f64>| self.projection.point(at).distance(pointer);
@@ -115,9 +114,6 @@ impl Bases<'_> {
         let world = self.projection.place(pointer);
         let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
-        if matches!(object, Object::Support(_)) {
-            return at_node(mesh.nearest_node(rest));
-        }
         let rest = rounded(self.system, self.on_side(rest).unwrap_or(rest));
         Some((Place::At(rest.into()), self.drawn(rest)?))
     }
@@ -143,7 +139,10 @@ impl Bases<'_> {
                 }
                 _ => return None,
             },
-            Object::Support(i) => scene.supports.get_mut(i)?.place = place,
+            Object::Support(i) => {
+                let support = scene.supports.get_mut(i)?;
+                (support.at_point, support.place) = (acts_at_point(self.mesh(), &place), place);
+            }
             Object::Probe(i) => scene.probes.get_mut(i)?.place = place,
             Object::Section(i) => match place {
                 Place::At(at) => scene.sections.get_mut(i)?.at = at.into(),

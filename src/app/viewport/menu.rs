@@ -29,7 +29,7 @@ pub(crate) fn show(
     let mut chosen = None;
     response.context_menu(|ui: &mut Ui| {
         let edge = nearest_edge_for_moment(system, at);
-        let added = additions(scene, system, (at, edge), present);
+        let added = additions(scene, system, (at, near), edge, present);
         let entries = added.into_iter().chain(removals(scene, system.mesh(), (at, near), edge));
         for (text, edited) in entries {
             if ui.button(text).clicked() {
@@ -88,28 +88,37 @@ pub(crate) fn nearest_on_side(mesh: &Mesh, side: &Segment, at: Vector2<f64>) -> 
     a + (b - a) * ((at - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
 }
 
-/// Returns the entries that add an object at a point, or a moment on an edge. A support holds nodes, so it is put on the
-/// nearest one.
+/// Returns a support that is put at a place by hand.
+pub(crate) fn support_by_hand(mesh: &Mesh, place: Place, fix: &[Axis]) -> Support {
+    let at_point = acts_at_point(mesh, &place);
+    Support { at_point, ..Support::new(place, fix) }
+}
+
+/// Returns the entries that add an object at a point, or a moment on an edge. A node within `near`, m, is held itself.
 fn additions(
     scene: &Scene,
     system: &System,
-    (at, edge): (Vector2<f64>, Option<&str>),
+    (at, near): (Vector2<f64>, f64),
+    edge: Option<&str>,
     present: OpeningLoads,
 ) -> Vec<MenuEntry> {
     let mesh = system.mesh();
-    let node: [f64; 2] = mesh.node(mesh.nearest_node(at)).into();
+    let node = mesh.node(mesh.nearest_node(at));
+    let held = if (node - at).norm() <= near { node } else { rounded(system, at) };
+    let support = support_by_hand(mesh, held.into(), &[Axis::X, Axis::Y]);
+    let held = support.place.clone();
     let [usual, _] = force_range(present, &scene.material, system);
     let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual]);
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
-        ("Hold this point", edited(scene, |scene| scene.supports.push(Support::new(node, &[Axis::X, Axis::Y])))),
+        ("Hold this point", edited(scene, |scene| scene.supports.push(support))),
         ("Add a probe here", with_probe(scene, system, at)),
         ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, at))))),
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
     .to_vec();
-    // A second support of a node changes nothing.
-    if scene.supports.iter().any(|support| support.place == Place::At(node) && support.fix.len() == 2) {
+    // A second support of a point changes nothing.
+    if scene.supports.iter().any(|support| support.place == held && support.fix.len() == 2) {
         entries.remove(1);
     }
     if let Some(edge) = edge {

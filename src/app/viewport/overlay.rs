@@ -383,7 +383,7 @@ fn pull(
 }
 
 /// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
-/// nodes have a triangle, which stands on a line if only one direction is fixed.
+/// nodes and points have a triangle, which stands on a line if only one direction is fixed.
 fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
@@ -418,14 +418,14 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
             painter.line_segment([p, q].map(|e| e + outward * (2.0 * ROLLER + 3.0)), stroke);
         }
     }
-    for (n, drawn) in (0..).zip(drawn) {
-        let fixed = pattern.fixed(n);
-        if drawn || fixed == [false, false] {
+    let nodes = (0..).zip(drawn).filter(|(_, drawn)| !drawn).map(|(n, _)| (positions[n as usize], pattern.fixed(n)));
+    for (at, fixed) in nodes.chain(overlay.system.held_places(positions)) {
+        if fixed == [false, false] {
             continue;
         }
         // A roller stands on the line that it moves along.
         let away = if fixed == [true, false] { vec2(-1.0, 0.0) } else { vec2(0.0, 1.0) };
-        let (p, across) = (projection.point(positions[n as usize]), 7.0 * away.rot90());
+        let (p, across) = (projection.point(at), 7.0 * away.rot90());
         let foot = p + 11.0 * away;
         let triangle = vec![p, foot - across, foot + across];
         painter.add(egui::Shape::convex_polygon(triangle, palette.support.gamma_multiply(0.6), stroke));

@@ -213,10 +213,7 @@ impl Auto {
     fn is_balanced(it: &Iteration<'_>) -> bool {
         let pattern = it.system().pattern();
         let Forces { external, residual, .. } = &*it.forces;
-        let total = |force: &[Vector2<f64>]| {
-            let free = force.iter().zip(pattern.mask()).map(|(f, mask)| f.component_mul(mask));
-            free.sum::<Vector2<f64>>().norm()
-        };
+        let total = |force: &[Vector2<f64>]| pattern.resultant(force).norm();
         let tolerance = USABLE * it.tolerances.error;
         let all = pattern.norm(external);
         // A load without a resultant, such as a moment, gives nothing to compare with.

@@ -1,0 +1,146 @@
+//! Supports at points between nodes.
+//!
+//! Such a support prescribes the displacement of a point: Σ Nₐ uₐ = g, N the shape functions of the element there. Each
+//! of these equations is solved for one unknown, which is eliminated; the others remain (master–slave elimination of
+//! multi-point constraints: Cook, Malkus, Plesha and Witt, *Concepts and Applications of Finite Element Analysis*, 4th
+//! edition, chapter 13).
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+
+use super::NodeWeights;
+use crate::mesh::Mesh;
+use crate::scene::{Axis, Place, Support};
+
+/// Coefficient below which an unknown has no influence on the displacement of a point.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// Point between nodes that a support holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct HeldPoint {
+    /// Index of the support in the scene.
+    pub support: usize,
+    /// Rest position, m.
+    pub at: Vector2<f64>,
+    /// Nodes of the element there, with their shape functions.
+    pub weights: NodeWeights,
+    /// Fixed components, x and y.
+    pub axes: [bool; 2],
+}
+
+/// Linear equation between displacements of unknowns and of supports: Σ c u = Σ h g.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Constraint {
+    /// Unknowns (2 · node + axis) with c.
+    pub terms: BTreeMap<u32, f64>,
+    /// Indices of supports with h; g is the component of the support's displacement along the axis of the unknowns.
+    pub targets: BTreeMap<usize, f64>,
+}
+
+/// Unknown that a held point eliminates: u = Σ c u′ + Σ h g.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DependentUnknown {
+    /// 2 · node + axis.
+    pub unknown: u32,
+    /// Right-hand side: unknowns u′ that are free or fixed by supports on nodes, and the supports' displacements g.
+    pub on: Constraint,
+}
+
+/// Equations of all held points, solved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct HeldPoints {
+    pub points: Vec<HeldPoint>,
+    pub dependent: Vec<DependentUnknown>,
+    /// Equations between fixed unknowns alone: their points are held by other supports already. With the index of the
+    /// support.
+    pub redundant: Vec<(usize, Constraint)>,
+}
+
+impl Constraint {
+    /// Adds `factor` times another equation.
+    fn add(&mut self, other: &Self, factor: f64) {
+        for (&unknown, c) in &other.terms {
+            *self.terms.entry(unknown).or_default() += factor * c;
+        }
+        for (&support, h) in &other.targets {
+            *self.targets.entry(support).or_default() += factor * h;
+        }
+    }
+}
+
+/// Returns the axes, x and y, that a support fixes: `true` for fixed ones.
+pub(super) fn axes(support: &Support) -> [bool; 2] {
+    [Axis::X, Axis::Y].map(|axis| support.fix.contains(&axis))
+}
+
+/// Returns the nodes of the element at the point of a support, with their shape functions; `None` if the support is on
+/// nodes, because it is meant to be, because its point is a node, or because its point is outside the body.
+pub(super) fn point_weights(support: &Support, mesh: &Mesh) -> Option<NodeWeights> {
+    let Place::At(at) = support.place else { return None };
+    let weights = if support.at_point { mesh.weights_at(at.into()) } else { None };
+    let is_between = |weights: &NodeWeights| weights.iter().all(|(_, weight)| (weight - 1.0).abs() > NEGLIGIBLE);
+    weights.filter(is_between)
+}
+
+/// Returns the points between nodes that supports hold.
+pub(super) fn held_points(supports: &[Support], mesh: &Mesh) -> Vec<HeldPoint> {
+    let held = supports.iter().enumerate().filter_map(|(i, support)| {
+        let weights = point_weights(support, mesh)?;
+        let at = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
+        Some(HeldPoint { support: i, at, weights, axes: axes(support) })
+    });
+    held.collect()
+}
+
+impl HeldPoints {
+    /// Solves the equations of the points, each for the unknown that moves its point most; `fixed` are the unknowns that
+    /// supports on nodes fix.
+    pub(super) fn solve(points: Vec<HeldPoint>, fixed: &[bool]) -> Self {
+        let mut result = Self::default();
+        for (point, axis) in points.iter().flat_map(|point| (0..2_u32).map(move |axis| (point, axis))) {
+            if !point.axes[axis as usize] {
+                continue;
+            }
+            let mut own = Constraint {
+                terms: point.weights.iter().map(|&(node, weight)| (2 * node + axis, weight)).collect(),
+                targets: BTreeMap::from([(point.support, 1.0)]),
+            };
+            for DependentUnknown { unknown, on } in &result.dependent {
+                if let Some(c) = own.terms.remove(unknown) {
+                    // c u moves to the right-hand side, as c (Σ c u′ + Σ h g).
+                    own.add(&Constraint { terms: on.terms.clone(), targets: BTreeMap::new() }, c);
+                    own.add(&Constraint { terms: BTreeMap::new(), targets: on.targets.clone() }, -c);
+                }
+            }
+            own.terms.retain(|_, c| c.abs() > NEGLIGIBLE);
+            let free = own.terms.iter().filter(|(unknown, _)| !fixed[**unknown as usize]);
+            let Some((&unknown, &pivot)) = free.max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs())) else {
+                result.redundant.push((point.support, own));
+                continue;
+            };
+            own.terms.remove(&unknown);
+            let mut on = Constraint::default();
+            on.add(&Constraint { terms: own.terms, targets: BTreeMap::new() }, -1.0 / pivot);
+            on.add(&Constraint { terms: BTreeMap::new(), targets: own.targets }, 1.0 / pivot);
+            for other in &mut result.dependent {
+                if let Some(c) = other.on.terms.remove(&unknown) {
+                    other.on.add(&on, c);
+                }
+            }
+            result.dependent.push(DependentUnknown { unknown, on });
+        }
+        Self { points, ..result }
+    }
+
+    /// Returns the force, N, that the support number `support` exerts on its point, from the force on each unknown that
+    /// keeps the nodes in balance: by virtual work, Σ h times the force on the unknowns that depend on its displacement.
+    pub(super) fn force(&self, support: usize, residual: &[Vector2<f64>]) -> Vector2<f64> {
+        let mut force = Vector2::zeros();
+        for DependentUnknown { unknown, on } in &self.dependent {
+            let (node, axis) = (*unknown as usize / 2, *unknown as usize % 2);
+            force[axis] -= on.targets.get(&support).map_or(0.0, |h| h * residual[node][axis]);
+        }
+        force
+    }
+}

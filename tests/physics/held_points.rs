@@ -1,0 +1,237 @@
+//! Tests of supports at points between nodes: their points stay, and statics, work and motion are those of the points.
+
+use nalgebra::Vector2;
+use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
+use warpbeam::element::{ELEMENTS, Tangent};
+use warpbeam::study::moved_points;
+use warpbeam::{
+    Axis, ElementKind, IntegratorKind, Material, MethodKind, Place, Reference, Scene, SectionLine, Simulation, Status,
+    Support,
+};
+
+use crate::common::random::Random;
+use crate::common::solved;
+
+const BOTH: &[Axis] = &[Axis::X, Axis::Y];
+
+/// Returns a beam on two supports at points, a pin and a roller, with a force on its right end.
+fn on_two_points([pin, roller]: [[f64; 2]; 2], force: Vector2<f64>) -> Scene {
+    let mut scene = Scene::beam(10.0, 1.0).with_cells(9, 2).force("right", force);
+    scene = scene.point_support(pin, BOTH).point_support(roller, &[Axis::Y]);
+    scene.solver.tolerance = 1e-12;
+    scene.probe("pin", pin).probe("roller", roller).probe("tip", "right")
+}
+
+/// Reactions of a statically determinate beam are those of statics: about the points at rest in linear theory, and about
+/// those of now in large rotations. The points stay where they are held, on every element, in a cell, on a side, two in
+/// one cell, and two in cells side by side.
+#[test]
+fn points_stay_and_their_reactions_are_those_of_statics() {
+    let mut random = Random(7);
+    for (entry, method) in ELEMENTS.iter().flat_map(|e| [MethodKind::Linear, MethodKind::Newton].map(|m| (e, m))) {
+        let mut pairs = vec![
+            [[3.0, 0.1], [8.0, -0.3]],
+            [[3.4, 0.5], [9.1, -0.5]],
+            [[3.5, 0.3], [4.2, 0.1]],
+            [[3.2, 0.2], [4.6, 0.2]],
+        ];
+        pairs.extend((0..3).map(|_| {
+            let mut at = |from: f64| [random.between(from, from + 3.0), random.between(-0.5, 0.5)];
+            [at(0.5), at(5.0)]
+        }));
+        for points in pairs {
+            let force = Vector2::new(200.0, -300.0) * if method == MethodKind::Linear { 1.0 } else { 3.0 };
+            let simulation = solved(&on_two_points(points, force).with_method(method));
+            let [pin, roller, tip] = ["pin", "roller", "tip"].map(|name| simulation.probe(name).unwrap());
+            let name = format!("{} {method:?} {points:?}", entry.id);
+            assert!(pin.norm().max(roller.y.abs()) < 1e-13 * tip.norm(), "{name}: {pin} {roller}");
+            let [a, b] = [0, 1].map(|i| simulation.support_reactions()[i].clone());
+            assert_eq!((a.moment, b.moment, b.force.x), (0.0, 0.0, 0.0), "{name}");
+            assert!((a.force + b.force + force).norm() < 1e-8 * force.norm(), "{name}: {} {}", a.force, b.force);
+            let now = |u: Vector2<f64>| if method == MethodKind::Linear { Vector2::zeros() } else { u };
+            let [at_pin, at_roller] = points.map(Vector2::from);
+            let arm = Vector2::new(10.0, 0.0) + now(tip) - at_pin;
+            let expected = -arm.perp(&force) / (at_roller + now(roller) - at_pin).x;
+            // The traction on the edge has a moment about its middle where the edge is strained along itself.
+            assert!((b.force.y - expected).abs() < 1e-4 * expected.abs(), "{name}: {} {expected}", b.force.y);
+            let total = simulation.solution().reaction;
+            assert!((total.force + force).norm() < 1e-8 * force.norm(), "{name}: {}", total.force);
+        }
+    }
+}
+
+/// The tangent over the free unknowns is the derivative of the forces on them.
+#[test]
+fn the_tangent_is_the_derivative_of_the_forces() {
+    for entry in ELEMENTS {
+        let scene = on_two_points([[3.5, 0.3], [4.2, 0.1]], Vector2::new(1e3, -3e3)).with_element(entry.kind);
+        let scene = scene.clamp("left");
+        let system = std::sync::Arc::new(System::new(&scene).unwrap());
+        let problem = Problem::new(&scene, system.clone()).unwrap();
+        let (pattern, nodes) = (system.pattern(), system.mesh().nodes().len());
+        let mut random = Random(3);
+        let mut vector = |size: f64| -> Vec<f64> { (0..system.dofs()).map(|_| random.between(-size, size)).collect() };
+        let (place, direction) = (vector(0.05), vector(1.0));
+        let mut forces = Forces::new(nodes);
+        let mut force_at = |step: f64, matrix: Option<&mut Matrix>| {
+            let mut u = vec![Vector2::zeros(); nodes];
+            pattern.add_free(&place, 1.0, &mut u);
+            pattern.add_free(&direction, step, &mut u);
+            let state = system.state_of(&u).unwrap();
+            problem.linearize(&state, &mut forces, matrix.map(|matrix| (Tangent::EXACT, matrix)));
+            problem.balance(&state, Kinematics::Corotated, 1.0, &mut forces);
+            let mut free = vec![0.0; system.dofs()];
+            pattern.restrict(forces.residual(), &mut free);
+            free
+        };
+        let mut matrix = Matrix::new(pattern);
+        force_at(0.0, Some(&mut matrix));
+        let mut product = vec![0.0; system.dofs()];
+        matrix.multiply(pattern, &direction, &mut product);
+        let h = 1e-6;
+        let [after, before] = [h, -h].map(|h| force_at(h, None));
+        let largest = product.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+        for ((after, before), product) in after.iter().zip(&before).zip(&product) {
+            let off = ((before - after) / (2.0 * h) - product).abs();
+            assert!(off < 1e-6 * largest, "{}: {off} of {largest}", entry.id);
+        }
+    }
+}
+
+/// A point at a node is that node, one outside the body is the nearest node and says so, and one between nodes is not
+/// moved. Its beam is that of a mesh with a node there, which the reference has.
+#[test]
+fn nodes_and_points_agree_where_they_are_one() {
+    let beam =
+        || Scene::beam(10.0, 1.0).with_cells(20, 2).clamp("left").force("right", [0.0, -2e3]).probe("tip", "right");
+    let tip = |scene: &Scene| solved(scene).probe("tip").unwrap();
+    let [node, point] = [beam().support([7.5, 0.5], &[Axis::Y]), beam().point_support([7.5, 0.5], &[Axis::Y])];
+    assert!((tip(&node) - tip(&point)).norm() < 1e-9 * tip(&node).norm());
+    let moved = |scene: &Scene| moved_points(scene, Simulation::new(scene).unwrap().mesh()).len();
+    let outside = beam().point_support([7.5, 0.6], &[Axis::Y]);
+    assert!((tip(&outside) - tip(&node)).norm() < 1e-9 * tip(&node).norm());
+    assert_eq!(moved(&outside), 1);
+    let between = beam().point_support([7.7, 0.25], &[Axis::Y]);
+    assert_eq!([moved(&between), moved(&beam().support([7.7, 0.25], &[Axis::Y]))], [0, 1]);
+    let fine = beam().with_cells(200, 20).with_element(ElementKind::T6).support([7.7, 0.25], &[Axis::Y]);
+    let reference = Reference::of(&between).unwrap().first().unwrap();
+    let off = (reference.displacement - tip(&fine)).norm() / tip(&fine).norm();
+    assert!(off < 2e-3, "{off}");
+}
+
+/// Points that are moved do the work that is stored: with all of a body moved alike nothing is strained, and otherwise
+/// the work along the path is the elastic energy.
+#[test]
+fn moved_points_do_the_work_that_is_stored() {
+    let beam = || Scene::beam(10.0, 1.0).with_cells(9, 2).with_element(ElementKind::Q4);
+    let moved = |scene: Scene, at: [f64; 2], by: [f64; 2]| scene.point_support(at, BOTH).moved(by, 0.0);
+    let rigid =
+        [[1.3, 0.2], [4.4, -0.1], [8.7, 0.3]].into_iter().fold(beam(), |scene, at| moved(scene, at, [0.4, -0.7]));
+    let simulation = solved(&rigid);
+    assert!(simulation.solution().energy.elastic < 1e-12);
+    let far = simulation.displacement().iter().map(|u| (u - Vector2::new(0.4, -0.7)).norm()).fold(0.0, f64::max);
+    assert!(far < 1e-9, "{far}");
+    const STEPS: u32 = 24;
+    let to = Vector2::new(-0.5, -3.0);
+    let bent = |factor: f64| {
+        let scene = moved(beam().clamp("left"), [8.7, 0.3], (to * factor).into()).probe("point", [8.7, 0.3]);
+        let mut scene = scene.with_method(MethodKind::Newton);
+        scene.solver.tolerance = 1e-11;
+        scene
+    };
+    let mut simulation = solved(&bent(0.0));
+    let mut power = Vec::new();
+    for step in 0..=STEPS {
+        simulation.change_scene(&bent(f64::from(step) / f64::from(STEPS))).unwrap();
+        assert_eq!(*simulation.solve(), Status::Converged);
+        power.push(simulation.support_reactions()[1].force.dot(&to));
+    }
+    assert!((simulation.probe("point").unwrap() - to).norm() < 1e-12);
+    // Simpson's rule.
+    let three = power.windows(3).step_by(2);
+    let work: f64 = three.map(|p| (p[0] + 4.0 * p[1] + p[2]) / (3.0 * f64::from(STEPS))).sum();
+    let energy = simulation.solution().energy.elastic;
+    assert!((work - energy).abs() < 1e-4 * energy, "{work} {energy}");
+    let direct = solved(&bent(1.0)).solution().energy.elastic;
+    assert!((direct - energy).abs() < 1e-8 * energy, "{direct} {energy}");
+}
+
+/// Supports that hold a point twice agree or are refused, and a single pin does not hold a body.
+#[test]
+fn points_held_twice_agree_or_are_refused() {
+    let beam =
+        || Scene::beam(10.0, 1.0).with_cells(9, 2).clamp("left").force("right", [0.0, -1e3]).probe("tip", "right");
+    let tip = |scene: &Scene| solved(scene).probe("tip").unwrap();
+    let plain = tip(&beam());
+    assert!((tip(&beam().point_support([0.0, 0.1], BOTH)) - plain).norm() < 1e-12 * plain.norm());
+    let held = beam().point_support([6.1, 0.1], BOTH);
+    let twice = held.clone().point_support([6.1, 0.1], BOTH);
+    assert!((tip(&held) - tip(&twice)).norm() < 1e-9 * tip(&held).norm());
+    let error = |scene: &Scene| Simulation::new(scene).map(drop).unwrap_err().to_string();
+    for torn in [beam().point_support([0.0, 0.1], BOTH), twice] {
+        let message = error(&torn.moved([0.1, 0.0], 0.0));
+        assert!(message.contains("expected the displacement that other supports give this point"), "{message}");
+    }
+    let loose = error(&Scene::beam(10.0, 1.0).with_cells(9, 2).point_support([5.1, 0.1], BOTH));
+    assert!(loose.contains("the body can still move freely"), "{loose}");
+}
+
+/// The shear force jumps at the point itself, by its reaction, also inside a cell.
+#[test]
+fn section_forces_jump_at_the_point() {
+    let scene = on_two_points([[3.4, 0.1], [8.1, -0.3]], Vector2::new(0.0, -300.0)).with_method(MethodKind::Newton);
+    let simulation = solved(&scene);
+    let reactions: Vec<f64> = simulation.support_reactions().iter().map(|reaction| reaction.force.y).collect();
+    for (i, x) in [3.4, 8.1].into_iter().enumerate() {
+        let force = |x: f64| simulation.section(SectionLine { at: [x, 0.0].into(), angle: 0.0 }).unwrap().force.y;
+        let jump = force(x - 1e-4) - force(x + 1e-4);
+        assert!((jump - reactions[i]).abs() < 1e-7 * reactions[i].abs(), "{jump} {}", reactions[i]);
+    }
+    let behind = simulation.section(SectionLine { at: [3.3, 0.0].into(), angle: 0.0 }).unwrap().force;
+    assert!(behind.norm() < 1e-7 * 300.0, "{behind}");
+}
+
+/// A body that swings about a point in a cell does so with every integrator: the point rests, and the motion is that of a
+/// physical pendulum.
+#[test]
+fn a_body_swings_about_its_point() {
+    use IntegratorKind::{EnergyMomentum, ImplicitEuler, SymplecticEuler, TrBdf2};
+    for integrator in [ImplicitEuler, TrBdf2, EnergyMomentum, SymplecticEuler] {
+        let (step, iterations) = if integrator == SymplecticEuler { (2e-5, 1) } else { (1e-3, 0) };
+        let mut scene = Scene::beam(2.0, 0.2).with_cells(9, 2).with_element(ElementKind::Q4);
+        scene = scene.with_material(Material::new(2e7, 0.3)).point_support([0.13, 0.03], BOTH);
+        scene = scene.gravity([0.0, -9.81]).probe("point", [0.13, 0.03]).moving(integrator, step);
+        (scene.dynamics.iterations, scene.dynamics.duration) = (iterations, 0.3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert_eq!(*simulation.solve(), Status::Finished, "{integrator:?}");
+        let point = simulation.probe("point").unwrap();
+        assert!(point.norm() < 1e-9, "{integrator:?}: {point}");
+        // A rigid body about the point: φ'' = g × d / (I/m), integrated in small steps.
+        let arm = Vector2::new(1.0, 0.0) - Vector2::new(0.13, 0.03);
+        let inertia = (4.0 + 0.04) / 12.0 + arm.norm_squared();
+        let (mut angle, mut rate, h) = (0.0_f64, 0.0, 1e-5);
+        for _ in 0..30_000 {
+            let (s, c) = angle.sin_cos();
+            rate += h * -9.81 * (c * arm.x - s * arm.y) / inertia;
+            angle += h * rate;
+        }
+        let centre = simulation.positions().sum::<Vector2<f64>>() / simulation.positions().len() as f64;
+        let (s, c) = angle.sin_cos();
+        let expected = Vector2::new(0.13, 0.03) + Vector2::new(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
+        assert!((centre - expected).norm() < 0.01, "{integrator:?}: {centre} {expected}");
+    }
+}
+
+/// Scene files have the point of a support, and refuse one of an edge.
+#[test]
+fn scene_files_have_the_point_of_a_support() {
+    let scene = on_two_points([[3.4, 0.1], [8.1, -0.3]], Vector2::new(0.0, -300.0));
+    let toml = scene.to_toml().unwrap();
+    assert_eq!(toml.matches("acts_on = \"point\"").count(), 2, "{toml}");
+    assert_eq!(Scene::from_toml(&toml).unwrap().supports, scene.supports);
+    assert_eq!(scene.supports[0], Support::point([3.4, 0.1], BOTH));
+    assert_eq!(scene.supports[0].place, Place::At([3.4, 0.1]));
+    let wrong = toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1);
+    let error = Scene::from_toml(&wrong).unwrap_err().to_string();
+    assert!(error.contains("expected at = [x, y] with acts_on = \"point\", got an edge"), "{error}");
+}
