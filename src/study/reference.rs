@@ -114,6 +114,8 @@ impl From<&ProbeReference> for Sentence {
 pub struct Reference {
     /// Reference of every probe of the scene; `None` if the probe does not move, or no bound of the error is known.
     probes: Vec<Option<ProbeReference>>,
+    /// Reason why the first probe has no reference, if it has none.
+    missing: Missing,
     /// Distance of the exact beam from the fine solution used instead, percent; `None` if the beam is used, or there is
     /// none.
     pub beam_off_by_percent: Option<f64>,
@@ -138,14 +140,51 @@ pub struct Reference {
     pub unknowns: usize,
 }
 
+/// Reason why a probe has no reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+enum Missing {
+    /// The probe does not move.
+    AtRest,
+    /// The solutions on finer meshes give no bound of the error.
+    NoBound,
+    /// The bound exceeds [`LARGEST_OWN_ERROR`].
+    LargeBound,
+}
+
+impl Missing {
+    /// Returns the reason for a displacement with this bound of its error, m, if it has no reference; `largest` is the
+    /// largest displacement of the body, m.
+    fn of(displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Self {
+        /// Displacement relative to the largest one that is only rounding error.
+        const ROUNDING: f64 = 1e-9;
+        match error {
+            _ if displacement.norm() <= ROUNDING * largest => Self::AtRest,
+            None => Self::NoBound,
+            Some(_) => Self::LargeBound,
+        }
+    }
+}
+
+impl From<&Missing> for Sentence {
+    fn from(missing: &Missing) -> Self {
+        match missing {
+            Missing::AtRest => sentence!("no reference solution: the probe does not move"),
+            Missing::NoBound => {
+                sentence!("no reference solution: finer and finer meshes give no bound of its error at the probe")
+            }
+            Missing::LargeBound => sentence!(
+                "no reference solution: its error at the probe may be more than %{percent} %",
+                percent = number(LARGEST_OWN_ERROR)
+            ),
+        }
+    }
+}
+
 displayed!(ReferenceSource, ProbeReference, Reference);
 
 impl From<&Reference> for Sentence {
     fn from(reference: &Reference) -> Self {
-        let known = reference.first().map_or_else(
-            || sentence!("no reference solution: the probe does not move, or no bound of the error is known"),
-            |first| (&first).into(),
-        );
+        let known = reference.first().map_or_else(|| (&reference.missing).into(), |first| (&first).into());
         match reference.beam_off_by_percent {
             Some(off) => {
                 sentence!("%{reference}; beam theory differs by %{off} %", reference = known, off = format!("{off:.1}"))
@@ -250,9 +289,14 @@ impl Reference {
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
         let probes = fine.probes.iter().zip(&fine.errors).map(|(&u, error)| probe(u, (*error)?, source));
         let probes: Vec<_> = probes.collect();
+        let lines = fine.outline.iter().flatten().zip(fine.rest_outline.iter().flatten());
+        let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
+        let first = fine.probes.first().zip(fine.errors.first());
+        let missing = first.map_or(Missing::NoBound, |(&u, &error)| Missing::of(u, error, largest));
         let is_known = probes.first().is_some_and(Option::is_some);
         Self {
             probes,
+            missing,
             beam_off_by_percent: None,
             outline: if is_known { fine.outline } else { Vec::new() },
             rest_outline: if is_known { fine.rest_outline } else { Vec::new() },
@@ -311,6 +355,7 @@ impl Reference {
         let [rest, line] = lines.map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
         Some(Self {
             probes: vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()],
+            missing: Missing::NoBound,
             beam_off_by_percent: None,
             outline: line,
             rest_outline: rest,
