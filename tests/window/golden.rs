@@ -55,7 +55,9 @@ fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured
         }
         let difference = difference(&covered(read_png(&path), measured), &covered(read_png(&golden), measured));
         if difference >= TOLERANCE {
-            wrong.push(format!("{file}: {:.2} % of the pixels differ", 100.0 * difference));
+            let kept = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(&file);
+            std::fs::copy(&path, &kept).unwrap();
+            wrong.push(format!("{}: {:.2} % of the pixels differ", kept.display(), 100.0 * difference));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
