@@ -58,13 +58,13 @@ pub(super) struct HeldPoints {
 }
 
 impl Constraint {
-    /// Adds `factor` times another equation.
-    fn add(&mut self, other: &Self, factor: f64) {
+    /// Adds multiples of the two sides of another equation.
+    fn add(&mut self, other: &Self, [of_terms, of_targets]: [f64; 2]) {
         for (&unknown, c) in &other.terms {
-            *self.terms.entry(unknown).or_default() += factor * c;
+            *self.terms.entry(unknown).or_default() += of_terms * c;
         }
         for (&support, h) in &other.targets {
-            *self.targets.entry(support).or_default() += factor * h;
+            *self.targets.entry(support).or_default() += of_targets * h;
         }
     }
 }
@@ -108,9 +108,8 @@ impl HeldPoints {
             };
             for DependentUnknown { unknown, on } in &result.dependent {
                 if let Some(c) = own.terms.remove(unknown) {
-                    // c u moves to the right-hand side, as c (Σ c u′ + Σ h g).
-                    own.add(&Constraint { terms: on.terms.clone(), targets: BTreeMap::new() }, c);
-                    own.add(&Constraint { terms: BTreeMap::new(), targets: on.targets.clone() }, -c);
+                    // c u is c Σ c′ u′ on the left, and c Σ h g moves to the right.
+                    own.add(on, [c, -c]);
                 }
             }
             own.terms.retain(|_, c| c.abs() > NEGLIGIBLE);
@@ -121,11 +120,10 @@ impl HeldPoints {
             };
             own.terms.remove(&unknown);
             let mut on = Constraint::default();
-            on.add(&Constraint { terms: own.terms, targets: BTreeMap::new() }, -1.0 / pivot);
-            on.add(&Constraint { terms: BTreeMap::new(), targets: own.targets }, 1.0 / pivot);
+            on.add(&own, [-1.0 / pivot, 1.0 / pivot]);
             for other in &mut result.dependent {
                 if let Some(c) = other.on.terms.remove(&unknown) {
-                    other.on.add(&on, c);
+                    other.on.add(&on, [c, c]);
                 }
             }
             result.dependent.push(DependentUnknown { unknown, on });

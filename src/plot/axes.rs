@@ -78,13 +78,21 @@ impl ScaledAxis {
         start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
-    /// Returns the positions and the values of the decades, or of the ticks of a linear axis.
+    /// Returns the positions and the values of the decades, with those of 2 and 5 if there are fewer than two decades, or of
+    /// the ticks of a linear axis.
     pub fn values(&self) -> Vec<(f64, f64)> {
         /// Largest number of ticks of a linear axis.
         const TICKS: u32 = 6;
         let values: Vec<f64> = match self.scale {
             AxisScale::Logarithmic => {
-                (self.from.ceil() as i32..=self.to.floor() as i32).map(|e| 10f64.powi(e)).collect()
+                let [from, to] = [self.from.floor() as i32, self.to.floor() as i32];
+                let of = |digits: &'static [f64]| {
+                    let all = (from..=to).flat_map(|e| digits.iter().map(move |digit| digit * 10f64.powi(e)));
+                    all.filter(|value| (self.from..=self.to).contains(&value.log10())).collect::<Vec<f64>>()
+                };
+                // One decade alone does not show the scale.
+                let decades = of(&[1.0]);
+                if decades.len() > 1 { decades } else { of(&[1.0, 2.0, 5.0]) }
             }
             AxisScale::Linear => {
                 let texts = ticks(self.from * self.full, self.to * self.full, TICKS);
@@ -94,7 +102,7 @@ impl ScaledAxis {
         values.into_iter().map(|value| (self.place(value), value)).collect()
     }
 
-    /// Returns the position and the label of every decade.
+    /// Returns the position and the label of each of [`Self::values`].
     pub fn ticks(&self) -> Vec<(f64, String)> {
         self.values().into_iter().map(|(place, value)| (place, number(value))).collect()
     }

@@ -228,9 +228,9 @@ fn the_panel_chooses_field_and_magnification() {
     assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
 }
 
-/// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. A force or
-/// a probe goes to any point, a force also to a named edge or a corner, a support to a node. A press without a drag
-/// opens the card of the point.
+/// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. All go
+/// to any point, a force and a support also to a named edge or a corner. A press without a drag opens the card of the
+/// point.
 #[test]
 fn bases_of_objects_are_dragged_along_the_body() {
     let mut scene = scene("cantilever");
@@ -267,10 +267,19 @@ fn bases_of_objects_are_dragged_along_the_body() {
     drag(&mut harness, from, to, Modifiers::NONE);
     let line = harness.state().scene().sections[0];
     assert!((line.at - Vector2::new(3.0, 0.1)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
-    // The corner at the lower right.
-    let (from, to) = (seen(&harness, [2.0, -0.499]), seen(&harness, [9.99, -0.49]));
+    let (from, to) = (seen(&harness, [2.0, -0.499]), seen(&harness, [7.33, 0.12]));
     drag(&mut harness, from, to, Modifiers::NONE);
-    assert_eq!(harness.state().scene().supports.last().unwrap().place, Place::At([10.0, -0.5]));
+    let held = harness.state().scene().supports.last().unwrap().clone();
+    let Place::At(inside) = held.place else { panic!("at a point") };
+    assert!(held.at_point && (Vector2::from(inside) - Vector2::new(7.33, 0.12)).norm() < 0.05, "{held:?}");
+    let reaction = harness.state().simulation().support_reactions().last().unwrap().clone();
+    assert!((reaction.middle.y - inside[1]).abs() < 1e-9 && reaction.force.y > 0.0, "{reaction:?}");
+    assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "the support holds its point");
+    // The corner at the lower right.
+    let (from, to) = (seen(&harness, inside), seen(&harness, [9.99, -0.49]));
+    drag(&mut harness, from, to, Modifiers::NONE);
+    let held = harness.state().scene().supports.last().unwrap();
+    assert_eq!((&held.place, held.at_point), (&Place::At([10.0, -0.5]), false));
     let probe = seen(&harness, at);
     click(&mut harness, probe);
     assert!(harness.state().probed().is_some(), "a press without a drag inspects");

@@ -30,8 +30,8 @@ const HATCH: f32 = 6.0;
 const NAMES: f32 = 92.0;
 const INTEGRATORS: f32 = 120.0;
 const ENDS: f32 = 190.0;
-/// Width, points, below which the right column is omitted.
-const WITH_ENDS: f32 = 640.0;
+/// Width, points, below which the right column is as wide as its texts, and below which it is omitted.
+const WITH_ENDS: [f32; 2] = [760.0, 460.0];
 /// Width from which the choice of the scale and the key of the colours are in one row, points.
 const ONE_ROW: f32 = 980.0;
 /// Height of a line of small text, points.
@@ -95,11 +95,15 @@ impl LimitMap {
         let progress = facts.progress().map(|done| done as f32);
         let moves = scene.analysis == Analysis::Dynamic;
         let has_one_row = ui.available_width() >= ONE_ROW;
+        let mut has_row = false;
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             self.views(ui, scene, view);
-            if limits.is_some() && !shows_curve && has_one_row {
-                key(ui, moves);
+            // In a low window the strips take the room of the whole key.
+            let strips = limits.map(|limits| 3.0 * LINE + ROW[0] * limits.strips.len() as f32);
+            has_row = strips.is_some_and(|strips| ui.available_rect_before_wrap().height() >= strips + 2.0 * LINE);
+            if limits.is_some() && !shows_curve && (has_one_row || !has_row) {
+                key(ui, moves, !has_one_row);
             }
         });
         if shows_curve {
@@ -122,12 +126,10 @@ impl LimitMap {
             });
             return;
         };
-        // In a low window the strips take the room of the key.
-        let strips = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
-        if !has_one_row && ui.available_height() >= strips + 2.0 * LINE {
+        if !has_one_row && has_row {
             ui.horizontal(|ui| {
                 ui.add_space(8.0);
-                ui.horizontal_wrapped(|ui| key(ui, moves));
+                ui.horizontal_wrapped(|ui| key(ui, moves, false));
             });
         }
         // Its room stays after the limits are complete, so that nothing moves.
@@ -252,15 +254,24 @@ fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
     Some(probe.mean(shown.displacement()))
 }
 
-/// Shows the key of the colours; a line breaks between entries.
-fn key(ui: &mut Ui, moves: bool) {
+/// Shows the key of the colours; a line breaks between entries. In short, the bounds stand for the errors within them.
+fn key(ui: &mut Ui, moves: bool, in_short: bool) {
     const BOX: Vec2 = vec2(10.0, 10.0);
-    ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
+    ui.spacing_mut().item_spacing = vec2(if in_short { 8.0 } else { 10.0 }, 0.0);
     for (rating, name) in Rating::all(moves) {
-        legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+        let name = match rating {
+            Rating::Good if in_short => format!("≤ {} %", limits::GOOD),
+            Rating::Usable if in_short => format!("≤ {} %", limits::USABLE),
+            Rating::Beyond if in_short => format!("> {} %", limits::USABLE),
+            Rating::NotConverged if in_short => tr("fails").to_owned(),
+            Rating::Unknown if in_short => tr("unknown").to_owned(),
+            _ => said(&name),
+        };
+        legend::entry(ui, &name, BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
     }
     let ink = Palette::new(ui.visuals()).text;
-    legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
+    let law = if in_short { "strained" } else { "strains above 10 % or inverted" };
+    legend::entry(ui, tr(law), BOX, &|ui, rect| {
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
         hatch(ui, rect, ink);
     });
@@ -294,17 +305,28 @@ struct StripChart<'a> {
     row: f32,
     /// Width of the column of names.
     names: f32,
-    /// `true` if the loads at the ends of the strips have room.
-    has_ends: bool,
+    /// Width of the column of the loads at the ends of the strips; 0 if it has no room.
+    ends: f32,
     /// `true` if the curve has room.
     has_curve: bool,
 }
 
 impl<'a> StripChart<'a> {
     fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: AxisScale) -> Self {
-        let has_ends = whole.width() >= WITH_ENDS;
+        let [whole_column, any_column] = WITH_ENDS;
+        let ends = match whole.width() {
+            width if width >= whole_column => ENDS,
+            width if width >= any_column => {
+                let widths = limits.strips.iter().filter_map(|strip| strip.end(axis, limits.range)).map(|end| {
+                    let font = FontId::proportional(SMALL);
+                    ui.painter().layout_no_wrap(said(&end), font, Color32::WHITE).size().x
+                });
+                widths.fold(120.0, f32::max) + 20.0
+            }
+            _ => 0.0,
+        };
         let names = if limits.duration.is_some() { INTEGRATORS } else { NAMES };
-        let (left, right) = (whole.left() + names, whole.right() - if has_ends { ENDS } else { 24.0 });
+        let (left, right) = (whole.left() + names, whole.right() - ends.max(24.0));
         let count = limits.strips.len().max(1) as f32;
         let room = whole.height() - 3.0 * LINE;
         let row = (SHARE * room / count).clamp(ROW[0], ROW[1]);
@@ -323,7 +345,7 @@ impl<'a> StripChart<'a> {
             strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
             row,
             names,
-            has_ends,
+            ends,
             has_curve,
         }
     }
@@ -404,7 +426,7 @@ impl<'a> StripChart<'a> {
             let points = lengths.filter(|(_, u)| *u > 0.0).map(|(factor, u)| pos2(self.x(factor), up.place(u) as f32));
             painter.line(points.collect(), Stroke::new(2.0, palette.exact));
         }
-        if self.has_ends {
+        if self.ends >= ENDS {
             let at = pos2(curve.right() + 10.0, curve.top());
             let text = tr("reference displacement\nof the first probe");
             self.text(ui, at, Align2::LEFT_TOP, text, palette.exact);
@@ -426,7 +448,7 @@ impl<'a> StripChart<'a> {
     fn strip(&self, ui: &Ui, row: usize, strip: &Strip, scene: &Scene, actions: &mut Vec<Action>) {
         let Self { palette, strips, .. } = self;
         let top = strips.top() + self.row * row as f32;
-        let right = strips.right() + if self.has_ends { ENDS } else { 0.0 };
+        let right = strips.right() + self.ends;
         let rect = Rect::from_min_max(pos2(strips.left() - self.names, top), pos2(right, top + self.row));
         let name = strip.name(|id| tr(id).to_owned());
         let is_used = match strip.integrator {
@@ -482,7 +504,7 @@ impl<'a> StripChart<'a> {
         }
         let end =
             if strip.done < 1.0 { Some(done) } else { strip.end(self.axis, self.limits.range).map(|end| said(&end)) };
-        if let Some(end) = end.filter(|_| self.has_ends) {
+        if let Some(end) = end.filter(|_| self.ends > 0.0) {
             let at = pos2(strips.right() + 10.0, rect.center().y);
             self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
         }
