@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 
 use super::stage::Step;
-use super::step::{Memory, StepEnergy, StepError, combine, work};
+use super::step::{Memory, StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::assembly::MouseSpring;
 use crate::element::StrainRate;
@@ -76,7 +76,9 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if !*records_energy {
         return Ok(StepEnergy::default());
     }
-    let dissipated = work(&solver.memory.damping, start, state);
+    // The damping force of the start times the velocity there, which never feeds energy; the rest is the integrator's.
+    let power: f64 = solver.memory.damping.iter().zip(&start.velocity).map(|(f, v)| f.dot(v)).sum();
+    let dissipated = h * power;
     solver.problem.set_time(state.time);
     let spring = solver.problem.mouse_spring();
     let moved = spring

@@ -418,7 +418,7 @@ impl Session {
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
         self.changed.body |= is_another_body;
-        self.playback.change_scene(scene, is_another_body);
+        self.playback.change_scene(&self.simulation, is_another_body);
         self.facts.turn_to(scene);
         // A time step with other settings takes another time.
         let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);

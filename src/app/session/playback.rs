@@ -234,11 +234,13 @@ impl Playback {
         self.clock.rest();
     }
 
-    /// Adapts to a change of the scene; `is_another` is `true` if the body has changed. Recorded moments belong to the
-    /// previous scene and are removed.
-    pub(crate) fn change_scene(&mut self, scene: &Scene, is_another: bool) {
+    /// Adapts to a change of the scene to that of the motion; `is_another` is `true` if the body has changed. Removes the
+    /// recorded moments, which belong to the previous scene, and the trail of a motion that restarts.
+    pub(crate) fn change_scene(&mut self, simulation: &Simulation, is_another: bool) {
+        let scene = simulation.scene();
         self.discard_future();
         self.discard_past();
+        self.history.truncate_after(simulation.state().time());
         if is_another {
             self.here = None;
             self.restart();
@@ -246,7 +248,9 @@ impl Playback {
         let moves = scene.analysis == Analysis::Dynamic;
         self.companions.retain_mut(|c| {
             let differs = c.integrator != scene.dynamics.integrator;
-            moves && differs && c.simulation.change_scene(&with(scene, c.integrator)).is_ok()
+            let stays = moves && differs && c.simulation.change_scene(&with(scene, c.integrator)).is_ok();
+            c.history.truncate_after(c.simulation.state().time());
+            stays
         });
     }
 

@@ -23,7 +23,7 @@ use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::render::{Camera, Frame, Margins, View};
 use crate::scene::{Load, MethodKind, Place, Scene};
-use crate::section::Section;
+use crate::section::{Section, SectionForces};
 use crate::simulation::{Field, Simulation, Status};
 use crate::state::largest;
 use crate::study::{Reference, section_chart};
@@ -696,7 +696,8 @@ impl BodyView {
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().opened),
             hot: self.pointer.hot_handle(),
-            mouse_spring: simulation.mouse_spring(),
+            // The force of a paused motion would be that of the pointer's velocity alone.
+            mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
             playback: session.playback(),
             sections: &sections,
             reactions: &reactions,
@@ -793,12 +794,16 @@ fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
     }
 }
 
-/// Returns the sections of a state, each with its forces as text.
+/// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
 fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
     let lines = simulation.scene().sections.iter();
     let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
-    let named = sections.map(|section| {
-        let text = section_chart::text_of(&section, simulation);
+    let named = sections.map(|mut section| {
+        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
+        let text = section_chart::text(&section, &contexts);
+        let [normal, shear, moment] = &contexts;
+        let SectionForces { normal: n, shear: v, moment: m } = &mut section.forces;
+        (*n, *v, *m) = (normal.rounded(*n), shear.rounded(*v), moment.rounded(*m));
         (section, text)
     });
     named.collect()

@@ -36,7 +36,7 @@ pub(crate) struct Budget {
     /// `true` if the last study was cancelled.
     is_partial: bool,
     study: Option<Measured>,
-    /// Measured scene without the settings that the study varies.
+    /// Measured scene.
     of: Option<Scene>,
     error: Option<Sentence>,
     limits: Limits,
@@ -64,15 +64,20 @@ impl From<Limits> for Demand {
 }
 
 impl Budget {
-    /// Starts a study of a scene, and drops the previous one; one in progress is cancelled, and awaited.
+    /// Starts a study of a scene, and drops the previous one; one in progress is cancelled, and awaited. A setting of the
+    /// previous study that was applied is measured among the same settings again: those of a motion are chosen around the
+    /// mesh and the time step of the scene.
     pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
         if let Some(background) = &self.background {
             background.cancel();
             self.next = Some((scene.clone(), extent));
             return;
         }
-        *self = Self { of: Some(without_settings(scene)), limits: self.limits, ..Self::default() };
-        match BackgroundStudy::start(scene.clone(), extent) {
+        let is_setting = |study: &Measured| study.choices().iter().any(|choice| choice.is_applied_to(scene));
+        let is_measured = self.is_of(scene) && self.study.as_ref().is_some_and(is_setting);
+        let base = self.of.take().filter(|_| is_measured).unwrap_or_else(|| scene.clone());
+        *self = Self { of: Some(base.clone()), limits: self.limits, ..Self::default() };
+        match BackgroundStudy::start(base, extent) {
             Ok(background) => self.background = Some(background),
             Err(error) => self.error = Some(error),
         }
@@ -128,13 +133,13 @@ impl Budget {
 
     /// Returns `true` if the study is of a scene, whatever its settings.
     fn is_of(&self, scene: &Scene) -> bool {
-        self.of.as_ref() == Some(&without_settings(scene))
+        self.of.as_ref().is_some_and(|of| without_settings(of) == without_settings(scene))
     }
 
     /// Sets a study made elsewhere.
     pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
         *self = Self {
-            of: Some(without_settings(scene)),
+            of: Some(scene.clone()),
             study: Some(Measured::Rest(study)),
             limits: self.limits,
             ..Self::default()
@@ -179,10 +184,14 @@ impl Budget {
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
         let width = ui.available_width();
-        if width < SIDE_BY_SIDE {
+        let kind = usize::from(moves);
+        if width < SIDE_BY_SIDE[kind] {
+            let bottom = ui.max_rect().bottom();
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 settings(ui, &budget, limits, messages, actions);
-                list(ui, &budget, LOW_LIST, actions);
+                // The list takes the room that the plot and its legend leave.
+                let room = bottom - ui.cursor().top() - LOW_PLOT - LEGEND;
+                list(ui, &budget, room.max(LOW_LIST), actions);
                 legend(ui, moves);
                 ui.allocate_ui(vec2(ui.available_width(), LOW_PLOT), |ui| plot(ui, &budget));
             });
@@ -190,7 +199,7 @@ impl Budget {
         }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
-                ui.set_width(LIST_WIDTH.min(LIST_SHARE * width));
+                ui.set_width(LIST_WIDTH[kind].min(LIST_SHARE[kind] * width));
                 settings(ui, &budget, limits, messages, actions);
                 list(ui, &budget, f32::INFINITY, actions);
             });
@@ -225,14 +234,17 @@ struct BudgetView<'a> {
     error: Option<&'a Sentence>,
 }
 
-/// Width of the list, points, and its largest fraction of the width shared with the plot.
-const LIST_WIDTH: f32 = 480.0;
-const LIST_SHARE: f32 = 0.5;
+/// Width of the list, points, of a body at rest and of a motion, whose settings have longer names, and its largest fraction
+/// of the width shared with the plot.
+const LIST_WIDTH: [f32; 2] = [480.0, 600.0];
+const LIST_SHARE: [f32; 2] = [0.5, 0.6];
 /// Smallest width of the list beside the plot, points; in a narrower window the plot is under the list.
-const SIDE_BY_SIDE: f32 = 560.0;
-/// Heights of the list and of the plot under it, points.
+const SIDE_BY_SIDE: [f32; 2] = [560.0, 760.0];
+/// Least height of the list, and height of the plot under it, points.
 const LOW_LIST: f32 = 84.0;
 const LOW_PLOT: f32 = 200.0;
+/// Height of the legend above the plot with the space around it, points.
+const LEGEND: f32 = 34.0;
 
 fn settings(
     ui: &mut Ui,
@@ -325,7 +337,7 @@ fn settings(
             actions.push(best.action(budget.scene));
         }
         let measured = budget.choices.len();
-        ui.label(match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
+        let count = match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
             Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
             None if measured > 0 && meeting.is_empty() => {
                 fill!("None of %{measured} settings meets both; nearest:", measured = measured)
@@ -338,7 +350,8 @@ fn settings(
                 )
             }
             None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
-        });
+        };
+        ui.add(egui::Label::new(count).truncate());
     });
 }
 
@@ -531,14 +544,29 @@ mod tests {
         budget.cancel();
         assert!(budget.runs() && budget.is_partial, "a cancelled study is awaited");
         budget.measure(&second, Extent::Quick);
-        assert_eq!(budget.of, Some(without_settings(&first)));
+        assert_eq!(budget.of.as_ref(), Some(&first));
         while budget.runs() {
-            assert_eq!(budget.next.is_some(), budget.of == Some(without_settings(&first)));
+            assert_eq!(budget.next.is_some(), budget.of.as_ref() == Some(&first));
             budget.poll(&ctx);
             std::thread::yield_now();
         }
-        assert_eq!(budget.of, Some(without_settings(&second)));
+        assert_eq!(budget.of.as_ref(), Some(&second));
         assert!(budget.error.is_none() && !budget.is_partial && budget.study().is_some());
+        // A measured setting that was applied is measured among the same settings again, another one around itself.
+        let choices = budget.study.as_ref().unwrap().choices();
+        let Some(Choice::Rest(applied)) = choices.iter().find(|choice| !choice.is_applied_to(&second)) else {
+            panic!("a body at rest")
+        };
+        let applied = applied.apply(&second);
+        let mut other = second.clone();
+        other.beam.as_mut().unwrap().cells = [17, 3];
+        for (scene, base) in [(&other, &other), (&applied, &second)] {
+            let mut again = Budget::default();
+            (again.of, again.study) = (Some(second.clone()), budget.study.clone());
+            again.measure(scene, Extent::Quick);
+            assert_eq!(again.of.as_ref(), Some(base));
+            again.cancel();
+        }
         // Where no setting meets a demand, the nearest ones each meet one of its halves.
         let measured = budget.study.unwrap();
         let all = measured.choices();

@@ -111,6 +111,8 @@ pub(crate) struct MotionCompare {
     pub clock: RealTimeClock,
     /// Bounding box of all states of the bodies so far, m.
     swept: Option<[Vector2<f64>; 2]>,
+    /// Number of panes whose motions have not stopped early.
+    sound: usize,
     /// Largest displacement of the bodies so far, m: an automatic magnification that followed a motion would hide it.
     largest_displacement: f64,
     /// Playing time, s: longer than the simulated time in slow motion.
@@ -125,6 +127,7 @@ impl Default for MotionCompare {
             panes: Panes::new(&integrators()),
             clock: RealTimeClock::default(),
             swept: None,
+            sound: 0,
             largest_displacement: 0.0,
             played: 0.0,
             is_timing: false,
@@ -165,6 +168,7 @@ impl MotionCompare {
 
     /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
+        self.swept = None;
         self.panes.fit();
     }
 
@@ -242,7 +246,9 @@ impl MotionCompare {
                 }
                 if grid::add_button(ui, present.len()) {
                     let used = |kind| present.iter().any(|setting| setting.integrator == Some(kind));
-                    let unused = INTEGRATORS.iter().map(|entry| entry.kind).find(|&kind| !used(kind));
+                    // An explicit integrator may explode at the time step of the others.
+                    let unused = INTEGRATORS.iter().filter(|entry| !used(entry.kind)).min_by_key(|e| e.is_explicit());
+                    let unused = unused.map(|entry| entry.kind);
                     self.panes.add(unused.map(PaneSetting::of_integrator).unwrap_or_default());
                 }
                 let time = self.panes().iter().find_map(|pane| Some(pane.simulation()?.state().time()));
@@ -303,8 +309,14 @@ impl MotionCompare {
         // The states of a motion that is about to explode would hide the others.
         let reach = LARGEST_REACH * (rest[1] - rest[0]).norm();
         let is_near = |p: &&Vector2<f64>| (*p - rest[0]).norm() < reach;
-        let sound = self.panes.list.iter().filter(|pane| pane.motion.is_sound());
-        let points = sound.flat_map(|pane| pane.display.body_mesh.points()).filter(is_near);
+        let sound = || self.panes.list.iter().filter(|pane| pane.motion.is_sound());
+        // A body that has left is not looked for.
+        let count = sound().count();
+        if count < self.sound {
+            self.swept = None;
+        }
+        self.sound = count;
+        let points = sound().flat_map(|pane| pane.display.body_mesh.points()).filter(is_near);
         let swept = points.fold(self.swept.unwrap_or(rest), grow);
         self.swept = Some(swept);
         let holds = self.panes.holds();
