@@ -10,7 +10,7 @@ use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support
 use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status, probe_results};
 use crate::stress::strain_warning;
-use crate::study::{Advice, Claim, FOLDS, ProbeReference, Reference, moved_points};
+use crate::study::{Advice, Claim, FOLDS, MovedPoint, ProbeReference, Reference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -113,6 +113,20 @@ const LARGE_ERROR: f64 = 5.0;
 
 /// Ratio of the reference's own error to a large error above which both are stated.
 const COARSE: f64 = 0.25;
+
+/// Returns sentences about points that act on a node, and about held points too close to others, with the numbers of loads
+/// and supports in the panel.
+fn notes_on_points(simulation: &Simulation) -> Vec<Sentence> {
+    let named = |key: &str| match key.split_once('.').and_then(|(kind, i)| Some((kind, i.parse::<usize>().ok()?))) {
+        Some(("support", i)) => fill!("Support %{n}", n = i + 1),
+        Some(("load", i)) => fill!("Load %{n}", n = i + 1),
+        _ => key.to_owned(),
+    };
+    let moved = moved_points(simulation.scene(), simulation.mesh());
+    let moved = moved.into_iter().map(|point| Sentence::from(&MovedPoint { key: named(&point.key), ..point }));
+    let crowded = simulation.system().crowded_supports(|i| named(&format!("support.{i}")));
+    moved.chain(crowded).collect()
+}
 
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
@@ -238,7 +252,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
     }
-    moved_points(simulation.scene(), simulation.mesh()).iter().for_each(|point| add(said(point)));
+    notes_on_points(simulation).iter().for_each(|note| add(said(note)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         let is_new = |text: &String| remedy.is_none_or(|remedy| remedy.text != sentence(text));
         path.claims().map(|claim| said(&claim)).filter(is_new).for_each(&mut add);
@@ -322,7 +336,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         });
         return lines;
     }
-    lines.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(|point| sentence(&said(point))));
+    lines.extend(notes_on_points(simulation).iter().map(|note| sentence(&said(note))));
     if *simulation.status() == Status::Accepted {
         let residual = number(two_digits(simulation.residual()));
         let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));

@@ -131,6 +131,29 @@ impl HeldPoints {
         Self { points, ..result }
     }
 
+    /// Returns the supports, by their numbers, that hold a point already held by others, and those that hold a point in an
+    /// element of which another support holds the point or a node in the same direction.
+    #[cfg(feature = "cli")]
+    pub(super) fn crowded(&self, fixed: impl Fn(u32) -> bool) -> [Vec<usize>; 2] {
+        let redundant = self.redundant.iter().map(|(support, _)| *support);
+        let unknowns = |point: &HeldPoint| -> Vec<u32> {
+            let weights = point.weights.iter().filter(|(_, weight)| weight.abs() > NEGLIGIBLE);
+            let held = (0..2_u32).filter(|&axis| point.axes[axis as usize]);
+            weights.flat_map(|&(node, _)| held.clone().map(move |axis| 2 * node + axis)).collect()
+        };
+        let is_close = |point: &&HeldPoint| {
+            let own = unknowns(point);
+            let others = self.points.iter().filter(|other| other.support != point.support);
+            let is_shared = |unknown: &u32| fixed(*unknown) || others.clone().any(|o| unknowns(o).contains(unknown));
+            own.iter().any(is_shared)
+        };
+        let mut redundant: Vec<usize> = redundant.collect();
+        redundant.dedup();
+        let close = self.points.iter().filter(is_close).map(|point| point.support);
+        let close = close.filter(|support| !redundant.contains(support)).collect();
+        [redundant, close]
+    }
+
     /// Returns the force, N, that the support number `support` exerts on its point, from the force on each unknown that
     /// keeps the nodes in balance: by virtual work, Σ h times the force on the unknowns that depend on its displacement.
     pub(super) fn force(&self, support: usize, residual: &[Vector2<f64>]) -> Vector2<f64> {

@@ -253,6 +253,23 @@ impl System {
         &self.held
     }
 
+    /// Returns sentences about held points whose reaction is 0 or depends on the mesh; `name` is the name of a support.
+    #[cfg(feature = "cli")]
+    pub(crate) fn crowded_supports(&self, name: impl Fn(usize) -> String) -> Vec<Sentence> {
+        let fixed = |unknown: u32| self.pattern.fixed(unknown / 2)[unknown as usize % 2];
+        let [redundant, close] = self.held.crowded(fixed);
+        let redundant = redundant.into_iter().map(|support| {
+            sentence!("%{support} holds a point that other supports hold: it has no reaction", support = name(support))
+        });
+        let close = close.into_iter().map(|support| {
+            sentence!(
+                "%{support} holds a point of an element that another support holds: its reaction depends on the mesh",
+                support = name(support)
+            )
+        });
+        redundant.chain(close).collect()
+    }
+
     /// Returns the points between nodes that supports hold, for these positions of the nodes, m, with `true` for fixed
     /// components.
     #[cfg(feature = "app")]

@@ -163,6 +163,8 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
     }
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(ToString::to_string));
+    let crowded = simulation.system().crowded_supports(|i| format!("support.{i}"));
+    limits.extend(crowded.iter().map(ToString::to_string));
     limits.extend(simulation.scene().unresolved_pulses());
     limits
         .extend(simulation.motion().and_then(|motion| motion.ledger().drift_warning()).map(|drift| drift.to_string()));

@@ -222,7 +222,8 @@ fn moved(scene: &Scene) -> bool {
 /// Formats the reaction of each support, if there are several or one moves.
 fn reactions(scene: &Scene, solution: &Solution, within: &Contexts) -> String {
     let mut text = String::new();
-    if solution.supports.len() < 2 && !moved(scene) {
+    let has_edge = scene.supports.iter().any(|support| matches!(support.place, Place::Edge(_)));
+    if solution.supports.len() < 2 && !moved(scene) && !has_edge {
         return text;
     }
     for (i, (support, reaction)) in scene.supports.iter().zip(&solution.supports).enumerate() {

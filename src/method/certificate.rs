@@ -3,6 +3,7 @@
 use super::iteration::{Workspace, assemble};
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
+use crate::format::{number, two_digits};
 use crate::sentence::{Sentence, sentence};
 use crate::solver::lanczos::extreme_eigenvalues;
 use crate::state::State;
@@ -99,7 +100,8 @@ pub fn rho_text(rho: f64) -> Sentence {
     let text = match rho {
         // Near 1, more digits are needed.
         _ if (rho - 1.0).abs() < 5e-4 => format!("{rho:.6}"),
-        ..1000.0 => format!("{rho:.3}"),
+        0.01..1000.0 => format!("{rho:.3}"),
+        ..0.01 => number(two_digits(rho)),
         _ => format!("{rho:.1e}"),
     };
     match rho {

@@ -128,7 +128,7 @@ impl InterpolatedField {
             self.components.extend(self.nodal.nodes().iter().map(components_of));
         } else {
             let components = &mut self.components;
-            visit_points(problem, state, kinematics, &mut |_, local| components.push(components_of(&local)));
+            visit_points(problem, state, &mut |_, local| components.push(components_of(&local)));
         }
         let magnitudes = self.components.iter().flat_map(|own| &own[..3]).map(|c| c.abs());
         self.largest_component = magnitudes.fold(0.0, f64::max);

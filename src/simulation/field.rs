@@ -194,7 +194,7 @@ impl Field {
             return;
         }
         let material = problem.material();
-        visit_points(problem, state, kinematics, &mut |_, local| values.push(self.of(&local, material, kinematics)));
+        visit_points(problem, state, &mut |_, local| values.push(self.of(&local, material, kinematics)));
     }
 
     /// Computes the field at every node; all values are `None` for fields of elements and of the displacement.

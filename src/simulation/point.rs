@@ -99,9 +99,7 @@ impl Simulation {
             PointValues::Recovered => self.nodal_stress().mean(&nodes),
             PointValues::Raw => {
                 let mut own = Vec::new();
-                visit_points(problem, state, kinematics, &mut |q, local| {
-                    own.extend(weight_of(mesh, point, q).map(|w| (local, w)))
-                });
+                visit_points(problem, state, &mut |q, local| own.extend(weight_of(mesh, point, q).map(|w| (local, w))));
                 Local::mean(own.into_iter())
             }
         };

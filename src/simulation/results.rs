@@ -76,11 +76,7 @@ impl Deformation {
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let elements = problem.system().elements();
         let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
-        let rotated = match nodal.kinematics() {
-            Kinematics::Linear => &NodalStress::of(problem, state, Kinematics::Corotated),
-            Kinematics::Corotated => nodal,
-        };
-        let rotations = rotated.nodes().iter().map(|local| local.rotation.angle().abs());
+        let rotations = nodal.nodes().iter().map(|local| local.rotation.angle().abs());
         let mut result = Self {
             max_strain: strains.fold(0.0, f64::max),
             max_rotation_deg: rotations.fold(0.0, f64::max).to_degrees(),

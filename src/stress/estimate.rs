@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{NodalStress, visit_points};
-use crate::assembly::Problem;
+use crate::assembly::{Kinematics, Problem};
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
 use crate::state::State;
@@ -53,7 +53,7 @@ impl ErrorEstimate {
         let per_element = entry.points.len();
         let one_rotation = elements.rotation_count() < elements.point_count();
         let mut strains = Vec::with_capacity(elements.point_count());
-        visit_points(problem, state, nodal.kinematics(), &mut |_, local| strains.push(local.strain));
+        visit_points(problem, state, &mut |_, local| strains.push(local.strain));
         let rule: Vec<_> = entry
             .mass_points
             .iter()
@@ -64,7 +64,9 @@ impl ErrorEstimate {
         self.elements.clear();
         for (e, (own, strains)) in mesh.elements().zip(strains.chunks_exact(per_element)).enumerate() {
             let (mut own_error, mut own_area) = (0.0, 0.0);
-            let rotation = one_rotation.then(|| state.rotations()[elements.rotation_of(e * per_element)]);
+            // Linear theory turns no stress.
+            let turns = one_rotation && nodal.kinematics() == Kinematics::Corotated;
+            let rotation = turns.then(|| state.rotations()[elements.rotation_of(e * per_element)]);
             for (point, shape, gradients, weights) in &rule {
                 let mut jacobian = Matrix2::zeros();
                 for (&n, gradient) in own.iter().zip(gradients) {

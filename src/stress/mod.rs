@@ -141,16 +141,14 @@ impl Local {
 /// Largest strain for which the linear law between T and ε is realistic.
 pub const LAW_HOLDS: f64 = 0.1;
 
-/// Calls `visit` with the index of every quadrature point and its strain and rotation.
-pub fn visit_points(problem: &Problem, state: &State, kinematics: Kinematics, visit: &mut dyn FnMut(usize, Local)) {
+/// Calls `visit` with the index of every quadrature point and its strain and rotation: that of F, also in linear theory,
+/// whose strains are measured without it.
+pub fn visit_points(problem: &Problem, state: &State, visit: &mut dyn FnMut(usize, Local)) {
     let elements = problem.system().elements();
     let (u, r) = (state.displacement(), state.rotations());
     elements.visit_strains(problem.material().lame(), u, r, &mut |q, h, strain| {
-        let rotation = match kinematics {
-            Kinematics::Linear => Rotation::IDENTITY,
-            // Where the polar factor is undefined, the state's rotation is the previous one.
-            Kinematics::Corotated => polar_or(&(Matrix2::identity() + h), r[elements.rotation_of(q)]),
-        };
+        // Where the polar factor is undefined, the state's rotation is the previous one.
+        let rotation = polar_or(&(Matrix2::identity() + h), r[elements.rotation_of(q)]);
         visit(q, Local { strain: *strain, rotation });
     });
 }
@@ -202,7 +200,7 @@ impl NodalStress {
     ) {
         (self.material, self.kinematics) = (*problem.material(), kinematics);
         at_points.clear();
-        visit_points(problem, state, kinematics, &mut |_, Local { strain, rotation }| {
+        visit_points(problem, state, &mut |_, Local { strain, rotation }| {
             at_points.push([strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]);
         });
         problem.system().recovery().recover(at_points, nodal);

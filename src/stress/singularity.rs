@@ -49,12 +49,15 @@ enum SideSupport {
 const CORNER: f64 = 0.6;
 
 impl Singularity {
-    /// Returns the cause of an unbounded stress at a node or at the others of its elements, to which the largest recovered
-    /// stress of a coarse mesh may belong; `None` if the stress is bounded.
+    /// Returns the cause of an unbounded stress at a node or, at the end of a support or a re-entrant corner, at the others
+    /// of its elements, to which the largest recovered stress of a coarse mesh may belong; `None` if the stress is bounded.
     #[must_use]
     pub fn near(problem: &Problem, node: u32) -> Option<Self> {
         let own = problem.system().mesh().elements().filter(|element| element.contains(&node));
-        std::iter::once(node).chain(own.flatten().copied()).find_map(|node| Self::at(problem, node))
+        // Across the height from a point support or force the stress of bending may be the largest.
+        let is_of_body = |cause: &Self| matches!(cause, Self::SupportEnd | Self::ReentrantCorner);
+        let beside = || own.flatten().find_map(|&node| Self::at(problem, node).filter(is_of_body));
+        Self::at(problem, node).or_else(beside)
     }
 
     /// Returns the cause of an unbounded stress at a node; `None` if the stress is bounded.
@@ -62,7 +65,7 @@ impl Singularity {
     pub fn at(problem: &Problem, node: u32) -> Option<Self> {
         let mesh = problem.system().mesh();
         let is_there = |place: &Place| matches!(place, Place::At(at) if mesh.nearest_node((*at).into()) == node);
-        let is_among = |weights: &[(u32, f64)]| weights.iter().any(|(own, _)| *own == node);
+        let is_among = |weights: &[(u32, f64)]| weights.iter().any(|(own, weight)| *own == node && weight.abs() > 1e-9);
         let holds = |support: &NodalSupport| match support.point {
             Some(_) => is_among(&support.weights),
             None => is_there(&support.place),

@@ -326,7 +326,8 @@ impl Reference {
                 // Without a bound the error of the fine solution is taken as its distance from the beam.
                 let error = off + own[i].unwrap_or(off);
                 reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
-                let beam = beam.zip(scene.beam.as_ref()).filter(|_| i == 0);
+                let is_known = i == 0 && reference.probes[i].is_some();
+                let beam = beam.zip(scene.beam.as_ref()).filter(|_| is_known);
                 if let Some([rest, line]) = beam.and_then(|(b, beam)| b.outline(beam.height)) {
                     reference.displacements = DisplacementMap::of_beam([&rest, &line]);
                     (reference.rest_outline, reference.outline) = (vec![rest], vec![line]);

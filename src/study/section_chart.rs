@@ -34,7 +34,12 @@ pub const COMPONENTS: [SectionComponent; 3] = [
 pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
     let size = simulation.system().size();
     let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
-    let forces = || sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
+    // The forces of a part without loads and supports are rounding errors of the whole body's.
+    let reactions: Vec<f64> = simulation.support_reactions().iter().map(|reaction| reaction.force.norm()).collect();
+    let forces = || {
+        let own = sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
+        own.chain(reactions.iter().copied())
+    };
     let force = Context::of_inexact(forces(), inexact);
     [force, force, Context::of_inexact(forces().map(|force| force * size), inexact)]
 }

@@ -206,6 +206,40 @@ fn results_name_their_limits() {
     assert_eq!(bent, serde_json::json!([]));
 }
 
+/// Held points in one element say that their reactions depend on the mesh, and a point held twice that it has none. Of
+/// others nothing is said, also of the stress of bending across the height from them, and a cut of a part without loads
+/// carries nothing.
+#[test]
+fn held_points_say_when_their_reactions_mean_little() {
+    let folder = tempfile::tempdir().unwrap();
+    let beam = |at: &[f64]| {
+        let supports: String = at
+            .iter()
+            .enumerate()
+            .map(|(i, x)| {
+                let fix = if i == 0 { "[\"x\", \"y\"]" } else { "[\"y\"]" };
+                format!("[[support]]\nat = [{x}, 0.0]\nacts_on = \"point\"\nfix = {fix}\n")
+            })
+            .collect();
+        let body = "name = \"held\"\n[beam]\nlength = 2.0\nheight = 0.2\ncells = [40, 2]\nelement = \"q4\"\n[material]\n\
+                    young = 2.1e11\npoisson = 0.3\ndensity = 7850.0\nthickness = 0.01\n[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -12e3]\n\
+                    [[probe]]\nname = \"tip\"\nedge = \"right\"\n";
+        fs::write(folder.path().join("held.toml"), format!("{body}{supports}")).unwrap();
+        let output = warpbeam_in(folder.path(), &["solve", "held.toml", "--json"]);
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()["warnings"].clone()
+    };
+    assert_eq!(beam(&[0.13, 1.57]), serde_json::json!([]));
+    let cut = stdout(&warpbeam_in(folder.path(), &["section", "held.toml", "--at", "0.1"]));
+    assert!(cut.contains("normal force N             0 N") && cut.contains("bending moment M         0 N m"), "{cut}");
+    let close = beam(&[0.13, 0.14, 1.57]).to_string();
+    for (support, is_named) in [("support.0", true), ("support.1", true), ("support.2", false)] {
+        let note = format!("{support} holds a point of an element that another support holds: its reaction depends");
+        assert_eq!(close.contains(&note), is_named, "{close}");
+    }
+    let twice = beam(&[0.13, 1.57, 1.57]).to_string();
+    assert!(twice.contains("support.2 holds a point that other supports hold: it has no reaction"), "{twice}");
+}
+
 /// Above a certain size, certificates are computed on request only.
 #[test]
 fn large_scenes_are_certified_on_request() {

@@ -460,7 +460,7 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     let moved = scene("article").force([2.5, 0.0], [0.0, -20e3]);
     let mut harness = harness_with("article", moved);
     harness.run();
-    let note = "load.1 at (2.5, 0) m acts on the nearest node, 707.1 mm away";
+    let note = "Load 2 at (2.5, 0) m acts on the nearest node, 707.1 mm away";
     assert!(harness.query_by_label_contains(note).is_some(), "{:?}", texts(&harness));
 
     // The displacement under a point load grows without limit on finer meshes.

@@ -19,6 +19,7 @@ use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
 use crate::format::{editable, engineering, engineering_pair, three_digits};
 use crate::scene::{Axis, Load, Place, Scene, Support, limits};
+use crate::study::moved_points;
 
 /// Name of the section, with which its messages are kept.
 pub(crate) const SECTION: &str = "Loads and supports";
@@ -178,6 +179,13 @@ pub(super) fn show(
     let edges = |can_carry: fn(&System, &Edge) -> bool| {
         system.edges().iter().filter(move |edge| can_carry(system, edge)).map(|edge| ("", Place::from(edge.name())))
     };
+    let on_nodes = moved_points(scene, system.mesh());
+    let say_if_on_node = |ui: &mut Ui, key: &str| {
+        if let Some(point) = on_nodes.iter().find(|point| point.key == key) {
+            let distance = engineering(three_digits(point.distance), "m");
+            ui.weak(fill!("on the nearest node, %{distance} away", distance = distance));
+        }
+    };
     let mut edited = None;
     for (i, load) in scene.loads.iter().enumerate() {
         let Some(present) = place_of(load) else { continue };
@@ -207,6 +215,7 @@ pub(super) fn show(
                 size,
             )
         };
+        say_if_on_node(ui, &format!("load.{i}"));
         let Some(change) = change else { continue };
         let mut scene = Box::new(scene.clone());
         match (change, &mut scene.loads[i]) {
@@ -245,6 +254,7 @@ pub(super) fn show(
                     }
                 }
             });
+        say_if_on_node(ui, &format!("support.{i}"));
         let is_refixed = fix != support.fix;
         if change.is_none() && !is_refixed {
             continue;

@@ -54,11 +54,13 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     }
     row(
         "Iterations",
-        fill!(
-            "%{n} since the last change, residual %{residual}",
-            n = simulation.iterations(),
-            residual = format!("{:.2e}", simulation.residual())
-        ),
+        {
+            let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
+            match input.shows_converged {
+                true => fill!("%{n} to the state that is drawn, residual %{residual}", n = n, residual = residual),
+                false => fill!("%{n} since the last change, residual %{residual}", n = n, residual = residual),
+            }
+        },
         "Iterations since the last change, from the state before it; the status has those from rest. Residual: out-of-balance force over the sum of the elements' absolute \
          forces",
     );

@@ -81,6 +81,12 @@ pub(super) fn show(
     for (label, tooltip, limit, slider, value, set) in rows {
         let field = NumberField { label, tooltip, limit, slider, scale: SliderScale::Linear, whole: false };
         if let Some(new) = field.show(ui, &mut state.messages, value) {
+            let mut moved = line;
+            set(&mut moved, new);
+            if let Err(error) = input.shown.section_forces(moved) {
+                state.messages.insert(label, (&error).into());
+                continue;
+            }
             actions.push(Action::Edit(
                 label,
                 edited(scene, |lines| lines.iter_mut().skip(chosen).take(1).for_each(|line| set(line, new))),

@@ -4,7 +4,7 @@
 use egui::{Color32, Painter, Pos2, Stroke};
 use nalgebra::Vector2;
 
-use crate::app::language::tr;
+use crate::app::language::{fill, tr};
 use crate::app::viewport::arrow::point_of_application;
 use crate::app::viewport::menu::{acts_at_point, nearest_on_side, rounded};
 use crate::app::viewport::probe;
@@ -12,7 +12,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::format::{engineering_pair, three_digits};
-use crate::mesh::{Mesh, Segment};
+use crate::mesh::{Mesh, Segment, bent, straightened};
 use crate::scene::{Load, Place, Scene};
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
@@ -20,6 +20,9 @@ use crate::scene::{Load, Place, Scene};
 const NEAR: f32 = 9.0;
 /// Distance from the body within which the pointer moves a base, points.
 const REACH: f64 = 80.0;
+
+/// Distance within which an object moves to the outline or to the axis of a beam, points.
+const CLOSE: f64 = 4.0;
 
 /// Object of a scene, by its index among those of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,18 +117,24 @@ impl Bases<'_> {
         let world = self.projection.place(pointer);
         let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
-        let rest = rounded(self.system, self.on_side(rest).unwrap_or(rest));
+        let rest = self.on_side(rest).unwrap_or_else(|| self.on_axis(rest));
+        let rest = rounded(self.system, rest);
         Some((Place::At(rest.into()), self.drawn(rest)?))
     }
 
     /// Returns the nearest point of the outline at rest, m; `None` if it is not close to the rest position `at`.
     fn on_side(&self, at: Vector2<f64>) -> Option<Vector2<f64>> {
-        /// Distance within which an object moves to the outline, points.
-        const CLOSE: f64 = 4.0;
         let mesh = self.mesh();
         let feet = self.outline.iter().map(|side| nearest_on_side(mesh, side, at));
         let nearest = feet.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm()))?;
         ((nearest - at).norm() * self.projection.camera.scale <= CLOSE).then_some(nearest)
+    }
+
+    /// Returns the point of the beam's axis nearest to a rest position, m, if it is close; the position itself otherwise.
+    fn on_axis(&self, at: Vector2<f64>) -> Vector2<f64> {
+        let Some(beam) = self.system.beam() else { return at };
+        let axis = bent(beam, straightened(beam, at)[0], 0.0);
+        if (axis - at).norm() * self.projection.camera.scale <= CLOSE { axis } else { at }
     }
 
     /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.
@@ -162,7 +171,14 @@ impl Bases<'_> {
         painter.line_segment([hot.base.at, at], Stroke::new(1.0, color));
         painter.circle_filled(at, 4.0, color);
         let text = match place {
-            Place::Edge(name) => tr(&name).to_owned(),
+            // A support holds a whole edge: a pin that is put there becomes a clamp.
+            Place::Edge(name) => match hot.base.object {
+                Object::Support(i) => match self.scene.supports.get(i).map(|support| support.fix.len()) {
+                    Some(2) => fill!("clamp %{edge}", edge = tr(&name)),
+                    _ => fill!("roller on %{edge}", edge = tr(&name)),
+                },
+                _ => tr(&name).to_owned(),
+            },
             Place::At(at) => engineering_pair(at.map(three_digits), "m"),
         };
         let above = at - egui::vec2(0.0, 12.0);

@@ -178,7 +178,7 @@ impl BodyMesh {
 
     /// Returns `true` if the field has a value at a drawn point.
     pub(crate) fn has_values(&self) -> bool {
-        self.components.iter().any(Option::is_some)
+        self.components.iter().flatten().any(|components| self.field.value(*components).is_some())
     }
 
     /// Returns the values of the field at the drawn points.

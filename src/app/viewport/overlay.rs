@@ -576,7 +576,7 @@ fn legend(
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
     let map = palette.map(field);
-    let ticks = ticks(low, high, MAX_TICKS).into_iter().map(|value| {
+    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| overlay.has_values).map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
         (((value - low) / (high - low)) as f32, text)
     });
@@ -584,7 +584,8 @@ fn legend(
     let text = |text: String| painter.layout_no_wrap(text, font.clone(), palette.text);
     if has_legend_on_top(rect.height()) {
         let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
-        let ends = [text(low), text(format!("{high} {symbol}{unit}"))];
+        let ends = if overlay.has_values { [low, format!("{high} {symbol}{unit}")] } else { Default::default() };
+        let ends = ends.map(text);
         let projection = Projection { camera: overlay.camera, rect };
         let is_covered = |area: Rect| overlay.positions.iter().any(|&place| area.contains(projection.point(place)));
         return legend_row(

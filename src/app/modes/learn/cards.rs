@@ -100,10 +100,10 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Every triangle rotates",
         text: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into a \
-                rotation R and a stretch S, in exactly one way; in the plane there is a closed formula. The two arrows in \
-                each triangle are the axes of its frame, the columns of R.",
+                rotation R and a stretch S, in exactly one way for a triangle that is not inverted; in the plane there is a \
+                closed formula. The two arrows in each triangle are the axes of its frame, the columns of R.",
         formula: &["F = R S", "R^{T} R = I", "S = S^{T}"],
-        symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix. T: transpose. All are \
+        symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix with positive eigenvalues. T: transpose. All are \
                   2\u{d7}2.",
         task: "Click a triangle to see its numbers.",
         setup: Setup {

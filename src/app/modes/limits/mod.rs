@@ -17,7 +17,7 @@ use crate::app::view_options::ViewOptions;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
-use crate::format::{engineering, three_digits};
+use crate::format::{number, prefix, six_digits, three_digits};
 use crate::plot::{AxisScale, ScaledAxis, rating_color};
 use crate::scene::{Analysis, Load, Scene};
 use crate::simulation::Simulation;
@@ -154,7 +154,10 @@ impl LimitMap {
         }
         let factor = load.unwrap_or(self.factor);
         if limits.contains(factor) {
-            chart.load_line(ui, factor, first_probe(shown).map(|u| u.norm()));
+            // While a load is not reached, the body is that of another one.
+            let is_here = part_of(&base, shown.scene()).is_none_or(|own| own == self.factor);
+            let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
+            chart.load_line(ui, factor, length);
         }
     }
 
@@ -416,10 +419,13 @@ impl<'a> StripChart<'a> {
         let room = (curve.height() / LINE).max(1.0) as usize;
         let values = up.values();
         let step = values.len().saturating_sub(1) / room + 1;
+        let lengths: Vec<f64> = values.iter().map(|(_, length)| *length).collect();
+        let (power, symbol) = prefix(&lengths, "m");
         for (y, length) in values.into_iter().step_by(step).map(|(place, length)| (place as f32, length)) {
             painter.line_segment([pos2(curve.left(), y), pos2(curve.right(), y)], Stroke::new(1.0, palette.line));
             let at = pos2(curve.left() - 8.0, y);
-            self.text(ui, at, Align2::RIGHT_CENTER, &engineering(length, "m"), palette.secondary);
+            let text = format!("{} {symbol}m", number(six_digits(length / 10f64.powi(power))));
+            self.text(ui, at, Align2::RIGHT_CENTER, &text, palette.secondary);
         }
         for known in self.limits.reference.split(|(_, u)| u.is_none()) {
             let lengths = known.iter().filter_map(|(factor, u)| Some((*factor, u.map(|u| Vector2::norm(&u))?)));
