@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::args::SectionArgs;
 use super::progress::Watch;
 use super::{CliError, commands, exit_code, json, named, sections_of, simulate, text};
-use crate::format::{Context, engineering, engineering_pair, in_power, number, prefix, three_digits};
+use crate::format::{Context, engineering, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene, SectionLine};
 use crate::section::{Section, SectionError, SectionForces, SectionPoint};
@@ -99,7 +99,9 @@ fn heading(scene: &Scene, simulation: &Simulation) -> String {
 }
 
 fn of_cut(section: &Section, simulation: &Simulation) -> String {
-    let pair = |v: Vector2<f64>| engineering_pair(v.into(), "m");
+    let ends = section.rest.iter().chain(&section.ends).flat_map(|end| [end.x, end.y]);
+    let places = Context::of_inexact(ends, 1e-12);
+    let pair = |v: Vector2<f64>| places.pair(v.into(), "m");
     let theory = match section.points.iter().any(|point| point.beam.is_some()) {
         true => "beam theory: of a rectangular section",
         false => "beam theory: only in cuts normal to the axis",

@@ -15,7 +15,7 @@ use warpbeam::scene::{Axis, ElementKind, Load, MethodKind, Place};
 use warpbeam::{Field, PointValues, Scene};
 
 /// Returns all texts that are painted without a widget.
-fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
+pub fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
     let texts = shapes(harness).into_iter().filter_map(|shape| match shape {
         egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
         _ => None,

@@ -18,7 +18,7 @@ use crate::app::shell::gallery::Gallery;
 use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
-use crate::app::viewport::view::{BodyView, CardContent, Content};
+use crate::app::viewport::view::{BodyView, CardContent, Content, is_lost};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
@@ -95,6 +95,7 @@ impl Desk {
             opening: OpeningLoads::of(&session.document().opened),
             eases,
             own: session.equations(),
+            last: session.converged().filter(|_| is_lost(session.simulation())),
         }
     }
 }

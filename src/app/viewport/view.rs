@@ -111,7 +111,7 @@ impl<'a> Content<'a> {
 }
 
 /// Returns `true` if a search has ended without an equilibrium.
-fn is_lost(simulation: &Simulation) -> bool {
+pub(crate) fn is_lost(simulation: &Simulation) -> bool {
     matches!(simulation.status(), Status::Diverged(_) | Status::NotConverged(_))
 }
 

@@ -280,6 +280,8 @@ impl Compare {
         self.magnify(input);
         let mut known = self.equations(&input.common.own);
         for pane in &mut self.panes.list {
+            let is_own = || pane.setting.apply(input.common.scene) == *input.common.scene;
+            pane.keep_equilibrium(input.common.last.filter(|_| is_own()));
             pane.update_display((input.common.view, input.reference), self.panes.magnification, ui.visuals(), &known);
             known.extend(pane.equations());
         }

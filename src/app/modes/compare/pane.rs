@@ -15,7 +15,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
 use crate::render::Camera;
 use crate::scene::Scene;
-use crate::simulation::Simulation;
+use crate::simulation::{Equilibrium, Simulation};
 use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
@@ -138,11 +138,18 @@ impl Pane {
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
-    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges.
-    fn keep_equilibrium(&mut self) {
+    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges: `last`, if the panel
+    /// describes it for the same setting.
+    pub(super) fn keep_equilibrium(&mut self, last: Option<&Simulation>) {
         let Some(simulation) = self.solve.displayed() else { return };
-        if let Some(found) = equilibrium_to_keep(simulation, self.equilibrium.as_ref(), self.solve.has_failed()) {
+        let fails = self.solve.has_failed();
+        if let Some(found) = equilibrium_to_keep(simulation, self.equilibrium.as_ref(), fails) {
             self.equilibrium = Some(found);
+        }
+        let Some(last) = last.filter(|_| fails) else { return };
+        let is_kept = |kept: &Simulation| kept.state() == last.state() && kept.scene() == last.scene();
+        if !self.equilibrium.as_ref().is_some_and(is_kept) {
+            self.equilibrium = last.equilibrium().map(Equilibrium::snapshot);
         }
     }
 
@@ -155,7 +162,6 @@ impl Pane {
         known: &[Equations],
     ) {
         let is_sound = self.solve.is_sound();
-        self.keep_equilibrium();
         let equilibrium = self.equilibrium.as_ref().filter(|_| self.solve.has_failed());
         if let Some(simulation) = equilibrium.or_else(|| self.solve.displayed()) {
             self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);

@@ -40,6 +40,8 @@ pub(crate) struct PaneInput<'a> {
     pub eases: bool,
     /// Equations of the body in Explore, which panes share if their mesh is the same.
     pub own: Equations,
+    /// Last equilibrium that the panel describes in place of a state that diverges.
+    pub last: Option<&'a Simulation>,
 }
 
 /// Displayed body of a pane, and the pointer over it.

@@ -541,7 +541,11 @@ impl<'a> StripChart<'a> {
             self.text(ui, at, Align2::CENTER_BOTTOM, &load_text(self.axis, factor), color);
         }
         if let (Some(up), Some(u)) = (self.up(), displacement.filter(|u| *u > 0.0)) {
-            ui.painter().circle_stroke(pos2(x, up.place(u) as f32), 5.0, Stroke::new(2.0, color));
+            let y = up.place(u) as f32;
+            // A body that is far off the reference has no place in the plot.
+            if y > self.curve.top() {
+                ui.painter().circle_stroke(pos2(x, y), 5.0, Stroke::new(2.0, color));
+            }
         }
     }
 }
