@@ -297,7 +297,8 @@ fn csv(simulation: &Simulation) -> String {
         let strain = local.strain(nodal.material()).components().map(Some);
         let stresses = stress.map_or([None; 4], |s| s.components().map(Some));
         let others = strain.into_iter().chain(stresses).chain([stress.map(|s| s.von_mises())]);
-        for value in std::iter::once(Some(local.rotation.angle().to_degrees())).chain(others) {
+        let rotation = local.frame(nodal.kinematics()).angle().to_degrees();
+        for value in std::iter::once(Some(rotation)).chain(others) {
             // Unknown values are written as empty fields.
             let value = value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string());
             let _ = write!(text, ",{value}");

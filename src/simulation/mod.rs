@@ -738,16 +738,8 @@ impl Simulation {
     #[doc(hidden)]
     #[must_use]
     pub fn stress_result(&self) -> StressResult {
-        let Body { problem, state, .. } = &self.body;
         let nodal = self.nodal_stress();
-        let mut result = StressResult::of(problem, &nodal, &self.mesh_error(&nodal));
-        if self.is_linear() && !result.probes.is_empty() {
-            let rotated = NodalStress::of(problem, state, Kinematics::Corotated);
-            for (own, probe) in result.probes.iter_mut().zip(problem.probes()) {
-                own.rotation_deg = rotated.mean(&probe.weights).rotation.angle().to_degrees();
-            }
-        }
-        result
+        StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
     }
 
     /// Returns the displacement of a probe, m, the mean over its edge; `None` if there is no such probe.

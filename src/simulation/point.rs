@@ -115,7 +115,7 @@ impl Simulation {
             rest: sum(mesh.nodes()),
             displacement: sum(&state.displacement),
             gradient,
-            rotation: local.rotation,
+            rotation: local.frame(kinematics),
             stretch,
             strain: local.strain(&material),
             cauchy: local.cauchy(&material, kinematics),

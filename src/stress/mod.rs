@@ -77,7 +77,7 @@ impl PlaneTensor {
 pub struct Local {
     /// ε = S − I in the plane, in the rotated frame; in linear theory the symmetric part of the displacement gradient.
     pub strain: Matrix2<f64>,
-    /// R; the identity in linear theory.
+    /// Rotation of F; in linear theory strain and stress are measured without it, see [`Self::frame`].
     pub rotation: Rotation,
 }
 
@@ -93,6 +93,14 @@ impl Local {
         let rotation =
             if length > 0.0 { Rotation { c: turn.x / length, s: turn.y / length } } else { Rotation::IDENTITY };
         Self { strain, rotation }
+    }
+
+    /// Returns the rotation of the frame in which ε is measured: R, in linear theory the identity.
+    pub(crate) fn frame(&self, kinematics: Kinematics) -> Rotation {
+        match kinematics {
+            Kinematics::Linear => Rotation::IDENTITY,
+            Kinematics::Corotated => self.rotation,
+        }
     }
 
     /// Returns ε with its component out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.

@@ -154,3 +154,23 @@ fn the_numbers_of_a_point_follow_from_each_other() {
     }
     assert!(differ > 10, "recovered and raw values are the same");
 }
+
+/// Linear theory measures strain and stress in the axes of space: R is the identity at a point and in the table of nodes,
+/// while the field of rotation angles shows how far the body turns.
+#[test]
+fn linear_theory_measures_without_a_rotation() {
+    let mut scene = scene("article");
+    scene.solver.method = MethodKind::Linear;
+    let simulation = solved(&scene);
+    for values in [PointValues::Recovered, PointValues::Raw] {
+        let state = simulation.point_state(MaterialPoint { element: 9, at: [0.2, 0.3] }, values).unwrap();
+        assert_eq!(state.rotation, Rotation::IDENTITY);
+        assert!(state.field(Field::RotationAngle).unwrap() < -40.0);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("nodes.csv");
+    warpbeam::export::write(&simulation, &path).unwrap();
+    let csv = std::fs::read_to_string(path).unwrap();
+    let column = csv.lines().next().unwrap().split(',').position(|name| name == "rotation_deg").unwrap();
+    assert!(csv.lines().skip(1).all(|row| row.split(',').nth(column) == Some("0")), "{csv}");
+}
