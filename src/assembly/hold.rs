@@ -3,16 +3,18 @@
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 use super::edge::{no_such_edge, node_at};
-use super::held_points::{HeldPoint, axes, point_weights};
+use super::held_points::{HeldPoint, axes};
 use crate::format::number;
 use crate::mesh::Mesh;
 use crate::scene::{Analysis, Invalid, Place, Support};
 use crate::sentence::sentence;
 
-/// Returns the unknowns (2 · node + axis) that supports fix: `true` for fixed ones.
-pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh) -> Result<Vec<bool>, Invalid> {
+/// Returns the unknowns (2 · node + axis) that supports on nodes fix: `true` for fixed ones. The other supports hold
+/// `points` between nodes.
+pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh, points: &[HeldPoint]) -> Result<Vec<bool>, Invalid> {
     let mut fixed = vec![false; 2 * mesh.nodes().len()];
-    for (i, support) in supports.iter().enumerate() {
+    let is_on_nodes = |i: usize| points.iter().all(|point| point.support != i);
+    for (i, support) in supports.iter().enumerate().filter(|(i, _)| is_on_nodes(*i)) {
         for node in nodes_of(support, mesh, &format!("support.{i}"))? {
             for (fixed, fixes) in fixed[2 * node as usize..].iter_mut().zip(axes(support)) {
                 *fixed |= fixes;
@@ -31,11 +33,10 @@ pub(super) fn check_any_free(fixed: &[bool], dependent: usize) -> Result<(), Inv
     Ok(())
 }
 
-/// Returns the nodes of a support; none if it holds a point between nodes. `key` is its table in the scene.
+/// Returns the nodes of a support on nodes; `key` is its table in the scene.
 pub(super) fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<u32>, Invalid> {
     match &support.place {
         Place::Edge(name) => mesh.edge_nodes(name).ok_or_else(|| no_such_edge(mesh, name, key)),
-        Place::At(_) if point_weights(support, mesh).is_some() => Ok(Vec::new()),
         Place::At(at) => Ok(vec![node_at(mesh, *at, key)?]),
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Matrix2;
 
 use super::Pattern;
-use super::pattern::Condensed;
+use super::pattern::DependentEntries;
 
 /// Values of a symmetric matrix over the free unknowns: the lower triangle, in the order of a [`Pattern`].
 #[derive(Clone, Debug)]
@@ -15,15 +15,15 @@ pub struct Matrix {
     values: Vec<f64>,
     /// Number of entries of the pattern.
     entries: usize,
-    condensed: Arc<Condensed>,
+    dependent: Arc<DependentEntries>,
 }
 
 impl Matrix {
     /// Returns the zero matrix.
     #[must_use]
     pub fn new(pattern: &Pattern) -> Self {
-        let (entries, condensed) = (pattern.entries(), pattern.condensed().clone());
-        Self { values: vec![0.0; entries + 1 + condensed.entries], entries, condensed }
+        let (entries, dependent) = (pattern.entries(), pattern.dependent_entries().clone());
+        Self { values: vec![0.0; entries + 1 + dependent.entries], entries, dependent }
     }
 
     /// Sets every value to zero.
@@ -40,7 +40,7 @@ impl Matrix {
     /// Sums values, indexed by slots as in [`Pattern::slot`].
     pub(crate) fn sum<T>(&mut self, add: impl FnOnce(&mut [f64]) -> T) -> T {
         let result = add(&mut self.values);
-        for &(from, to, factor) in &self.condensed.terms {
+        for &(from, to, factor) in &self.dependent.terms {
             self.values[to as usize] += factor * self.values[self.entries + 1 + from as usize];
         }
         self.values[self.entries..].fill(0.0);

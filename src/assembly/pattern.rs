@@ -32,16 +32,15 @@ pub struct Pattern {
     free_nodes: Vec<(u32, u32)>,
     /// Rows of T: unknowns that depend on free ones, with the free numbers and coefficients.
     dependent: Vec<(u32, Vec<(u32, f64)>)>,
-    /// Entries of the matrix in rows or columns of dependent unknowns.
-    condensed: Arc<Condensed>,
-    /// Indices in [`Condensed`] of pairs of unknowns, smaller first.
-    condensed_slots: BTreeMap<(u32, u32), u32>,
+    dependent_entries: Arc<DependentEntries>,
+    /// Indices in [`DependentEntries`] of pairs of unknowns, smaller first.
+    dependent_slots: BTreeMap<(u32, u32), u32>,
 }
 
-/// Contribution of the entries of dependent unknowns to Tᵀ K T.
+/// Entries of the matrix in rows or columns of dependent unknowns, with their contribution to Tᵀ K T.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Condensed {
-    /// Number of such entries; they are summed beside those of the free unknowns.
+pub(super) struct DependentEntries {
+    /// Number of entries; they are summed beside those of the free unknowns.
     pub entries: usize,
     /// Entry, slot of the free unknowns to which it contributes, coefficient.
     pub terms: Vec<(u32, u32, f64)>,
@@ -101,7 +100,7 @@ impl Pattern {
         let mask = fixed.chunks_exact(2).map(|f| Vector2::new(f[0], f[1]).map(|f| if f { 0.0 } else { 1.0 }));
         let pairs = (0..).zip(free_of.chunks_exact(2));
         let free_nodes = pairs.filter(|(_, pair)| !pair.contains(&FIXED)).map(|(node, pair)| (node, pair[0])).collect();
-        let (dependent, condensed) = (Vec::new(), Arc::default());
+        let (dependent, dependent_entries) = (Vec::new(), Arc::default());
         let mut pattern = Self {
             column_starts,
             row_indices,
@@ -110,16 +109,16 @@ impl Pattern {
             mask: mask.collect(),
             free_nodes,
             dependent,
-            condensed,
-            condensed_slots: BTreeMap::new(),
+            dependent_entries,
+            dependent_slots: BTreeMap::new(),
         };
-        pattern.condense(held, &beside);
+        pattern.set_dependent(held, &beside);
         pattern
     }
 
     /// Sets T, and the entries of the matrix that T brings to the free unknowns; `beside` are the neighbours of the node of
     /// each dependent unknown.
-    fn condense(&mut self, held: &HeldPoints, beside: &[Vec<u32>]) {
+    fn set_dependent(&mut self, held: &HeldPoints, beside: &[Vec<u32>]) {
         for dependent in &held.dependent {
             let on = dependent.on.terms.iter().map(|(&unknown, &c)| (self.free_of[unknown as usize], c));
             self.dependent.push((dependent.unknown, on.filter(|(free, _)| *free != FIXED).collect()));
@@ -151,13 +150,13 @@ impl Pattern {
                 }
             }
         }
-        self.condensed = Arc::new(Condensed { entries: slots.len(), terms });
-        self.condensed_slots = slots;
+        self.dependent_entries = Arc::new(DependentEntries { entries: slots.len(), terms });
+        self.dependent_slots = slots;
     }
 
     /// Returns the entries of dependent unknowns.
-    pub(super) fn condensed(&self) -> &Arc<Condensed> {
-        &self.condensed
+    pub(super) fn dependent_entries(&self) -> &Arc<DependentEntries> {
+        &self.dependent_entries
     }
 
     /// Returns the number of free unknowns.
@@ -237,9 +236,9 @@ impl Pattern {
     /// Sets the fixed components of a nodal velocity to zero, and the dependent ones so that held points rest.
     pub fn stop_fixed(&self, nodal: &mut [Vector2<f64>]) {
         nodal.iter_mut().zip(&self.mask).for_each(|(v, m)| v.component_mul_assign(m));
-        for (i, (unknown, _)) in self.dependent.iter().enumerate() {
-            let value = self.dependent_values(nodal).nth(i).map_or(0.0, |(_, value)| value);
-            nodal[*unknown as usize / 2][*unknown as usize % 2] = value;
+        let values: Vec<(u32, f64)> = self.dependent_values(nodal).collect();
+        for (unknown, value) in values {
+            nodal[unknown as usize / 2][unknown as usize % 2] = value;
         }
     }
 
@@ -253,14 +252,8 @@ impl Pattern {
             return;
         }
         let mass = |unknown: u32| lumped[unknown as usize / 2];
-        let held: DVector<f64> = moves
-            .iter()
-            .zip(&self.dependent)
-            .map(|(v, (_, row))| {
-                v - row.iter().map(|&(free, c)| c * component(velocity, self.free[free as usize])).sum::<f64>()
-            })
-            .collect::<Vec<f64>>()
-            .into();
+        let held = moves.iter().zip(self.dependent_values(velocity)).map(|(v, (_, value))| v - value);
+        let held = DVector::from_iterator(moves.len(), held);
         let count = held.len();
         let mobility = DMatrix::from_fn(count, count, |i, j| {
             let [(unknown, a), (_, b)] = [&self.dependent[i], &self.dependent[j]];
@@ -399,7 +392,7 @@ impl Pattern {
             return self.free_slot(a, b);
         }
         let outside = self.entries() as u32;
-        self.condensed_slots.get(&(i.min(j), i.max(j))).map_or(outside, |slot| outside + 1 + slot)
+        self.dependent_slots.get(&(i.min(j), i.max(j))).map_or(outside, |slot| outside + 1 + slot)
     }
 
     /// Returns the index of the entry of two free numbers.
@@ -412,6 +405,6 @@ impl Pattern {
 }
 
 /// Returns the component of an unknown, 2 · node + axis.
-fn component(nodal: &[Vector2<f64>], unknown: u32) -> f64 {
+pub(super) fn component(nodal: &[Vector2<f64>], unknown: u32) -> f64 {
     nodal[unknown as usize / 2][unknown as usize % 2]
 }

@@ -6,8 +6,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::held_points::{Constraint, HeldPoints, axes, point_weights};
+use super::held_points::{Constraint, HeldPoints, axes};
 use super::hold::nodes_of;
+use super::pattern::component;
 use super::{Kinematics, Matrix, NodeWeights, System};
 use crate::displacement::Displacement;
 use crate::element::{MatrixSum, Rotations, Tangent};
@@ -38,6 +39,11 @@ pub struct NodalSupport {
 }
 
 impl NodalSupport {
+    /// Returns a nodal field at the middle.
+    pub(crate) fn mean(&self, nodal: &[Vector2<f64>]) -> Vector2<f64> {
+        self.weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
+    }
+
     fn moves(&self) -> bool {
         self.rotation != 0.0 || self.displacement != Vector2::zeros()
     }
@@ -95,19 +101,18 @@ impl Supports {
         let mut all: Vec<NodalSupport> = Vec::with_capacity(supports.len());
         for (i, support) in supports.iter().enumerate() {
             let key = format!("support.{i}");
-            let nodes = nodes_of(support, mesh, &key)?;
-            let between = point_weights(support, mesh);
-            let point = between.is_some().then(|| axes(support));
-            let weights = match (&support.place, between) {
+            let held = system.held_points().points.iter().find(|point| point.support == i);
+            let nodes = if held.is_none() { nodes_of(support, mesh, &key)? } else { Vec::new() };
+            let point = held.map(|point| point.axes);
+            let weights = match (&support.place, held) {
                 (Place::Edge(name), _) => system.edge(name, &key)?.1.weights().to_vec(),
-                (Place::At(_), Some(weights)) => weights,
+                (Place::At(_), Some(point)) => point.weights.clone(),
                 (Place::At(_), None) => nodes.iter().map(|&node| (node, 1.0)).collect(),
             };
             let middle = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
             let place = support.place.clone();
             let (displacement, rotation) = (support.displacement.into(), support.turn);
-            let nodes_of_own = Vec::with_capacity(nodes.len());
-            let mut new = NodalSupport { place, nodes: nodes_of_own, point, weights, displacement, rotation, middle };
+            let mut new = NodalSupport { place, nodes: Vec::new(), point, weights, displacement, rotation, middle };
             for node in nodes {
                 let mut own = axes(support);
                 for (axis, own) in own.iter_mut().enumerate().filter(|(_, own)| **own) {
@@ -276,7 +281,8 @@ impl Supports {
     }
 
     /// Returns `true` if the fixed components of a displacement are exactly those of [`Self::put`], and those of held
-    /// points up to rounding errors. The comparison of nodes is exact because after a full rotation they equal the rest position up to rounding, but the body is not at rest.
+    /// points up to rounding errors. The comparison of nodes is exact because after a full rotation they equal the rest
+    /// position up to rounding, but the body is not at rest.
     pub(crate) fn are_at(&self, mesh: &Mesh, factor: f64, kinematics: Kinematics, u: &[Vector2<f64>]) -> bool {
         self.targets(mesh, factor, kinematics).all(|(node, axis, target)| u[node as usize][axis] == target)
             && self.points_are_at(factor, kinematics, u)
@@ -302,9 +308,8 @@ impl Supports {
             increments.entry(node).or_insert([now; 2])[1][axis] = mesh.node(node)[axis] + target;
         }
         let points = self.all.iter().filter_map(|support| {
-            let moved: Vector2<f64> = support.weights.iter().map(|&(node, weight)| u[node as usize] * weight).sum();
             let target = support.middle + support.take(support.middle, factor, Kinematics::Corotated);
-            let now = support.middle + moved;
+            let now = support.middle + support.mean(u);
             Some([now, now.zip_zip_map(&target, &support.point?.into(), |now, to, fixed| if fixed { to } else { now })])
         });
         let increments: Vec<[Vector2<f64>; 2]> = increments.into_values().chain(points).collect();
@@ -367,11 +372,6 @@ impl Supports {
 
 /// Rounding error of a displacement relative to the size of the body or of its displacement.
 const SAME: f64 = 1e-12;
-
-/// Returns the component of an unknown, 2 · node + axis.
-fn component(u: &[Vector2<f64>], unknown: u32) -> f64 {
-    u[unknown as usize / 2][unknown as usize % 2]
-}
 
 /// Returns `true` if two supports that both fix a component of a node prescribe the same displacement over their whole
 /// motion.

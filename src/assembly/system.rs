@@ -197,8 +197,9 @@ impl System {
     }
 
     fn of_body(body: Arc<MeshData>, scene: &Scene) -> Result<Self, SystemError> {
-        let fixed = fixed_unknowns(&scene.supports, &body.mesh)?;
-        let held = HeldPoints::solve(held_points(&scene.supports, &body.mesh), &fixed);
+        let points = held_points(&scene.supports, &body.mesh);
+        let fixed = fixed_unknowns(&scene.supports, &body.mesh, &points)?;
+        let held = HeldPoints::solve(points, &fixed);
         check_any_free(&fixed, held.dependent.len())?;
         let is_grid = matches!(body.origin, Origin::Beam(_));
         let hold = Hold::of(&body.mesh, &fixed, &held.points, is_grid);

@@ -127,15 +127,13 @@ pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Wrench {
         total.add(x + u, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
     }
     for (support, force) in supports.point_forces(forces.residual()) {
-        let moved: Vector2<f64> =
-            support.weights.iter().map(|&(n, weight)| state.displacement[n as usize] * weight).sum();
-        total.add(support.middle + moved, force);
+        total.add(support.middle + support.mean(&state.displacement), force);
     }
     total
 }
 
-/// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes, or the force on its point. An unknown fixed by
-/// several supports belongs to the first.
+/// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes, or the force on its point.
+/// An unknown fixed by several supports belongs to the first.
 #[must_use]
 pub fn support_reactions(
     problem: &Problem,
@@ -162,9 +160,8 @@ pub fn support_reactions(
             total.force += points.next().map_or_else(Vector2::zeros, |(_, force)| force);
         }
         let Wrench { force, moment } = total;
-        let moved: Vector2<f64> =
-            support.weights.iter().map(|&(n, weight)| state.displacement[n as usize] * weight).sum();
-        SupportReaction { place: support.place.clone(), middle: support.middle + moved, force, moment }
+        let middle = support.middle + support.mean(&state.displacement);
+        SupportReaction { place: support.place.clone(), middle, force, moment }
     });
     react.collect()
 }

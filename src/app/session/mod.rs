@@ -832,8 +832,8 @@ pub(crate) fn equilibrium_to_keep(
 ) -> Option<Simulation> {
     let kept = kept.filter(|kept| Arc::ptr_eq(kept.system(), simulation.system()));
     if *simulation.status() == Status::Converged {
-        let is_kept = |kept: &Simulation| kept.state() == simulation.state() && kept.scene() == simulation.scene();
-        return simulation.equilibrium().filter(|_| !kept.is_some_and(is_kept)).map(Equilibrium::snapshot);
+        let is_kept = kept.is_some_and(|kept| is_same_state(kept, simulation));
+        return simulation.equilibrium().filter(|_| !is_kept).map(Equilibrium::snapshot);
     }
     if !fails || kept.is_some() {
         return None;
@@ -841,6 +841,11 @@ pub(crate) fn equilibrium_to_keep(
     let mut scene = simulation.scene().clone();
     scene.scale_loads(0.0);
     Simulation::with_system(&scene, simulation.system().clone()).ok()
+}
+
+/// Returns `true` if both have the same state of the same scene.
+pub(crate) fn is_same_state(one: &Simulation, other: &Simulation) -> bool {
+    one.state() == other.state() && one.scene() == other.scene()
 }
 
 /// Returns `true` if two scenes have the same mesh.

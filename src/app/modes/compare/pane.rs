@@ -6,8 +6,8 @@ use nalgebra::Vector2;
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
-use crate::app::session::equilibrium_to_keep;
 use crate::app::session::facts::TimeFact;
+use crate::app::session::{equilibrium_to_keep, is_same_state};
 use crate::app::task::keyed::Keyed;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::probe;
@@ -147,8 +147,7 @@ impl Pane {
             self.equilibrium = Some(found);
         }
         let Some(last) = last.filter(|_| fails) else { return };
-        let is_kept = |kept: &Simulation| kept.state() == last.state() && kept.scene() == last.scene();
-        if !self.equilibrium.as_ref().is_some_and(is_kept) {
+        if !self.equilibrium.as_ref().is_some_and(|kept| is_same_state(kept, last)) {
             self.equilibrium = last.equilibrium().map(Equilibrium::snapshot);
         }
     }
