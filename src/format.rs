@@ -287,7 +287,13 @@ pub fn in_power(value: f64, power: i32) -> String {
 /// ```
 #[must_use]
 pub fn engineering_pair(values: [f64; 2], unit: &str) -> String {
-    let (power, symbol) = prefix(&values, unit);
+    engineering_pair_among(values, &values, unit)
+}
+
+/// Formats like [`engineering_pair`], with the prefix that suits all of the values in a column.
+#[must_use]
+pub(crate) fn engineering_pair_among(values: [f64; 2], column: &[f64], unit: &str) -> String {
+    let (power, symbol) = prefix(column, unit);
     let largest = values[0].abs().max(values[1].abs());
     let [x, y] = values.map(|v| if v.abs() < ROUNDING * largest { 0.0 } else { v });
     format!("({}, {}) {symbol}{unit}", significant(scaled(x, power), DIGITS), significant(scaled(y, power), DIGITS))

@@ -193,7 +193,7 @@ fn a_clicked_triangle_shows_its_f_r_and_s() {
         assert!((-60.0..-5.0).contains(&angle), "{angle}");
         let own = harness.state().simulation().state().rotations()[element];
         assert!((own.angle() - r.angle()).abs() < 1e-12);
-        let words = format!("Triangle {}, rotated by {angle:.1}\u{b0}", element + 1);
+        let words = format!("Triangle {}, rotated by {angle:.1}\u{b0}", element);
         assert_eq!(text(&harness, "Triangle"), minus(&words));
         let s = r.matrix().transpose() * f;
         assert!((s.m12 - s.m21).abs() < 1e-12);
@@ -245,7 +245,7 @@ fn rotated_triangles_are_rotated_back_onto_their_rest_shape() {
     assert!(harness.state().simulation().mouse_spring().is_none());
     harness.drop_at(at);
     harness.run();
-    assert!(text(&harness, "Triangle").starts_with("Triangle 2:"));
+    assert!(text(&harness, "Triangle").starts_with("Triangle 1:"));
     let slider = harness.get_by_role_and_label(Role::Slider, "Rotated back").rect();
     harness.drag_at(slider.right_center() - vec2(4.0, 0.0));
     harness.run();
@@ -279,7 +279,7 @@ fn text_containing(harness: &Harness<'_, Lab>, part: &str) -> String {
 #[test]
 fn the_matrices_are_the_solvers() {
     let mut harness = at_card(4);
-    assert!(text(&harness, "Triangle 7: nodes").contains("24 \u{2212} 4 = 20 unknowns"));
+    assert!(text(&harness, "Triangle 6: nodes").contains("24 \u{2212} 4 = 20 unknowns"));
     assert!(harness.query_by_label("the body's matrix, 24 by 24, of which 20 by 20 are left").is_some());
     let simulation = harness.state().simulation();
     let system = simulation.system().clone();
@@ -298,9 +298,9 @@ fn the_matrices_are_the_solvers() {
     simulation.problem().linearize(simulation.state(), &mut forces, Some((Tangent::WARPED, &mut sum)));
     let free = system.pattern().free().to_vec();
     for (row, column) in [(0, 0), (2, 3), (5, 1)] {
-        let shown = cell(&mut harness, "Ke of triangle 7", 6, row, column);
+        let shown = cell(&mut harness, "Ke of triangle 6", 6, row, column);
         assert!(shown.starts_with(&words(ke(row, column))), "{shown}");
-        let shown = cell(&mut harness, "R Ke RT of triangle 7", 6, row, column);
+        let shown = cell(&mut harness, "R Ke RT of triangle 6", 6, row, column);
         assert!(shown.starts_with(&words(rotated(row, column))), "{shown}");
     }
     for (row, column) in [(6, 7), (10, 14), (19, 19)] {
@@ -444,7 +444,7 @@ fn steps_walk_through_the_pseudocode() {
                 let (rest, now) = corners(harness.state(), 6);
                 let f = gradient(rest, now);
                 let [a, b, c, d] = [f.m11, f.m12, f.m21, f.m22].map(|v| minus(&format!("{v:.2}")));
-                format!("triangle 7: [{a} {b}; {c} {d}]")
+                format!("triangle 6: [{a} {b}; {c} {d}]")
             }
             6 => {
                 let angles = simulation.state().rotations().iter().map(|r| r.angle());

@@ -310,6 +310,7 @@ fn a_displayed_state_of_an_earlier_load_is_marked() {
     harness.run();
     assert_eq!(harness.state().simulation().iterations(), 1);
     assert!(harness.query_by_label_contains("not solved for the present load").is_none());
+    assert!(harness.query_by_label("iterate 1, no equilibrium").is_some(), "an iterate is labelled");
 }
 
 /// The key Space goes to the control that has the focus.

@@ -280,6 +280,15 @@ fn bases_of_objects_are_dragged_along_the_body() {
     drag(&mut harness, from, to, Modifiers::NONE);
     let held = harness.state().scene().supports.last().unwrap();
     assert_eq!((&held.place, held.at_point), (&Place::At([10.0, -0.5]), false));
+    // On the middle of an edge it still holds a point, and does not become a support of the whole edge.
+    let (from, to) = (seen(&harness, [9.999, -0.499]), seen(&harness, [9.999, 0.03]));
+    drag(&mut harness, from, to, Modifiers::NONE);
+    let held = harness.state().scene().supports.last().unwrap();
+    assert_eq!((&held.place, &held.fix[..]), (&Place::At([10.0, 0.0]), &[Axis::Y][..]));
+    let before = harness.state().scene().clone();
+    let from = seen(&harness, [9.999, 0.0]);
+    drag(&mut harness, from, from - egui::vec2(0.0, 200.0), Modifiers::NONE);
+    assert_eq!(*harness.state().scene(), before, "dropped beside the body");
     let probe = seen(&harness, at);
     click(&mut harness, probe);
     assert!(harness.state().probed().is_some(), "a press without a drag inspects");

@@ -18,7 +18,6 @@ use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::view::STATUS_VIEW;
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
-use crate::simulation::Status;
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
 const NARROW: f32 = 900.0;
@@ -330,12 +329,9 @@ impl Lab {
         let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
         // If there is a status bar, it shows the status.
         let status = (is_bad && !self.desk.view.bars).then_some(status);
-        let session = &self.desk.session;
-        let is_search = self.lesson.is_none() && !session.is_motion();
-        let is_paused = is_search && !session.is_running() && *readout.shown.status() == Status::Running;
         let label = if self.content().shows_iterate() {
             Some(tr("last iterate, no equilibrium").to_owned())
-        } else if is_paused {
+        } else if self.desk.viewport.shows_search(&self.desk.session) {
             Some(fill!("iterate %{n}, no equilibrium", n = readout.shown.iterations()))
         } else {
             readout.shows_converged.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene))

@@ -105,9 +105,17 @@ impl Bases<'_> {
         let mesh = self.mesh();
         let distance = |at: Vector2<f64>| self.projection.point(at).distance(pointer);
         let can_be_on_edge = matches!(object, Object::Force(_) | Object::Support(_));
-        let named = |name: &String| Place::from(name.as_str());
-        let edges = mesh.edges().keys().filter(|_| can_be_on_edge).map(named);
-        let edges = edges.filter_map(|place| self.applied(&place, false).map(|at| (place, at)));
+        let edges = mesh.edges().keys().filter(|_| can_be_on_edge);
+        let edges = edges.filter_map(|name| {
+            let edge = Place::from(name.as_str());
+            let at = self.applied(&edge, false)?;
+            // On a whole edge, a support of a point would also hold rotation: a pin would become a clamp.
+            if !self.holds_point(object) {
+                return Some((edge, at));
+            }
+            let middle = point_of_application(mesh, mesh.nodes(), &edge, false)?;
+            Some((Place::At(rounded(self.system, middle).into()), at))
+        });
         let at_node = |n: u32| Some((Place::At(mesh.node(n).into()), *self.positions.get(n as usize)?));
         let corners = mesh.edges().values().flat_map(|edge| ends(edge));
         let near = edges.chain(corners.filter_map(at_node)).filter(|(_, at)| distance(*at) <= NEAR);
@@ -120,6 +128,12 @@ impl Bases<'_> {
         let rest = self.on_side(rest).unwrap_or_else(|| self.on_axis(rest));
         let rest = rounded(self.system, rest);
         Some((Place::At(rest.into()), self.drawn(rest)?))
+    }
+
+    /// Returns `true` if an object is a support of a point.
+    fn holds_point(&self, object: Object) -> bool {
+        let Object::Support(i) = object else { return false };
+        self.scene.supports.get(i).is_some_and(|support| matches!(support.place, Place::At(_)))
     }
 
     /// Returns the nearest point of the outline at rest, m; `None` if it is not close to the rest position `at`.
@@ -166,12 +180,15 @@ impl Bases<'_> {
     pub(crate) fn paint(&self, painter: &Painter, hot: HotBase, visuals: &egui::Visuals, color: Color32) {
         painter.circle_stroke(hot.base.at, NEAR, Stroke::new(1.5, color));
         let Some(pointer) = hot.dragged else { return };
-        let Some((place, at)) = self.target(hot.base.object, pointer) else { return };
+        let Some((place, at)) = self.target(hot.base.object, pointer) else {
+            let text = tr("not on the body: stays where it was");
+            boxed_text(painter, pointer, egui::Align2::CENTER_BOTTOM, text, visuals, color, 240.0);
+            return;
+        };
         let at = self.projection.point(at);
         painter.line_segment([hot.base.at, at], Stroke::new(1.0, color));
         painter.circle_filled(at, 4.0, color);
         let text = match place {
-            // A support holds a whole edge: a pin that is put there becomes a clamp.
             Place::Edge(name) => match hot.base.object {
                 Object::Support(i) => match self.scene.supports.get(i).map(|support| support.fix.len()) {
                     Some(2) => fill!("clamp %{edge}", edge = tr(&name)),

@@ -152,6 +152,8 @@ pub(crate) struct BodyView {
     largest_displacement: f64,
     /// `true` while the last equilibrium is drawn in place of a state that diverges.
     shows_converged: bool,
+    /// Number of consecutive updates with a body that is not the result for the scene, but an iterate, or the one before.
+    late: u32,
     /// Bounding box of all states of a body in motion so far, m.
     swept: Option<[Vector2<f64>; 2]>,
     crossing: Crossing,
@@ -175,6 +177,7 @@ impl BodyView {
             choice: Magnification::None,
             largest_displacement: 0.0,
             shows_converged: false,
+            late: 0,
             swept: None,
             crossing: Crossing::default(),
         }
@@ -208,6 +211,19 @@ impl BodyView {
     /// Returns `true` while the last equilibrium is drawn in place of a state that diverges.
     pub(crate) fn shows_converged(&self) -> bool {
         self.shows_converged
+    }
+
+    /// Returns `true` if the drawn body is not the result for the scene: it is an iterate, or the body before a solve in
+    /// the background. A wait of few frames does not count, because the body would flicker.
+    fn is_late(&self, session: &Session) -> bool {
+        /// Number of frames of a short wait.
+        const SHORT: u32 = 12;
+        self.late > SHORT || self.late > 0 && !session.is_running()
+    }
+
+    /// Returns `true` if the drawn body is an iterate of a search for an equilibrium, which is paused or takes long.
+    pub(crate) fn shows_search(&self, session: &Session) -> bool {
+        self.is_late(session) && session.work().is_none()
     }
 
     /// Returns the pinned material point, whose values are shown.
@@ -290,6 +306,10 @@ impl BodyView {
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
         self.shows_converged = self.hides_divergence(content);
         let simulation = self.drawn(content);
+        let is_still = content.card.is_none() && content.animation.is_none() && !content.session.is_motion();
+        let is_search = is_still && *simulation.status() == Status::Running && simulation.mouse_spring().is_none();
+        let is_late = is_search || content.session.work().is_some();
+        self.late = if is_late { self.late.saturating_add(1) } else { 0 };
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
@@ -705,7 +725,7 @@ impl BodyView {
             has_values: self.body.has_values(),
             note,
         };
-        if content.shows_iterate() {
+        if content.shows_iterate() || self.is_late(session) && !self.shows_converged {
             overlay::dim(painter, self.rect, &Palette::new(visuals));
         }
         overlay::paint(painter, self.rect, &overlay, visuals);

@@ -5,10 +5,14 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use egui::text_edit::TextEditState;
-use egui::{Align, DragValue, Id, Key, Layout, PointerButton, Rect, Response, Slider, SliderClamping, Ui, UiBuilder};
+use egui::{
+    Align, DragValue, Id, Key, Layout, PointerButton, Rect, Response, Slider, SliderClamping, Stroke, StrokeKind, Ui,
+    UiBuilder,
+};
 
 use crate::app::language::{fill, said, tr};
 use crate::app::widgets::load_scale::LoadScale;
+use crate::app::widgets::palette::Palette;
 use crate::format::{editable, number, three_digits};
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
@@ -121,6 +125,11 @@ impl NumberField {
             edited = self.stepped(ui, value).or(edited);
         } else if response.changed() {
             edited = Some(if self.whole { slid.round() } else { three_digits(slid) });
+        }
+        if response.has_focus() {
+            // The handle alone shows the focus too faintly.
+            let accent = Palette::new(ui.visuals()).accent;
+            ui.painter().rect_stroke(slider.expand(2.0), 4.0, Stroke::new(1.5, accent), StrokeKind::Outside);
         }
         is_reset |= is_reset_by(ui, &response);
         quiet_tip(response, &tip);

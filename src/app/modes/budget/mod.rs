@@ -7,8 +7,8 @@ use crate::app::session::facts::without_settings;
 use crate::app::widgets::plot::{X_AXIS, marker, segments};
 use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui, vec2};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points, Polygon, Text,
-    VLine,
+    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, PlotUi, Points,
+    Polygon, Text, VLine,
 };
 
 use crate::app::action::Action;
@@ -339,7 +339,9 @@ fn settings(
         let measured = budget.choices.len();
         let count = match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
             Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
-            None if measured > 0 && meeting.is_empty() => {
+            // The row of Measure says that nothing has been measured.
+            None if measured == 0 => String::new(),
+            None if meeting.is_empty() => {
                 fill!("None of %{measured} settings meets both; nearest:", measured = measured)
             }
             None if meeting.iter().any(|m| budget.study.is_some_and(|study| !study.converges(m))) => {
@@ -413,7 +415,8 @@ fn legend(ui: &mut Ui, moves: bool) {
             ui.label(RichText::new(tr(id)).small().strong().color(color));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let text = RichText::new(fill!("%{shapes}; line: Pareto front", shapes = shapes)).small();
+        let text =
+            RichText::new(fill!("%{shapes}; line: Pareto front; cross: current setting", shapes = shapes)).small();
         ui.label(text);
     });
 }
@@ -509,6 +512,10 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
             }
             if let Some(error) = budget.demand.max_error_percent {
                 plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
+            }
+            if let Some(own) = budget.choices.iter().find(|choice| choice.is_applied_to(budget.scene)) {
+                let cross = Points::new(tr("current"), vec![place(own)]).shape(MarkerShape::Plus);
+                plot.points(cross.color(text).radius(9.0));
             }
             if let Some(best) = budget.best {
                 let ring = Points::new(tr("fastest"), vec![place(&best)]).color(text).filled(false).radius(8.0);

@@ -218,10 +218,14 @@ impl Trace {
 
     /// Returns the displacement of the reference solution under a load if it is known, else that of the exact beam.
     fn exact_at(&self, load: f64) -> Option<Vector2<f64>> {
-        let reference = self.reference_at(load);
-        let piece = || self.line().windows(2).find(|w| (w[0].0..=w[1].0).contains(&load));
-        let between = |w: &[Exact]| w[0].1 + (w[1].1 - w[0].1) * ((load - w[0].0) / (w[1].0 - w[0].0));
-        reference.or_else(|| piece().map(between))
+        self.reference_at(load).or_else(|| self.exact_beam_at(load))
+    }
+
+    /// Returns the displacement of the exact beam at a load, m, interpolated on its curve; `None` if it is not known.
+    fn exact_beam_at(&self, load: f64) -> Option<Vector2<f64>> {
+        let piece = self.line().windows(2).find(|w| (w[0].0..=w[1].0).contains(&load))?;
+        let [(from, a), (to, b)] = [piece[0], piece[1]];
+        Some(a + (b - a) * ((load - from) / (to - from)))
     }
 
     /// Records a pane's result for the current load. Returns `true` if it is new.
@@ -322,13 +326,19 @@ impl Trace {
         ];
         let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
         let mut rows = Vec::new();
-        if !all.is_empty() {
-            let value = self.exact_at(axis.magnitude).map(pair).unwrap_or_default();
-            let (name, ink, mark) = match self.reference_at(axis.magnitude) {
-                Some(_) => (tr("reference"), Ink::Exact, Mark::Plus),
-                None => (tr("exact beam"), Ink::BeamTheory, Mark::Line),
-            };
-            rows.push(FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false });
+        let references = [
+            (tr("exact beam"), Ink::BeamTheory, Mark::Line, self.exact_beam_at(axis.magnitude)),
+            (tr("reference"), Ink::Exact, Mark::Plus, self.reference_at(axis.magnitude)),
+        ];
+        let answers = panes.iter().filter_map(|pane| pane.solve.answer()).filter(|(_, good)| *good);
+        let known = references.iter().filter_map(|(.., u)| *u);
+        let column: Vec<Vector2<f64>> = known.chain(answers.map(|(probe, _)| probe.u)).collect();
+        let pair = |u| pair(u, &column);
+        for (name, ink, mark, u) in references {
+            if all.iter().any(|series| series.ink == ink) {
+                let value = u.map(pair).unwrap_or_default();
+                rows.push(FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false });
+            }
         }
         let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
         for pane in panes {

@@ -220,7 +220,7 @@ pub(crate) const CARDS: &[Card] = &[
                 part G: how the forces change as R rotates. An iteration costs about the same.",
         formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
         symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \
-                  positions (m).",
+                  positions (m). Far from the equilibrium the residual leaves the line and levels off.",
         task: "Switch to newton, and back.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Warped, FAR),

@@ -62,7 +62,7 @@ fn stiffness(simulation: &Simulation, _: usize) -> String {
 fn gradient(simulation: &Simulation, picked: usize) -> String {
     let Some(Triangle { gradient: f, .. }) = Triangle::of(simulation, picked) else { return String::new() };
     let [a, b, c, d] = [f.m11, f.m12, f.m21, f.m22].map(|v| format!("{v:.2}").replace('-', "\u{2212}"));
-    fill!("triangle %{n}: [%{a} %{b}; %{c} %{d}]", n = picked + 1, a = a, b = b, c = c, d = d)
+    fill!("triangle %{n}: [%{a} %{b}; %{c} %{d}]", n = picked, a = a, b = b, c = c, d = d)
 }
 
 fn rotation(simulation: &Simulation, _: usize) -> String {

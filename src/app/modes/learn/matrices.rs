@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &rotated)] {
             ui.vertical(|ui| {
                 ui.label(formula::set(markup, palette.text));
-                let text = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked + 1);
+                let text = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked);
                 cells(ui, &palette, (scale * SMALL_SIDE, largest, &text), matrix, &local, &|_, _| true);
             });
         }
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
     let note = fill!(
         "Triangle %{n}: nodes %{nodes}; framed: its blocks. Grey: clamped, %{all} \u{2212} %{clamped} = %{free} \
          unknowns. Red is positive, blue negative.",
-        n = learn.picked + 1,
+        n = learn.picked,
         nodes = triangle.nodes.map(|n| n.to_string()).join(", "),
         all = all,
         clamped = all - free,

@@ -11,7 +11,7 @@ use crate::app::session::Session;
 use crate::app::session::facts::Curve;
 use crate::app::view_options::CurvePlot;
 use crate::app::widgets::text::boxed_text;
-use crate::format::{engineering, engineering_pair, three_digits};
+use crate::format::{engineering, engineering_pair_among, three_digits};
 use crate::scene::{MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::Status;
@@ -117,9 +117,10 @@ pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
     }
 }
 
-/// Formats a displacement for a table, m.
-pub(crate) fn pair(u: Vector2<f64>) -> String {
-    engineering_pair([u.x, u.y].map(three_digits), "m")
+/// Formats a displacement, m, for a table, in the prefix that suits its whole column.
+pub(crate) fn pair(u: Vector2<f64>, column: &[Vector2<f64>]) -> String {
+    let column: Vec<f64> = column.iter().flat_map(|u| [u.x, u.y]).collect();
+    engineering_pair_among([u.x, u.y].map(three_digits), &column, "m")
 }
 
 fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
@@ -169,12 +170,15 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         all.push(series(tr(point.method.id()).to_owned(), Ink::Method(point.method), mark, may_leave, vec![at]));
     }
     let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
+    let converged = curve.methods.iter().filter(|p| p.status == Status::Converged);
+    let column: Vec<_> = at_load.iter().flat_map(|s| [s.exact, s.linear]).chain(converged.map(|p| p.tip)).collect();
+    let in_column = |u| pair(u, &column);
     let value = |series: &FigureSeries| match series.mark {
         Mark::Ring => departs.as_ref().map(|(_, loads)| loads.clone()),
         Mark::Cross => Some(tr("not converged").to_owned()),
-        Mark::Line => at_load.map(|s| pair(s.exact)),
-        Mark::Dashes => at_load.map(|s| pair(s.linear)),
-        _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| pair(p.tip)),
+        Mark::Line => at_load.map(|s| in_column(s.exact)),
+        Mark::Dashes => at_load.map(|s| in_column(s.linear)),
+        _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| in_column(p.tip)),
     };
     let row = |series: &FigureSeries| FigureRow {
         name: series.name.clone(),

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, ComboBox, Context, FontId, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextFormat, Ui,
-    WidgetInfo, vec2,
+    WidgetInfo, style::ScrollAnimation, vec2,
 };
 
 use self::thumbnail::Thumbnail;
@@ -110,13 +110,17 @@ impl Gallery {
         let width = ((room - GAP * (columns - 1) as f32) / columns as f32).min(if columns > 1 { WIDEST } else { room });
         ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
-        ui.horizontal(|ui| {
+        let top = ui.horizontal(|ui| {
             let tip = with_keys(ui.ctx(), tr("Open a scene file, or a recent one (Ctrl+O)"));
             if ui.button(tr("Open a file…")).on_hover_text(tip).clicked() {
                 actions.push(Action::OpenFile);
             }
             ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
         });
+        if !self.is_open {
+            // The list would open where it was last scrolled to.
+            ui.scroll_to_rect_animation(top.response.rect, Some(Align::TOP), ScrollAnimation::none());
+        }
         // If the gallery was opened with a key, an entry gets the keyboard focus.
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
