@@ -42,7 +42,11 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
     let [low, high] = limits.range.map(load);
     let mut text = format!("{}: {} from {low} to {high}, {} in the scene; ", scene.name, axis.name, load(1.0));
     let _ = match limits.duration {
-        Some(duration) => writeln!(text, "the first {} of the motion\n", engineering(three_digits(duration), "s")),
+        Some(duration) => {
+            let _ = write!(text, "the first {} of the motion", engineering(three_digits(duration), "s"));
+            let mesh = limits.mesh_error_text().map_or_else(String::new, |mesh| format!("; {mesh}"));
+            writeln!(text, "{mesh}\n")
+        }
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
             let _ = writeln!(text, "the reference solution is known at {known} of {all} loads");
@@ -122,7 +126,10 @@ fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String 
         "warnings": warnings,
     });
     match limits.duration {
-        Some(duration) => object["duration"] = json!(duration),
+        Some(duration) => {
+            object["duration"] = json!(duration);
+            object["mesh_error_percent"] = json!(limits.mesh_error_percent);
+        }
         None => object["critical_load_factor"] = json!(limits.critical),
     }
     json::text(&object)

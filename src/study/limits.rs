@@ -17,7 +17,7 @@ use super::{Effort, ProbeReference, Reference, parallel};
 use crate::assembly::System;
 use crate::dynamics::INTEGRATORS;
 use crate::exact_beam::error_percent;
-use crate::format::{engineering, number, three_digits};
+use crate::format::{engineering, number, percent, three_digits};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
@@ -470,14 +470,15 @@ pub fn axis(scene: &Scene) -> LoadAxis {
     }
 }
 
-/// Returns the name of the axis, with the critical load if there is one.
+/// Returns the name of the axis, with the critical load if there is one, or with the error of a motion's mesh.
 #[must_use]
 pub fn axis_text(limits: &MethodLimits, axis: &LoadAxis) -> Sentence {
-    match limits.critical {
-        Some(factor) => {
+    match (limits.critical, limits.mesh_error_text()) {
+        (Some(factor), _) => {
             sentence!("%{load}; critical load (dashed) %{value}", load = &axis.name, value = load_text(axis, factor))
         }
-        None => axis.name.clone(),
+        (None, Some(text)) => sentence!("%{load}; %{text}", load = &axis.name, text),
+        (None, None) => axis.name.clone(),
     }
 }
 
@@ -494,6 +495,9 @@ pub struct MethodLimits {
     pub range: [f64; 2],
     /// Simulated time of a motion, s.
     pub duration: Option<f64>,
+    /// Error of the mesh of a motion, which each of its errors includes, percent of the size of the reference's path; with
+    /// the reference's own error.
+    pub mesh_error_percent: Option<f64>,
     /// Part of the load at which the load path from rest buckles or jumps on the scene's mesh; `None` if it does neither
     /// in the range, and for a motion or a body of more than 6000 unknowns.
     pub critical: Option<f64>,
@@ -504,6 +508,15 @@ pub struct MethodLimits {
 }
 
 impl MethodLimits {
+    /// Returns the error of a motion's mesh in words: however short its time steps are, no integrator has a smaller error.
+    #[must_use]
+    pub fn mesh_error_text(&self) -> Option<Sentence> {
+        /// Smallest error that is worth a sentence, percent.
+        const SEEN: f64 = 1e-3;
+        let error = percent(self.mesh_error_percent.filter(|error| *error >= SEEN)?);
+        Some(sentence!("each error includes %{error} of the mesh", error))
+    }
+
     /// Returns the critical part of the load if it is in the range of the limits.
     #[must_use]
     pub fn critical_in_range(&self) -> Option<f64> {
@@ -574,6 +587,7 @@ impl MethodLimits {
             Self {
                 range: RANGE,
                 duration: None,
+                mesh_error_percent: None,
                 critical,
                 reference: factors.iter().map(|&factor| (factor, None)).collect(),
                 strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
@@ -671,6 +685,7 @@ impl MethodLimits {
             Self {
                 range: [first, last],
                 duration: Some(study.duration()),
+                mesh_error_percent: Some(study.mesh_error_percent()),
                 critical: None,
                 reference: Vec::new(),
                 strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),

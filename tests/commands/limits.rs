@@ -160,6 +160,8 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     let duration = json["duration"].as_f64().unwrap();
     assert!((0.45..=0.5).contains(&duration), "{duration}");
     let table = fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    let mesh = json["mesh_error_percent"].as_f64().unwrap();
+    let mut smallest = f64::INFINITY;
     for strip in strips {
         let integrator = strip["integrator"].as_str().unwrap();
         let rows = table.lines().filter(|row| row.starts_with(&format!("{integrator},")));
@@ -168,6 +170,9 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
         assert!(points.windows(2).all(|pair| (pair[1][0] / pair[0][0] - 2.0).abs() < 1e-9), "{integrator}: {points:?}");
         let (first, last) = (points[0], points[points.len() - 1]);
         assert!(last[1] > first[1] || points.len() < 4, "{integrator}: {points:?}");
+        // The error of the mesh is a part of each, and with the shortest steps of the best integrator nearly all of it.
+        assert!(points.iter().all(|point| point[1] >= mesh), "{integrator}: {mesh}, {points:?}");
+        smallest = points.iter().fold(smallest, |least, point| least.min(point[1]));
         let Some(end) = strip["converges_to"].as_f64() else { continue };
         assert!(end > 0.0 && (end >= last[0]), "{integrator}: {end}, {points:?}");
         let finishes = |factor: f64| {
@@ -182,6 +187,7 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     assert!(strips.iter().any(|strip| strip["integrator"] == "symplectic-euler" && strip["converges_to"].is_f64()));
     let picture = fs::read_to_string(folder.path().join("t.svg")).unwrap();
     assert!(picture.contains("stops early") && picture.contains("energy-momentum"));
+    assert!(picture.contains("each error includes") && smallest < 1.1 * mesh + 0.1, "{smallest}, {mesh}");
 }
 
 #[test]
