@@ -294,6 +294,14 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
     }
 }
 
+/// Describes a drawn body that is not the result for the scene; `None` if it is.
+pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
+    match input.shows_converged {
+        true => Some(equilibrium_text(input.shown.scene(), input.scene)),
+        false => input.shows_iterate.then(|| fill!("iterate %{n}, no equilibrium", n = input.shown.iterations())),
+    }
+}
+
 /// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or
 /// moves a support.
 pub(crate) fn load_text(scene: &Scene) -> Option<String> {
@@ -316,8 +324,16 @@ const EXPLICIT: &str = "An explicit integrator explodes if its time step is too 
 pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
     let mut lines = Vec::new();
-    let has_stopped = matches!(simulation.status(), Status::Stopped(_));
-    if input.quality.is_inside_out(simulation) && !has_stopped {
+    let is_solved = match simulation.motion() {
+        Some(_) => !matches!(simulation.status(), Status::Stopped(_)),
+        None => simulation.status().is_success(),
+    };
+    let has_none = input.reference_failure.is_some() || input.reference.is_some_and(|known| known.first().is_none());
+    if has_none && simulation.motion().is_none() {
+        let reason = error_tip(input.reference, input.reference_failure);
+        lines.push(fill!("The error is not known. %{reason}", reason = reason));
+    }
+    if is_solved && input.quality.is_inside_out(simulation) {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
                     equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());

@@ -57,6 +57,10 @@ pub(crate) struct Readout<'a> {
     pub value_range: [f64; 2],
     /// `true` if the last equilibrium is drawn in place of a state that diverges.
     pub shows_converged: bool,
+    /// `true` if the drawn body is an iterate of a search for an equilibrium.
+    pub shows_iterate: bool,
+    /// `true` if a body with the settings of the scene is drawn.
+    pub is_drawn: bool,
     /// Measures of the reliability of the result.
     pub quality: &'a Quality,
     /// Language of the user interface.

@@ -82,7 +82,7 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
     for strip in &limits.strips {
         let Strip { element, integrator, points, .. } = strip;
         let method = strip.method_name(str::to_owned);
-        for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements } in points {
+        for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements, .. } in points {
             let error = error_percent.map_or_else(String::new, |error| error.to_string());
             let first = match integrator {
                 Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::correction::Corrector;
 use crate::assembly::{Forces, System};
 use crate::element::Tangent;
-use crate::format::{number, three_digits};
+use crate::format::{engineering, number, three_digits};
 use crate::sentence::{Sentence, sentence};
 use crate::solver::SolverError;
 use crate::state::State;
@@ -86,16 +86,16 @@ impl From<&StopReason> for Sentence {
         match reason {
             StopReason::Step { step, error } => {
                 sentence!(
-                    "a time step failed even when shortened to %{n} s: %{error}",
-                    n = number(three_digits(*step)),
+                    "a time step failed even when shortened to %{step}: %{error}",
+                    step = engineering(three_digits(*step), "s"),
                     error
                 )
             }
             StopReason::Exploded { step, critical } => sentence!(
-                "the motion exploded: the time step of %{n} s is too long; near rest, the critical one is about \
-                 %{critical} s",
-                n = number(three_digits(*step)),
-                critical = number(three_digits(*critical))
+                "the motion exploded: the time step of %{step} is too long; near rest, the critical one is about \
+                 %{critical}",
+                step = engineering(three_digits(*step), "s"),
+                critical = engineering(three_digits(*critical), "s")
             ),
             StopReason::RanAway(sizes) => {
                 sentence!("the body has moved by more than %{n} times its size", n = number(*sizes))

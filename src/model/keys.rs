@@ -182,7 +182,7 @@ pub const KEYS: &[Key] = keys! {
     "solver": Table, Optional("Optional"), "",
         "Settings of the solver.";
     "solver.method": Choice(&["linear", "warped", "newton", "auto"]), Default(r#""newton""#), r#""warped""#,
-        "linear: linear theory. warped: the article's iteration. newton: Newton's method with the exact tangent. auto: the cheapest of these that meets max_error_percent.";
+        "linear: linear theory. warped: the article's iteration. newton: Newton's method with the exact tangent. auto: one of these, by an estimate of its error, which max_error_percent limits.";
     "solver.tolerance": Number(limits::TOLERANCE), Default("1e-8"), "1e-10",
         "Unbalanced force, relative to the sum of all forces of elements, below which a solve has converged.";
     "solver.max_iterations": Integer(limits::MAX_ITERATIONS), Default("1000"), "50",

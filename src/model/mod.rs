@@ -279,7 +279,7 @@ pub enum MethodKind {
     /// Newton's method with the exact tangent.
     #[default]
     Newton,
-    /// The cheapest of the other methods that reaches the requested accuracy.
+    /// One of the other methods, chosen by an estimate of its error for the requested accuracy.
     Auto,
 }
 

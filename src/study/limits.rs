@@ -106,6 +106,8 @@ pub struct LimitPoint {
     /// Largest error against the reference solution, percent of its displacement, its own error included; `None` if the
     /// reference solution is not known, or is too inaccurate to tell if the error is within [`USABLE`].
     pub error_percent: Option<f64>,
+    /// Error of the reference solution, a part of [`Self::error_percent`]; `None` without a reference solution.
+    pub reference_error_percent: Option<f64>,
     /// Largest strain, of a motion over its time.
     pub max_strain: f64,
     /// Number of inverted elements.
@@ -201,6 +203,14 @@ impl Strip {
             before = Some((factor, error));
         }
         None
+    }
+
+    /// Returns `true` if the errors beyond [`Self::within`] may be at most `percent` too: without the error of the reference
+    /// solution they are.
+    fn is_undecided(&self, percent: f64) -> bool {
+        let next = self.points.iter().find(|point| point.error_percent.is_some_and(|error| error > percent));
+        let own = |point: &LimitPoint| Some(point.error_percent? - point.reference_error_percent?);
+        next.and_then(own).is_some_and(|error| error <= percent)
     }
 
     /// Returns the largest part of the load up to which the error is known at every load, and the error; `None` if it is
@@ -374,6 +384,8 @@ impl Strip {
             }
         };
         let within = |percent: f64| match (self.within(percent), self.last_known()) {
+            (Some(0.0), _) if self.is_undecided(percent) => sentence!("not known"),
+            (Some(factor), _) if self.is_undecided(percent) => sentence!("at least %{load}", load = load(factor)),
             (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
             (Some(factor), _) => self.within_again(percent, range).into_iter().fold(load(factor).into(), again),
             // It does not converge beyond.
@@ -412,9 +424,15 @@ impl Strip {
             Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = from))
         };
         if self.last_known().is_none() && !self.points.is_empty() {
-            return from();
+            let own = || Some(crate::format::percent(self.points.first()?.reference_error_percent?));
+            return from().or_else(|| Some(sentence!("reference \u{b1} %{own}", own = own()?)));
         }
         match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at()) {
+            (Some((percent, factor)), _) if self.is_undecided(percent) => Some(sentence!(
+                "%{percent} % to at least %{load}",
+                percent = number(percent),
+                load = load_text(axis, factor)
+            )),
             (Some((percent, factor)), _) => {
                 let first =
                     sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor));
@@ -635,7 +653,15 @@ impl MethodLimits {
                 Deformation::of(problem, solved.state(), &solved.nodal_stress());
             let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
             let error_percent = known.and_then(|known| known_error(&known, displacement));
-            Ok(Some(LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }))
+            let reference_error_percent = known.map(|known| known.own_error_percent);
+            Ok(Some(LimitPoint {
+                factor,
+                displacement,
+                error_percent,
+                reference_error_percent,
+                max_strain,
+                inverted_elements,
+            }))
         };
         all_done(parallel::map(
             &settings,
@@ -700,8 +726,14 @@ impl MethodLimits {
                     let Some(&(power, _)) = steps.iter().find(|(_, own)| *own == factor) else { return Ok(None) };
                     let solved = study.solve(*integrator, power, observe)?;
                     Ok(solved.map(|StepResult { displacement, error_percent, max_strain, inverted_elements }| {
-                        let error_percent = Some(error_percent);
-                        LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements }
+                        LimitPoint {
+                            factor,
+                            displacement,
+                            error_percent: Some(error_percent),
+                            reference_error_percent: Some(study.reference_error_percent()),
+                            max_strain,
+                            inverted_elements,
+                        }
                     }))
                 };
                 // Time steps shorter than the first are not measured.
@@ -997,7 +1029,14 @@ mod tests {
     use crate::study::reference::first_probe;
 
     fn point(factor: f64, error_percent: Option<f64>, max_strain: f64) -> LimitPoint {
-        LimitPoint { factor, displacement: Vector2::zeros(), error_percent, max_strain, inverted_elements: 0 }
+        LimitPoint {
+            factor,
+            displacement: Vector2::zeros(),
+            error_percent,
+            reference_error_percent: None,
+            max_strain,
+            inverted_elements: 0,
+        }
     }
 
     /// The colours of a strip end where its words say.

@@ -124,10 +124,15 @@ fn stress_of(
     }
 }
 
-/// Returns the largest value of a component in these sections, rounded within a context, and its position x, m.
+/// Returns the largest value of a component in these sections, rounded within a context, and its position x, m: the first
+/// one where the value is constant.
 pub(crate) fn largest(sections: &[Section], component: &SectionComponent, within: &Context) -> Option<(f64, f64)> {
-    let values = sections.iter().map(|section| (within.rounded((component.of)(&section.forces)), section.line.at.x));
-    values.max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()))
+    /// Relative difference of equal values.
+    const ROUNDING: f64 = 1e-6;
+    let value = |section: &Section| within.rounded((component.of)(&section.forces));
+    let largest = sections.iter().map(|section| value(section).abs()).max_by(f64::total_cmp)?;
+    let first = sections.iter().find(|section| value(section).abs() >= (1.0 - ROUNDING) * largest)?;
+    Some((value(first), first.line.at.x))
 }
 
 /// Draws N, V and M along a beam, each with its largest value; `render` translates the names.

@@ -134,7 +134,9 @@ pub(super) fn show(
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
         fold(ui, "File", tr("open, save, picture, movie"), false, |ui| view::keep(ui, actions));
-        fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
+        if input.is_drawn {
+            fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
+        }
     });
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, equilibrium_text, error_tip, rho, stability};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, rho, stability, state_text};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -49,8 +49,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     // All values are those of the drawn body.
     let simulation = input.shown;
     let method = simulation.scene().solver.method;
-    if input.shows_converged {
-        row("State", equilibrium_text(simulation.scene(), input.scene), "State of the body that is drawn");
+    if let Some(state) = state_text(input) {
+        row("State", state, "State of the body that is drawn");
     }
     row(
         "Iterations",
@@ -89,7 +89,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if method == MethodKind::Warped {
         let own = || search.certificate()?.fixed_point_rho;
-        let text = if input.shows_converged { own() } else { rho(input) }.map_or_else(
+        let known = if input.shows_converged { own() } else { rho(input) };
+        let text = known.filter(|_| simulation.status().is_success()).map_or_else(
             || UNKNOWN.to_owned(),
             |rho| sentence(&said(&Claim::Disturbance { rho, has_converged: false })),
         );
@@ -132,8 +133,8 @@ fn probe_row(row: &mut ResultRow<'_>, simulation: &Simulation) {
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
-    let known = input.simulation.status().is_success();
     let quality = input.quality;
+    let known = input.shown.status().is_success() && quality.is_of(input.shown);
     let error = quality.mesh_error_percent.filter(|_| known);
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use egui::{ComboBox, Id, Ui};
 
-use crate::app::diagnosis::equilibrium_text;
+use crate::app::diagnosis::state_text;
 use crate::app::language::{fill, said, tr};
 use crate::app::panel::{Action, PanelState};
 use crate::app::readout::Readout;
@@ -53,8 +53,8 @@ pub(super) fn show(
             }
         });
     }
-    if input.shows_converged {
-        ui.weak(equilibrium_text(input.shown.scene(), scene));
+    if let Some(state) = state_text(input) {
+        ui.weak(state);
     }
     ui.add(egui::Label::new(forces(input, line)).wrap()).on_hover_text(tr(
         "Normal force, shear force and bending moment that the part in front of the section exerts on the part behind",

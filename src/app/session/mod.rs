@@ -321,6 +321,7 @@ impl Session {
     /// [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, EditError> {
         let before = self.version();
+        let has_exploded = self.is_motion() && matches!(self.simulation.status(), Status::Stopped(_));
         match edit {
             Edit::Scene(label, scene) => {
                 self.set_scene(*scene)?;
@@ -351,6 +352,10 @@ impl Session {
                 let step = self.undo.redo(before);
                 self.go_to(step)?;
             }
+        }
+        // With other settings an exploded body would still be kilometres long.
+        if has_exploded && self.is_motion() {
+            self.reset();
         }
         Ok(self.changed)
     }

@@ -200,6 +200,13 @@ impl Lab {
         self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
     }
 
+    /// Returns the time of a solve of the scene from rest, s, as in the status bar; `None` until it has been measured.
+    #[must_use]
+    pub fn seconds_from_rest(&self) -> Option<f64> {
+        let session = &self.desk.session;
+        session.facts().time.get(session.scene()).map(|solve| solve.timings.total().as_secs_f64())
+    }
+
     /// Returns the camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {

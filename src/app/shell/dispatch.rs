@@ -92,11 +92,10 @@ impl Lab {
             Action::Edit(label, scene) => {
                 let before = self.scene().loads.len();
                 let applied = self.desk.session.apply(Edit::Scene(label, scene));
-                let messages = &mut self.desk.panel.messages;
                 match applied {
-                    Ok(_) => messages.remove(label),
-                    Err(error) => messages.insert(label, (&error).into()),
-                };
+                    Ok(_) => _ = self.desk.panel.messages.remove(label),
+                    Err(error) => self.refuse(ctx, label, (&error).into()),
+                }
                 self.apply_session_changes();
                 // The sliders set a new force.
                 if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()

@@ -4,17 +4,18 @@ use egui::{CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo};
 
 use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
-use crate::app::language::{self, fill, spaced, tr};
+use crate::app::language::{self, spaced, tr};
 use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
 use crate::app::modes::explore::motion_plot;
 use crate::app::modes::learn::{self, Shown};
-use crate::app::panel::{self, PANEL_WIDTH, edges};
+use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::readout::Readout;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::viewport::menu;
 use crate::app::viewport::view::STATUS_VIEW;
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
@@ -206,6 +207,7 @@ impl Lab {
 
     /// Shows the plots under the body, if they are open.
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let state = diagnosis::state_text(&self.readout());
         let Desk { session, view, viewport, sections, .. } = &mut self.desk;
         let Some(drawer) = view.drawer else { return };
         let facts = session.facts();
@@ -215,7 +217,7 @@ impl Lab {
                 if sections.request(shown) {
                     ui.ctx().request_repaint_after(POLL);
                 }
-                sections.show(ui, session.scene(), shown, actions);
+                sections.show(ui, session.scene(), (shown, state.as_deref()), actions);
             }
             Drawer::Motion => {
                 let frequency = facts.frequency.get(session.scene()).copied();
@@ -264,6 +266,7 @@ impl Lab {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
             reference: session.facts().reference.get(session.scene()),
             reference_failure: session.facts().reference.failure(session.scene()),
+            from_rest: session.facts().time.get(session.scene()),
             running: session.is_running(),
             chosen: budget.chosen(session.scene()),
         };
@@ -308,7 +311,7 @@ impl Lab {
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect();
         let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
-        actions.extend(chosen.map(|scene| Action::Edit(edges::SECTION, Box::new(scene))));
+        actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
         self.desk.session.keep_converged();
@@ -331,10 +334,8 @@ impl Lab {
         let status = (is_bad && !self.desk.view.bars).then_some(status);
         let label = if self.content().shows_iterate() {
             Some(tr("last iterate, no equilibrium").to_owned())
-        } else if self.desk.viewport.shows_search(&self.desk.session) {
-            Some(fill!("iterate %{n}, no equilibrium", n = readout.shown.iterations()))
         } else {
-            readout.shows_converged.then(|| diagnosis::equilibrium_text(readout.shown.scene(), readout.scene))
+            diagnosis::state_text(&readout)
         };
         let visuals = ui.visuals();
         let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
@@ -367,7 +368,7 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         let kept = viewport.show_values(ui, &painter, &content);
-        actions.extend(kept.map(|scene| Action::Edit(edges::SECTION, Box::new(scene))));
+        actions.extend(kept.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.paint_story(ui, &painter, rect);
         if self.desk.view.bars && self.intro.is_none() {
             let mut free = rect;

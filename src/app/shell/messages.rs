@@ -5,12 +5,14 @@ use std::time::Duration;
 use egui::{Align2, Painter, Panel, Rect, Sense, Ui};
 
 use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
+use crate::app::language::{fill, said, sentence, tr};
 use crate::app::session::Notice;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::task::thread::POLL;
+use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
+use crate::sentence::Sentence;
 
 /// Time for which a message is shown.
 const TOAST: Duration = Duration::from_secs(4);
@@ -19,6 +21,14 @@ impl Lab {
     /// Shows a message for a while.
     pub fn say(&mut self, ctx: &egui::Context, message: String) {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
+    }
+
+    /// Shows the reason for which an edit was refused: beside the field with this label, or over the body.
+    pub(super) fn refuse(&mut self, ctx: &egui::Context, label: &'static str, reason: Sentence) {
+        match label {
+            menu::EDIT => self.say(ctx, sentence(&said(&reason))),
+            _ => _ = self.desk.panel.messages.insert(label, reason),
+        }
     }
 
     /// Prints a message, and shows it until the user closes it. Returns `false` if it has been given
@@ -70,9 +80,7 @@ impl Lab {
         }
         for notice in self.desk.session.take_notices() {
             match notice {
-                Notice::Rejected { label: Some(label), message } => {
-                    self.desk.panel.messages.insert(label, message);
-                }
+                Notice::Rejected { label: Some(label), message } => self.refuse(ctx, label, message),
                 Notice::Rejected { label: None, message } => self.say(ctx, said(&message)),
                 Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
                 Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error = error)),

@@ -51,7 +51,7 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::N, "One iteration, or one time step", || Action::Step),
     key(Key::Comma, "In motion: pause, and go back by a frame", || Action::Back),
     key(Key::Period, "In motion: pause, and go forward by a frame or a time step", || Action::Forward),
-    key(Key::R, "Reset to rest, or to the start of the motion", || Action::Reset),
+    key(Key::R, "Solve again from rest, or return to the start of the motion", || Action::Reset),
     key(Key::H, "In motion: make Reset return to this state; again: to the start", || Action::Mark),
     key(Key::F, "Fit the view", || Action::Fit),
     key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),

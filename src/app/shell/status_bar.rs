@@ -145,7 +145,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
             value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: match load_text(input.scene) {
                 _ if rho.is_none() => Cow::default(),
-                _ if !input.shows_converged => tr("per iteration").into(),
+                _ if simulation.status().is_success() => tr("per iteration").into(),
                 // The equilibrium that is sought is not drawn.
                 Some(load) => fill!("at %{load}", load = load).into(),
                 None => tr("at the full load").into(),
@@ -160,7 +160,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
                 Some(_) => palette.text,
                 None => palette.secondary,
             },
-            ratio: Some(rho.unwrap_or(0.0)),
+            ratio: rho,
         });
     }
     entries

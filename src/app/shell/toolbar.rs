@@ -130,7 +130,13 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
         (false, false) => "One iteration (N)",
     };
     button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
-    button(Icon::Reset, "Reset", "Back to rest, or to the start of the motion (R)", true, Action::Reset);
+    button(
+        Icon::Reset,
+        "Reset",
+        "Solve again from rest, or return to the start of the motion (R)",
+        true,
+        Action::Reset,
+    );
 }
 
 fn history(ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {

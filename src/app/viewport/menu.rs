@@ -53,6 +53,9 @@ pub(crate) fn acts_at_point(mesh: &Mesh, place: &Place) -> bool {
     matches!(place, Place::At(at) if mesh.node(mesh.nearest_node((*at).into())) != Vector2::from(*at))
 }
 
+/// Name of the edits that are made on the body; a message about one has no field beside which it could stand.
+pub(crate) const EDIT: &str = "body";
+
 /// Returns a force, N, that is put at a place by hand.
 pub(crate) fn force_by_hand(mesh: &Mesh, place: Place, force: [f64; 2]) -> Load {
     Load::Force { at_point: acts_at_point(mesh, &place), place, force, pulse: None }

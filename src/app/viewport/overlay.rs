@@ -36,6 +36,8 @@ pub(crate) struct Overlay<'a> {
     pub scene: &'a Scene,
     /// Scene that was asked for and whose state diverges; the last equilibrium is drawn in its place.
     pub wanted: Option<&'a Scene>,
+    /// `true` if the body is not the result for the scene: it is dimmed.
+    pub is_dimmed: bool,
     pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
@@ -82,7 +84,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
-    if overlay.wanted.is_some() {
+    if overlay.is_dimmed {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
@@ -113,7 +115,7 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     let palette = Palette::new(visuals);
-    if overlay.wanted.is_some() {
+    if overlay.is_dimmed {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
@@ -566,7 +568,7 @@ fn legend(
     let field = overlay.options.field;
     let (factor, unit) = field.display_unit();
     let [low, high] = overlay.color_range.map(|end| factor * end);
-    let (power, symbol) = prefix(&[low, high], unit);
+    let (power, symbol) = if overlay.has_values { prefix(&[low, high], unit) } else { (0, "") };
     let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
     let raw = if raw { tr(", raw") } else { "" };
     let range = match (overlay.has_values, overlay.options.fixed_range) {
@@ -575,7 +577,12 @@ fn legend(
         (true, None) => "",
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
-    let map = palette.map(field);
+    let colors = |bar: Rect| {
+        color_bar(painter, bar, palette.map(field));
+        if overlay.is_dimmed {
+            dim(painter, bar, palette);
+        }
+    };
     let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| overlay.has_values).map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
         (((value - low) / (high - low)) as f32, text)
@@ -592,7 +599,8 @@ fn legend(
             painter,
             (rect, names),
             &is_covered,
-            (text(format!("{}{raw}{range}", tr(field.name()))), ends, map),
+            (text(format!("{}{raw}{range}", tr(field.name()))), ends),
+            &colors,
             visuals,
         );
     }
@@ -601,7 +609,7 @@ fn legend(
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
     painter.galley(corner, text(title), palette.text);
     let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), SIZE);
-    color_bar(painter, bar, map);
+    colors(bar);
     for (fraction, text) in ticks {
         let x = bar.left() + bar.width() * fraction;
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
@@ -616,7 +624,8 @@ fn legend_row(
     painter: &Painter,
     (rect, names): (Rect, Rect),
     is_covered: &dyn Fn(Rect) -> bool,
-    (title, [low, high], map): (Arc<Galley>, [Arc<Galley>; 2], ColorMap),
+    (title, [low, high]): (Arc<Galley>, [Arc<Galley>; 2]),
+    colors: &dyn Fn(Rect),
     visuals: &Visuals,
 ) -> Option<Rect> {
     const BAR: Vec2 = vec2(110.0, 10.0);
@@ -646,7 +655,7 @@ fn legend_row(
         put(title, 2.0 * GAP);
     }
     let from = put(low, GAP);
-    color_bar(painter, Rect::from_min_size(pos2(from, middle - 0.5 * BAR.y), BAR), map);
+    colors(Rect::from_min_size(pos2(from, middle - 0.5 * BAR.y), BAR));
     x += BAR.x + GAP;
     painter.galley(pos2(x, middle - 0.5 * high.size().y), high, text);
     Some(frame)

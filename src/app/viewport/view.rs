@@ -702,6 +702,7 @@ impl BodyView {
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
+            is_dimmed: content.shows_iterate() || self.shows_converged && !is_animated || self.is_late(session),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,
@@ -725,9 +726,6 @@ impl BodyView {
             has_values: self.body.has_values(),
             note,
         };
-        if content.shows_iterate() || self.is_late(session) && !self.shows_converged {
-            overlay::dim(painter, self.rect, &Palette::new(visuals));
-        }
         overlay::paint(painter, self.rect, &overlay, visuals);
         if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {
             bases.paint(painter, hot, visuals, Palette::new(visuals).load);

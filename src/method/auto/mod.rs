@@ -31,7 +31,7 @@ pub use report::{AutoReport, Decision};
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Auto,
     id: "auto",
-    about: "The cheapest of the other methods that reaches the required accuracy: no solve if nothing changed, linear \
+    about: "As few computations as the estimated error allows for the required accuracy: no solve if nothing changed, linear \
             theory or the old factorization while accurate enough, load steps as a last resort.",
     start: || Box::<Auto>::default(),
     motion: Some(MotionMethod::Adaptive),

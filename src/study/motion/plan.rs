@@ -125,12 +125,33 @@ impl Samples {
     }
 }
 
-/// Returns the cells of a mesh whose numbers of nodes along and across are `factor` times the scene's; `None` for a
-/// mesh file.
+/// Returns the longer side of a scene's beam relative to the shorter one; `None` for a mesh file.
+pub(super) fn slenderness(scene: &Scene) -> Option<f64> {
+    let beam = scene.beam.as_ref()?;
+    let ratio = beam.length / beam.height;
+    Some(ratio.max(1.0 / ratio))
+}
+
+/// Returns the numbers of nodes in x and y that the shape of a scene's beam requires: `per_height` along for each height, at
+/// most `most`, and `across`; `None` for a mesh file.
+pub(super) fn nodes_of_shape(scene: &Scene, (per_height, most): (f64, f64), across: f64) -> Option<[f64; 2]> {
+    let beam = scene.beam.as_ref()?;
+    let along = (per_height * slenderness(scene)?).min(most);
+    Some(if beam.length >= beam.height { [along, across] } else { [across, along] })
+}
+
+/// Returns the cells of a mesh whose numbers of nodes along and across are `factor` times the scene's, or those that the
+/// shape of the beam requires if these are more: a scene with a coarse mesh, such as one that a study has recommended, is
+/// studied on the same meshes as one with a finer mesh. `None` for a mesh file.
 pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
+    /// Smallest number of nodes across, smallest number along per height, and the number along that always suffices.
+    const ACROSS: f64 = 2.0;
+    const PER_HEIGHT: f64 = 4.0;
+    const ALONG: f64 = 80.0;
     let beam = scene.beam.as_ref()?;
     let pieces = |element: ElementKind| element.entry().degree() as f64;
-    let own = beam.cells.map(|n| f64::from(n) * pieces(beam.element));
+    let least = nodes_of_shape(scene, (PER_HEIGHT, ALONG), ACROSS)?;
+    let own = [0, 1].map(|i| least[i].max(f64::from(beam.cells[i]) * pieces(beam.element)));
     // A scene with a very fine mesh is studied on coarser ones.
     let factor = factor * (MAX_NODES / (own[0] * own[1])).sqrt().min(1.0);
     Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))

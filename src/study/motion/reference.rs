@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::plan::{Plan, Samples, cells};
+use super::plan::{Plan, Samples, cells, nodes_of_shape, slenderness};
 use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
 use crate::mesh::Mesh;
@@ -159,13 +159,6 @@ struct ReferenceMesh {
     cells: Option<[u32; 2]>,
 }
 
-/// Returns the longer side of a scene's beam relative to the shorter one; `None` for a mesh file.
-fn slenderness(scene: &Scene) -> Option<f64> {
-    let beam = scene.beam.as_ref()?;
-    let ratio = beam.length / beam.height;
-    Some(ratio.max(1.0 / ratio))
-}
-
 /// Returns `true` for a beam whose length is several times its height.
 fn is_slender(scene: &Scene) -> bool {
     const SLENDER: f64 = 5.0;
@@ -179,9 +172,8 @@ fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[
     const ACROSS: f64 = 4.0;
     const PER_HEIGHT: f64 = 8.0;
     const ALONG: f64 = 80.0;
-    let (own, beam) = (cells(scene, element, factor)?, scene.beam.as_ref()?);
-    let along = (PER_HEIGHT * slenderness(scene)?).min(ALONG);
-    let least = if beam.length >= beam.height { [along, ACROSS] } else { [ACROSS, along] };
+    let own = cells(scene, element, factor)?;
+    let least = nodes_of_shape(scene, (PER_HEIGHT, ALONG), ACROSS)?;
     let pieces = element.entry().degree() as f64;
     Some([0, 1].map(|i| own[i].max((least[i] / pieces).ceil() as u32)))
 }

@@ -68,6 +68,11 @@ impl StepStudy {
         self.samples.duration()
     }
 
+    /// Returns the error of the reference, percent of the size of its path.
+    pub fn reference_error_percent(&self) -> f64 {
+        self.reference.error_percent
+    }
+
     /// Returns the part of each error that does not depend on the time steps: that of the mesh and of the reference, percent
     /// of the size of the reference's path.
     pub fn mesh_error_percent(&self) -> f64 {

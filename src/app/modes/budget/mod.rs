@@ -237,7 +237,7 @@ struct BudgetView<'a> {
 /// Width of the list, points, of a body at rest and of a motion, whose settings have longer names, and its largest fraction
 /// of the width shared with the plot.
 const LIST_WIDTH: [f32; 2] = [480.0, 600.0];
-const LIST_SHARE: [f32; 2] = [0.5, 0.6];
+const LIST_SHARE: [f32; 2] = [0.58, 0.6];
 /// Smallest width of the list beside the plot, points; in a narrower window the plot is under the list.
 const SIDE_BY_SIDE: [f32; 2] = [560.0, 760.0];
 /// Least height of the list, and height of the plot under it, points.
@@ -415,8 +415,11 @@ fn legend(ui: &mut Ui, moves: bool) {
             ui.label(RichText::new(tr(id)).small().strong().color(color));
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let text =
-            RichText::new(fill!("%{shapes}; line: Pareto front; cross: current setting", shapes = shapes)).small();
+        let text = RichText::new(fill!(
+            "%{shapes}; line: Pareto front; cross: current setting; ring: fastest",
+            shapes = shapes
+        ))
+        .small();
         ui.label(text);
     });
 }

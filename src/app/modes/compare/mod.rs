@@ -13,6 +13,7 @@ use crate::app::diagnosis::{coarse_text, error_color, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
+use crate::app::task::quality::Quality;
 use crate::app::task::thread::{POLL, QUIET_POLL};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
@@ -30,7 +31,7 @@ use crate::scene::{ElementKind, MethodKind, Place, Scene};
 use crate::sentence::Sentence;
 use crate::simulation::Status;
 use crate::state::largest;
-use crate::study::{Reference, Setting};
+use crate::study::{Reference, Setting, SolveFromRest};
 
 mod grid;
 mod motion;
@@ -61,6 +62,8 @@ pub(crate) struct CompareInput<'a> {
     pub reference: Option<&'a Reference>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
+    /// Time of a solve from rest with the panel's settings; `None` until it has been measured.
+    pub from_rest: Option<&'a SolveFromRest>,
     pub running: bool,
     /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
@@ -98,6 +101,11 @@ impl Compare {
     /// Compares these settings, at most four.
     pub(crate) fn set(&mut self, settings: &[PaneSetting]) {
         self.panes.set(settings);
+    }
+
+    /// Returns `true` if a pane has the settings of the scene.
+    pub(crate) fn shows(&self, scene: &Scene) -> bool {
+        self.panes.list.iter().any(|pane| pane.setting.apply(scene) == *scene)
     }
 
     /// Returns the camera of all panes.
@@ -427,10 +435,12 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
             Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
             None => {
                 let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
+                let is_inverted = pane.simulation().is_some_and(|body| Quality::default().is_inside_out(body));
+                let inverted = is_inverted.then(|| format!(", {}", tr("inverted elements"))).unwrap_or_default();
                 // Images without bars omit the time, which differs from run to run.
-                let time = pane.seconds().filter(|_| input.common.view.bars);
+                let time = pane.shown_seconds(input).filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
-                (false, format!("{time}{}{stopped}", count(end.iterations, "iteration")))
+                (false, format!("{time}{}{stopped}{inverted}", count(end.iterations, "iteration")))
             }
         },
         Activity::Works(iterations) => {

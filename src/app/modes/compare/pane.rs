@@ -3,6 +3,7 @@
 use egui::{Color32, Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
+use super::CompareInput;
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
@@ -68,6 +69,13 @@ impl Pane {
         let mut scene = self.scene()?.clone();
         scene.solver.accept_after = self.setting.iterations.unwrap_or(scene.solver.accept_after);
         Some(scene)
+    }
+
+    /// Returns the time of the solve from rest to show, s: that of the status bar for the panel's settings.
+    pub(super) fn shown_seconds(&self, input: &CompareInput<'_>) -> Option<f64> {
+        let is_own = || self.timed_scene().as_ref() == Some(input.common.scene);
+        let of_panel = input.from_rest.filter(|_| is_own()).map(|solve| solve.timings.total().as_secs_f64());
+        of_panel.or_else(|| self.seconds())
     }
 
     /// Requests the time of the solve from rest; returns `true` while it is pending.

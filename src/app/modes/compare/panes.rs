@@ -375,6 +375,7 @@ impl<P: ComparedPane> Panes<P> {
                 apart: false,
                 scene,
                 wanted: wanted.as_ref(),
+                is_dimmed: wanted.is_some(),
                 system,
                 geometry: &display.geometry,
                 options: input.view,

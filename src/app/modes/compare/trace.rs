@@ -370,7 +370,12 @@ impl Trace {
         }
         let load = engineering(three_digits(axis.magnitude), axis.limit.unit);
         let bounds = self.bounds(&all, reach, axes(shown));
-        let quantity = FigureQuantity::new(tr(axis.name), axis.limit.unit);
+        // The other loads stay.
+        let name = match scene.loads.len() {
+            1 => tr(axis.name).to_owned(),
+            _ => fill!("%{kind}, load %{n} alone", kind = tr(axis.name), n = axis.load + 1),
+        };
+        let quantity = FigureQuantity::new(name, axis.limit.unit);
         Figure {
             title: format!("{}: {}", tr(&scene.name), tr("Load curve")),
             quantities: quantities(quantity, scene),

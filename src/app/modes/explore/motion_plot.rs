@@ -22,7 +22,7 @@ const PLOTS: [(MotionPlot, &str, &str); 4] = [
     (MotionPlot::Spectrum, "Spectrum", "Amplitudes of the frequencies in the motion of the first probe"),
 ];
 
-/// Duration that is shown, s.
+/// Duration that is shown, s; more if the displayed moment is earlier.
 const SHOWN: f64 = 12.0;
 /// Largest number of points of a line; longer lines are thinned.
 const MAX_POINTS: usize = 1000;
@@ -74,16 +74,18 @@ pub(crate) fn show(
         motions.iter().map(line).collect()
     };
     let time = (tr("time"), "s");
+    let before_end = playback.shown_time().zip(playback.span()).map(|(shown, [_, last])| last - shown);
+    let duration = before_end.unwrap_or_default().max(SHOWN);
     let drawn = match chosen {
         MotionPlot::Energy => {
-            LinePlot { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, &palette) }
+            LinePlot { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, duration, &palette) }
         }
         MotionPlot::Tip => {
-            let lines = lines(&|history| thinned(history, |s| [s.time, s.displacement[axis]]));
+            let lines = lines(&|history| thinned(history, duration, |s| [s.time, s.displacement[axis]]));
             LinePlot { id: "tip", axes: [time, (&name, "m")], lines }
         }
         MotionPlot::Phase => {
-            let lines = lines(&|history| thinned(history, |s| [s.displacement[axis], s.velocity[axis]]));
+            let lines = lines(&|history| thinned(history, duration, |s| [s.displacement[axis], s.velocity[axis]]));
             LinePlot { id: "phase", axes: [(&name, "m"), (tr("velocity"), "m/s")], lines }
         }
         MotionPlot::Spectrum => {
@@ -148,8 +150,8 @@ pub(crate) fn show(
     });
 }
 
-fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
-    let samples: Vec<&MotionSample> = history.last(SHOWN).collect();
+fn thinned(history: &History, duration: f64, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
+    let samples: Vec<&MotionSample> = history.last(duration).collect();
     let stride = samples.len().div_ceil(MAX_POINTS).max(1);
     let kept = samples.iter().rev().step_by(stride);
     kept.map(|s| PlotPoint::from(point(s))).collect()
@@ -159,7 +161,7 @@ fn thinned(history: &History, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<
 type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
 
 /// Returns the energies of a motion by kind, and their sum; of several motions only the sum of each, for comparison.
-fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<PlotLine> {
+fn energies(motions: &[(IntegratorKind, &History)], duration: f64, palette: &Palette) -> Vec<PlotLine> {
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
     let kinds: [EnergyKind; 6] = [
         ("kinetic", kinetic, |s| s.ledger.kinetic),
@@ -169,7 +171,7 @@ fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<Pl
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
-    let total = |history: &History| thinned(history, |s| [s.time, s.ledger.total()]);
+    let total = |history: &History| thinned(history, duration, |s| [s.time, s.ledger.total()]);
     if let [(_, history)] = motions {
         // Energies that are always zero have no line.
         let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
@@ -177,7 +179,7 @@ fn energies(motions: &[(IntegratorKind, &History)], palette: &Palette) -> Vec<Pl
             name: tr(name).to_owned(),
             color,
             width: 1.5,
-            points: thinned(history, |s| [s.time, value(s)]),
+            points: thinned(history, duration, |s| [s.time, value(s)]),
         });
         let sum = PlotLine { name: tr("total").to_owned(), color: palette.text, width: 2.5, points: total(history) };
         return parts.chain([sum]).collect();

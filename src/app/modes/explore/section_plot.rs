@@ -127,9 +127,15 @@ impl SectionPlot {
         }
     }
 
-    /// Shows the plots of an equilibrium of a scene; a scene without a section, or whose first result is pending, gets
+    /// Shows the plots of an equilibrium of a scene, with a description if it is not the result for the scene; a scene without a section, or whose first result is pending, gets
     /// the reason.
-    pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, simulation: &Simulation, actions: &mut Vec<Action>) {
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        (simulation, state): (&Simulation, Option<&str>),
+        actions: &mut Vec<Action>,
+    ) {
         let whole = ui.available_rect_before_wrap();
         let count = self.cuts_of(simulation).map_or(self.count, |cuts| cuts.own.len());
         if std::mem::replace(&mut self.count, count) < count {
@@ -155,6 +161,9 @@ impl SectionPlot {
             }
         });
         ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
+            if let Some(state) = state {
+                ui.weak(state);
+            }
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
                 for &figure in &offered {

@@ -167,7 +167,9 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         let state = if converged { "" } else { tr("not converged") }.to_owned();
         let may_leave = !converged || point.method == MethodKind::Linear;
         let at = FigurePoint { state, is_present: true, ..figure::point(full, point.tip) };
-        all.push(series(tr(point.method.id()).to_owned(), Ink::Method(point.method), mark, may_leave, vec![at]));
+        // Linear theory of the elements differs from that of beams.
+        let name = format!("{} {}", scene.element().id(), tr(point.method.id()));
+        all.push(series(name, Ink::Method(point.method), mark, may_leave, vec![at]));
     }
     let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
     let converged = curve.methods.iter().filter(|p| p.status == Status::Converged);

@@ -399,8 +399,11 @@ impl<'a> StripChart<'a> {
         for (x, factor) in self.across.values().into_iter().map(|(place, factor)| (place as f32, factor)) {
             let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
             painter.line_segment(ends, Stroke::new(1.0, palette.line));
-            let at = pos2(x, strips.bottom() + 2.0);
-            self.text(ui, at, Align2::CENTER_TOP, &load_text(self.axis, factor), palette.text);
+            let text = painter.layout_no_wrap(load_text(self.axis, factor), FontId::proportional(SMALL), palette.text);
+            // In a narrow window there is no room beyond the end of the strips.
+            let most = ui.clip_rect().right() - text.size().x - 2.0;
+            let left = (x - 0.5 * text.size().x).min(most);
+            painter.galley(pos2(left, strips.bottom() + 2.0), text, palette.text);
         }
         let at = pos2(strips.center().x, strips.bottom() + LINE);
         let name = said(&limits::axis_text(self.limits, self.axis));
