@@ -436,7 +436,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
             None => {
                 let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
                 let is_inverted = pane.simulation().is_some_and(|body| Quality::default().is_inside_out(body));
-                let inverted = is_inverted.then(|| format!(", {}", tr("inverted elements"))).unwrap_or_default();
+                let inverted = if is_inverted { format!(", {}", tr("inverted elements")) } else { String::new() };
                 // Images without bars omit the time, which differs from run to run.
                 let time = pane.shown_seconds(input).filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
