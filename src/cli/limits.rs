@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::args::LimitsArgs;
 use super::progress::Watch;
 use super::{CliError, json, named, text, validated};
-use crate::format::{engineering, three_digits};
+use crate::format::{engineering, percent, three_digits};
 use crate::plot::{self, AxisScale};
 use crate::scene::{self, Scene};
 use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
@@ -49,7 +49,9 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
         }
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
-            let _ = writeln!(text, "the reference solution is known at {known} of {all} loads");
+            let own = limits.large_reference_error_percent().map(percent);
+            let own = own.map_or_else(String::new, |own| format!(", its own error is at most {own}"));
+            let _ = writeln!(text, "the reference solution is known at {known} of {all} loads{own}");
             if let Some(critical) = limits.critical.map(load) {
                 let _ = writeln!(text, "critical load {critical}: the load path from rest buckles or jumps there");
             }

@@ -206,11 +206,13 @@ impl Strip {
     }
 
     /// Returns `true` if the errors beyond [`Self::within`] may be at most `percent` too: without the error of the reference
-    /// solution they are.
+    /// solution, which is large, they are.
     fn is_undecided(&self, percent: f64) -> bool {
+        /// Ratio of a large error of the reference to the limit.
+        const LARGE: f64 = 0.5;
         let next = self.points.iter().find(|point| point.error_percent.is_some_and(|error| error > percent));
-        let own = |point: &LimitPoint| Some(point.error_percent? - point.reference_error_percent?);
-        next.and_then(own).is_some_and(|error| error <= percent)
+        let errors = |point: &LimitPoint| Some((point.error_percent?, point.reference_error_percent?));
+        next.and_then(errors).is_some_and(|(error, own)| error - own <= percent && own > LARGE * percent)
     }
 
     /// Returns the largest part of the load up to which the error is known at every load, and the error; `None` if it is
@@ -526,6 +528,14 @@ pub struct MethodLimits {
 }
 
 impl MethodLimits {
+    /// Returns the largest error of the reference solution, percent, if it decides about a rating of [`GOOD`].
+    #[must_use]
+    pub fn large_reference_error_percent(&self) -> Option<f64> {
+        let errors =
+            self.strips.iter().flat_map(|strip| &strip.points).filter_map(|point| point.reference_error_percent);
+        errors.max_by(f64::total_cmp).filter(|error| *error > 0.5 * GOOD)
+    }
+
     /// Returns the error of a motion's mesh in words: however short its time steps are, no integrator has a smaller error.
     #[must_use]
     pub fn mesh_error_text(&self) -> Option<Sentence> {

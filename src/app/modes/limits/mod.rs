@@ -34,6 +34,8 @@ const ENDS: f32 = 190.0;
 const WITH_ENDS: [f32; 2] = [760.0, 460.0];
 /// Width from which the choice of the scale and the key of the colours are in one row, points.
 const ONE_ROW: f32 = 980.0;
+/// Width from which the short key has room there.
+const SHORT_KEY: f32 = 612.0;
 /// Height of a line of small text, points.
 const LINE: f32 = 18.0;
 /// Height of the line that shows the progress, points.
@@ -95,13 +97,13 @@ impl LimitMap {
         let progress = facts.progress().map(|done| done as f32);
         let moves = scene.analysis == Analysis::Dynamic;
         let has_one_row = ui.available_width() >= ONE_ROW;
-        let mut has_row = false;
+        // In a low window the strips take the room of the whole key.
+        let strips = limits.map(|limits| 3.0 * LINE + ROW[0] * limits.strips.len() as f32);
+        let room = ui.available_height() - ui.spacing().interact_size.y;
+        let has_row = ui.available_width() < SHORT_KEY && strips.is_some_and(|strips| room >= strips + 2.0 * LINE);
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             self.views(ui, scene, view);
-            // In a low window the strips take the room of the whole key.
-            let strips = limits.map(|limits| 3.0 * LINE + ROW[0] * limits.strips.len() as f32);
-            has_row = strips.is_some_and(|strips| ui.available_rect_before_wrap().height() >= strips + 2.0 * LINE);
             if limits.is_some() && !shows_curve && (has_one_row || !has_row) {
                 key(ui, moves, !has_one_row);
             }
