@@ -1049,6 +1049,24 @@ mod tests {
         }
     }
 
+    /// An error that only the reference's own error puts above a limit is not said to be above it.
+    #[test]
+    fn words_tell_a_hidden_error_from_a_large_one() {
+        let scene = Scene::beam(10.0, 1.0);
+        let axis = LoadAxis::of(&scene);
+        let words = |own: f64, errors: [f64; 2]| {
+            let with_own = |point| LimitPoint { reference_error_percent: Some(own), ..point };
+            let points = vec![point(0.1, Some(errors[0]), 1e-3), point(1.0, Some(errors[1]), 1e-3)];
+            let points = points.into_iter().map(with_own).collect();
+            let strip = Strip { points, done: 1.0, ..Strip::new(&scene) };
+            strip.words(&axis, [0.1, 1.0])[0].to_string()
+        };
+        assert_eq!(words(1.6, [1.8, 1.9]), "not known");
+        assert!(words(0.1, [1.8, 1.9]).starts_with("not at "));
+        assert!(words(0.8, [0.9, 1.5]).starts_with("at least "));
+        assert!(!words(0.1, [0.9, 1.5]).starts_with("at least "));
+    }
+
     /// The colours of a strip end where its words say.
     #[test]
     fn pieces_end_where_the_words_say() {

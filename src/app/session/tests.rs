@@ -186,6 +186,23 @@ fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
     assert_eq!(session.simulation().state().time(), 0.0);
 }
 
+/// A motion that has exploded starts again with other settings: its body would still be many times its size.
+#[test]
+fn an_exploded_motion_starts_again_with_other_settings() {
+    let scene = Scene::beam(2.0, 0.5).clamp("left").probe("tip", "right").gravity([0.0, -9.81]);
+    let mut session = session(scene.moving(IntegratorKind::SymplecticEuler, 0.05));
+    while !session.has_ended() {
+        session.iterate(1);
+    }
+    assert!(matches!(session.simulation().status(), Status::Stopped(_)), "{:?}", session.simulation().status());
+    let mut scene = session.scene().clone();
+    scene.dynamics.integrator = IntegratorKind::TrBdf2;
+    session.apply(Edit::Scene("Integrator", Box::new(scene))).unwrap();
+    assert_eq!((session.simulation().state().time(), tip(&session)), (0.0, 0.0));
+    session.iterate(1);
+    assert!(session.simulation().state().time() > 0.0 && tip(&session).abs() < 0.1, "{}", tip(&session));
+}
+
 /// After a grab the body is in the equilibrium before, with all its numbers: no search has taken their place.
 #[test]
 fn a_released_body_has_the_numbers_of_its_equilibrium() {

@@ -250,3 +250,26 @@ fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'st
         plan.solves
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A scene with a mesh that a study has recommended is studied on the same meshes as the scene it came from.
+    #[test]
+    fn coarse_scenes_are_studied_on_the_meshes_of_finer_ones() {
+        let beam = |element, along| Scene::beam(1.0, 0.1).with_element(element).with_cells(along, 1);
+        let fine = beam(ElementKind::T6, 20);
+        for coarse in
+            [beam(ElementKind::Q4, 20), beam(ElementKind::Q4, 10), beam(ElementKind::T3, 40), beam(ElementKind::T6, 10)]
+        {
+            for element in [ElementKind::T3, ElementKind::T6, ElementKind::Q4] {
+                for factor in [0.5, 1.0, 1.5] {
+                    assert_eq!(cells(&coarse, element, factor), cells(&fine, element, factor), "{element:?} {factor}");
+                }
+            }
+        }
+        let finer = beam(ElementKind::T6, 40);
+        assert_eq!(cells(&finer, ElementKind::T6, 1.0), Some([40, 1]), "a finer scene keeps its own");
+    }
+}
