@@ -1363,9 +1363,9 @@ fn the_card_of_a_point_is_of_one_deformation() {
             );
             assert_eq!(card["von Mises"], stress, "{id} {kind}");
             assert!((state.stretch - s).amax() < 6e-5, "{id} {kind}: {card:?}");
-            harness.get_by_role_and_label(Role::CheckBox, "Raw").scroll_to_me();
+            harness.get_by_role_and_label(Role::CheckBox, "Each element alone").scroll_to_me();
             harness.run_steps(4);
-            harness.get_by_role_and_label(Role::CheckBox, "Raw").click();
+            harness.get_by_role_and_label(Role::CheckBox, "Each element alone").click();
             harness.run_steps(4);
         }
     }

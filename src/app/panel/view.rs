@@ -84,7 +84,7 @@ pub(super) fn options(
     magnification(ui, state, view);
     ui.horizontal_wrapped(|ui| {
         let tip = "Each element's own values, not smoothed at the nodes: they jump where the mesh is coarse";
-        ui.checkbox(&mut view.raw, tr("Raw")).on_hover_text(tr(tip));
+        ui.checkbox(&mut view.raw, tr("Each element alone")).on_hover_text(tr(tip));
         ui.checkbox(&mut view.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
         ui.checkbox(&mut view.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
         if input.scene.analysis == Analysis::Dynamic {

@@ -570,7 +570,7 @@ fn legend(
     let [low, high] = overlay.color_range.map(|end| factor * end);
     let (power, symbol) = if overlay.has_values { prefix(&[low, high], unit) } else { (0, "") };
     let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
-    let raw = if raw { tr(", raw") } else { "" };
+    let raw = if raw { tr(", each element alone") } else { "" };
     let range = match (overlay.has_values, overlay.options.fixed_range) {
         (false, _) => tr(", not known"),
         (true, Some(_)) => tr(", fixed range"),
