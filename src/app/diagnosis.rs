@@ -320,6 +320,11 @@ pub(crate) fn load_text(scene: &Scene) -> Option<String> {
 const EXPLICIT: &str = "An explicit integrator explodes if its time step is too long; the pull of a grab and large strains \
                         make the longest possible step shorter.";
 
+/// Returns `true` if it is known that no error of the result can be measured.
+pub(crate) fn is_without_reference(input: &Readout<'_>) -> bool {
+    input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none())
+}
+
 /// Explains the status, one sentence per entry.
 pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
@@ -328,8 +333,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         Some(_) => !matches!(simulation.status(), Status::Stopped(_)),
         None => simulation.status().is_success(),
     };
-    let has_none = input.reference_failure.is_some() || input.reference.is_some_and(|known| known.first().is_none());
-    if has_none && simulation.motion().is_none() {
+    if is_without_reference(input) && simulation.motion().is_none() {
         let reason = error_tip(input.reference, input.reference_failure);
         lines.push(fill!("The error is not known. %{reason}", reason = reason));
     }

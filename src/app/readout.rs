@@ -59,8 +59,6 @@ pub(crate) struct Readout<'a> {
     pub shows_converged: bool,
     /// `true` if the drawn body is an iterate of a search for an equilibrium.
     pub shows_iterate: bool,
-    /// `true` if a body with the settings of the scene is drawn.
-    pub is_drawn: bool,
     /// Measures of the reliability of the result.
     pub quality: &'a Quality,
     /// Language of the user interface.

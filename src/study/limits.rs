@@ -41,6 +41,8 @@ const NEAR_CRITICAL: [f64; 3] = [0.9, 0.97, 1.03];
 pub const GOOD: f64 = 1.0;
 /// Error, percent, up to which a result counts as usable.
 pub const USABLE: f64 = 5.0;
+/// Ratio of the reference's own error to a limit from which on it may hide if an error is within the limit.
+const LARGE_OWN: f64 = 0.5;
 /// Bisections of the load at which a method stops to converge: to 1 % of the load.
 const BISECTIONS: u32 = 6;
 /// Largest number of bisections of the load at which the error of a method exceeds a limit.
@@ -208,11 +210,9 @@ impl Strip {
     /// Returns `true` if the errors beyond [`Self::within`] may be at most `percent` too: without the error of the reference
     /// solution, which is large, they are.
     fn is_undecided(&self, percent: f64) -> bool {
-        /// Ratio of a large error of the reference to the limit.
-        const LARGE: f64 = 0.5;
         let next = self.points.iter().find(|point| point.error_percent.is_some_and(|error| error > percent));
         let errors = |point: &LimitPoint| Some((point.error_percent?, point.reference_error_percent?));
-        next.and_then(errors).is_some_and(|(error, own)| error - own <= percent && own > LARGE * percent)
+        next.and_then(errors).is_some_and(|(error, own)| error - own <= percent && own > LARGE_OWN * percent)
     }
 
     /// Returns the largest part of the load up to which the error is known at every load, and the error; `None` if it is
@@ -421,6 +421,10 @@ impl Strip {
         let holds = |percent: &f64| self.within(*percent) != Some(0.0);
         let find = |is_told: &dyn Fn(&f64) -> bool| [GOOD, USABLE].into_iter().find(is_told);
         let percent = find(&is_far).or_else(|| find(&holds));
+        let to_at_least = |percent: f64, factor: f64| {
+            let load = load_text(axis, factor);
+            sentence!("%{percent} % to at least %{load}", percent = number(percent), load)
+        };
         let from = || {
             let from = load_text(axis, self.usable_from(range)?);
             Some(sentence!("%{percent} % from %{load}", percent = number(USABLE), load = from))
@@ -430,11 +434,7 @@ impl Strip {
             return from().or_else(|| Some(sentence!("reference \u{b1} %{own}", own = own()?)));
         }
         match (percent.and_then(|percent| Some((percent, self.within(percent)?))), self.ends_at()) {
-            (Some((percent, factor)), _) if self.is_undecided(percent) => Some(sentence!(
-                "%{percent} % to at least %{load}",
-                percent = number(percent),
-                load = load_text(axis, factor)
-            )),
+            (Some((percent, factor)), _) if self.is_undecided(percent) => Some(to_at_least(percent, factor)),
             (Some((percent, factor)), _) => {
                 let first =
                     sentence!("%{percent} % to %{load}", percent = number(percent), load = load_text(axis, factor));
@@ -451,11 +451,9 @@ impl Strip {
             }
             (None, _) if percent.is_none() && self.usable_from(range).is_some() => from(),
             // Beyond, the error is not known.
-            (None, _) if let (Some(percent), Some((factor, _))) = (percent, self.ends_early(range)) => Some(sentence!(
-                "%{percent} % to at least %{load}",
-                percent = number(percent),
-                load = load_text(axis, factor)
-            )),
+            (None, _) if let (Some(percent), Some((factor, _))) = (percent, self.ends_early(range)) => {
+                Some(to_at_least(percent, factor))
+            }
             (None, end) if percent.is_none() && (end.is_none() || self.converges_again_from(range).is_some()) => {
                 Some(sentence!("not within %{percent} %", percent = number(USABLE)))
             }
@@ -533,7 +531,7 @@ impl MethodLimits {
     pub fn large_reference_error_percent(&self) -> Option<f64> {
         let errors =
             self.strips.iter().flat_map(|strip| &strip.points).filter_map(|point| point.reference_error_percent);
-        errors.max_by(f64::total_cmp).filter(|error| *error > 0.5 * GOOD)
+        errors.max_by(f64::total_cmp).filter(|error| *error > LARGE_OWN * GOOD)
     }
 
     /// Returns the error of a motion's mesh in words: however short its time steps are, no integrator has a smaller error.

@@ -83,11 +83,11 @@ impl PanelState {
     }
 }
 
-/// Shows the content of the panel.
+/// Shows the content of the panel; the details of the result if its `errors` are given.
 pub(super) fn show(
     ui: &mut Ui,
     input: &Readout<'_>,
-    errors: &Errors,
+    errors: Option<&Errors>,
     state: &mut PanelState,
     view: &mut ViewOptions,
     actions: &mut Vec<Action>,
@@ -134,7 +134,7 @@ pub(super) fn show(
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
         fold(ui, "File", tr("open, save, picture, movie"), false, |ui| view::keep(ui, actions));
-        if input.is_drawn {
+        if let Some(errors) = errors {
             fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
         }
     });

@@ -7,6 +7,7 @@ use web_time::{Duration, Instant};
 
 use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::BackgroundSolve;
+use crate::app::task::quality::Quality;
 use crate::app::task::solve::{Bodies, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest, SolveStart};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
@@ -48,6 +49,8 @@ pub struct PaneEnd {
     pub iterations: u32,
     /// Results at the probes.
     pub probes: Vec<ProbeResult>,
+    /// `true` if an element is turned inside out.
+    pub is_inside_out: bool,
 }
 
 #[derive(Debug, Default)]
@@ -358,6 +361,7 @@ impl ComparedSolve {
             status: simulation.status().clone(),
             iterations: simulation.iterations(),
             probes: probe_results(simulation.problem(), simulation.state()),
+            is_inside_out: Quality::default().is_inside_out(simulation),
         });
     }
 

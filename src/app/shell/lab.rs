@@ -337,7 +337,6 @@ impl Lab {
             value_range: viewport.body().value_range(),
             shows_converged: viewport.shows_converged(),
             shows_iterate: viewport.shows_search(session),
-            is_drawn: view.mode != Mode::Compare || session.is_motion() || compare.shows(session.scene()),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),

@@ -201,15 +201,18 @@ impl Lab {
         // The panel's state is taken out of the desk, because the readout borrows the desk.
         let mut state = std::mem::take(&mut self.desk.panel);
         let mut view = self.desk.view.clone();
-        panel::show(ui, &self.readout(), errors, &mut state, &mut view, actions);
+        let Desk { session, compare, .. } = &self.desk;
+        // The body that the panel describes may be in no pane.
+        let is_drawn = view.mode != Mode::Compare || session.is_motion() || compare.shows(session.scene());
+        panel::show(ui, &self.readout(), is_drawn.then_some(errors), &mut state, &mut view, actions);
         (self.desk.panel, self.desk.view) = (state, view);
     }
 
     /// Shows the plots under the body, if they are open.
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Some(drawer) = self.desk.view.drawer else { return };
         let state = diagnosis::state_text(&self.readout());
         let Desk { session, view, viewport, sections, .. } = &mut self.desk;
-        let Some(drawer) = view.drawer else { return };
         let facts = session.facts();
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => {

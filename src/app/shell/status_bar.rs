@@ -1,7 +1,8 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
 use crate::app::diagnosis::{
-    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, load_text, rho, rho_number,
+    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, is_without_reference, load_text,
+    rho, rho_number,
 };
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
@@ -89,8 +90,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
     let doubt = doubt(input, errors, is_raw);
-    let is_without_reference =
-        input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none());
+    let is_without_reference = is_without_reference(input);
     // The error from rest is in the colour, and is no doubt if it is small.
     let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }, is_raw).is_some();
     let color = match error_color(palette, errors.worst()) {

@@ -13,7 +13,6 @@ use crate::app::diagnosis::{coarse_text, error_color, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
-use crate::app::task::quality::Quality;
 use crate::app::task::thread::{POLL, QUIET_POLL};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
@@ -435,8 +434,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
             Some(reason) => (true, fill!("Does not converge: %{reason}.", reason = said(&reason))),
             None => {
                 let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
-                let is_inverted = pane.simulation().is_some_and(|body| Quality::default().is_inside_out(body));
-                let inverted = if is_inverted { format!(", {}", tr("inverted elements")) } else { String::new() };
+                let inverted = if end.is_inside_out { format!(", {}", tr("inverted elements")) } else { String::new() };
                 // Images without bars omit the time, which differs from run to run.
                 let time = pane.shown_seconds(input).filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));

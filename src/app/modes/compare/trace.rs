@@ -320,25 +320,26 @@ impl Trace {
             may_leave,
             points,
         };
-        let exact_series = [
-            series(tr("exact beam"), Ink::BeamTheory, Mark::Line, false, exact(self.line())),
-            series(tr("reference"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
-        ];
-        let mut all: Vec<FigureSeries> = exact_series.into_iter().filter(|s| !s.points.is_empty()).collect();
-        let mut rows = Vec::new();
+        let (mut all, mut rows) = (Vec::new(), Vec::new());
         let references = [
-            (tr("exact beam"), Ink::BeamTheory, Mark::Line, self.exact_beam_at(axis.magnitude)),
-            (tr("reference"), Ink::Exact, Mark::Plus, self.reference_at(axis.magnitude)),
+            (
+                series(tr("exact beam"), Ink::BeamTheory, Mark::Line, false, exact(self.line())),
+                self.exact_beam_at(axis.magnitude),
+            ),
+            (
+                series(tr("reference"), Ink::Exact, Mark::Plus, false, exact(&self.references)),
+                self.reference_at(axis.magnitude),
+            ),
         ];
         let answers = panes.iter().filter_map(|pane| pane.solve.answer()).filter(|(_, good)| *good);
-        let known = references.iter().filter_map(|(.., u)| *u);
+        let known = references.iter().filter_map(|(_, u)| *u);
         let column: Vec<Vector2<f64>> = known.chain(answers.map(|(probe, _)| probe.u)).collect();
         let pair = |u| pair(u, &column);
-        for (name, ink, mark, u) in references {
-            if all.iter().any(|series| series.ink == ink) {
-                let value = u.map(pair).unwrap_or_default();
-                rows.push(FigureRow { name: name.to_owned(), ink, mark, value, error: String::new(), is_bad: false });
-            }
+        for (curve, u) in references.into_iter().filter(|(curve, _)| !curve.points.is_empty()) {
+            let (name, value) = (curve.name.clone(), u.map(pair).unwrap_or_default());
+            let FigureSeries { ink, mark, .. } = curve;
+            rows.push(FigureRow { name, ink, mark, value, error: String::new(), is_bad: false });
+            all.push(curve);
         }
         let stretches = all.is_empty() && panes.iter().all(|p| p.setting.of(scene).method == Some(MethodKind::Linear));
         for pane in panes {
