@@ -97,6 +97,18 @@ fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
     if unit == "°" { format!("{number}°") } else { format!("{number} {symbol}{unit}").trim_end().to_owned() }
 }
 
+/// Formats a tick of an axis with the prefix of all its ticks, which is that of the axis's larger end.
+///
+/// ```
+/// use warpbeam::format::tick;
+/// assert_eq!([0.0, 500.0].map(|value| tick(value, [0.0, 1200.0], "N")), ["0 kN", "0.5 kN"]);
+/// ```
+#[must_use]
+pub fn tick(value: f64, ends: [f64; 2], unit: &str) -> String {
+    let (power, symbol) = prefix(&ends, unit);
+    with_unit(&in_power(value, power), symbol, unit)
+}
+
 /// Formats an editable value in engineering units: with all of its digits if six are enough, as for typed values, else
 /// with four.
 ///

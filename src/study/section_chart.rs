@@ -35,10 +35,12 @@ pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
     let size = simulation.system().size();
     let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
     // The forces of a part without loads and supports are rounding errors of the whole body's.
-    let reactions: Vec<f64> = simulation.support_reactions().iter().map(|reaction| reaction.force.norm()).collect();
+    let mut whole: Vec<f64> = simulation.support_reactions().iter().map(|reaction| reaction.force.norm()).collect();
+    // The residual is relative to the forces of single elements, which cancel in a section of a stiff beam.
+    whole.extend(simulation.forces().magnitude().iter().map(|force| force.norm()));
     let forces = || {
         let own = sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
-        own.chain(reactions.iter().copied())
+        own.chain(whole.iter().copied())
     };
     let force = Context::of_inexact(forces(), inexact);
     [force, force, Context::of_inexact(forces().map(|force| force * size), inexact)]

@@ -236,6 +236,7 @@ const NOT_SHOWN: &[&str] = &[
     "Noto Sans SC",
     "probe values",
     "probe matrices",
+    "at right",
     "status line",
     "σ_x, σ_y",
     "τ_xy",

@@ -115,6 +115,23 @@ fn leaving_learn_restores_the_previous_scene() {
     assert_eq!(harness.state().scene(), &scene);
 }
 
+/// Tab goes through the controls of a row in the order of reading, also where they are at its right end.
+#[test]
+fn tab_goes_from_left_to_right() {
+    let mut harness = at_card(2);
+    let mut visited = Vec::new();
+    for _ in 0..60 {
+        harness.key_press(egui::Key::Tab);
+        harness.step();
+        let focused = harness.query_by(|node| node.is_focused());
+        visited.extend(focused.and_then(|node| node.accesskit_node().label()));
+    }
+    for names in [["Panel", "Language", "Theme", "Help"], ["\u{2039} Back", "Next \u{203a}", "Story", "Leave"]] {
+        let places = names.map(|name| visited.iter().position(|seen| seen == name));
+        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{names:?} at {places:?} of {visited:?}");
+    }
+}
+
 /// In a window of any size, every control of a card is inside and can be pressed.
 #[test]
 fn every_card_can_be_read_and_left_in_a_small_window() {

@@ -834,6 +834,32 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!(lab.scene().solver.accept_after, accepts);
     assert!(lab.simulation().iterations() <= best.iterations, "{best}: {} iterations", lab.simulation().iterations());
     assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
+
+    // The list scrolls to a setting that is applied elsewhere.
+    type_into(&mut harness, "Error ≤", "1000");
+    let wheel = |harness: &mut Harness<'_, Lab>, delta: f32| {
+        harness.hover_at(harness.get_by_label_contains(" settings meet both").rect().center() + egui::vec2(0.0, 40.0));
+        let delta = egui::vec2(0.0, delta);
+        let (unit, phase, source) =
+            (egui::MouseWheelUnit::Point, egui::TouchPhase::Move, egui::MouseWheelSource::Wheel);
+        harness.event(egui::Event::MouseWheel { unit, delta, phase, source, modifiers: Modifiers::NONE });
+        harness.run();
+    };
+    let listed = |harness: &Harness<'_, Lab>| -> Vec<String> {
+        let rows = harness.query_all_by_role(Role::Button).filter_map(|row| row.accesskit_node().label());
+        rows.filter(|label| label.contains('≤')).collect()
+    };
+    wheel(&mut harness, -1e5);
+    let last = listed(&harness).pop().unwrap();
+    harness.get_by_label(&last).click();
+    harness.run();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run();
+    wheel(&mut harness, 1e5);
+    assert!(!listed(&harness).contains(&last), "the list is shorter than its area");
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run();
+    assert!(listed(&harness).contains(&last), "{last} was applied, and {:?} are shown", listed(&harness));
     // Another scene starts another study.
     pick(&mut harness, "Scene", "bridge");
     assert!(harness.state().study().0.is_none());

@@ -166,6 +166,46 @@ fn every_field_colours_the_body() {
     assert!(low == -high && high > 0.0, "a signed field has a symmetric range");
 }
 
+/// In a window of any size, the card of a point covers less than a third of the body, unless all values are asked for in
+/// a small one.
+#[test]
+fn a_card_leaves_the_body_in_view() {
+    let id = egui::Id::unique("probe");
+    for size in [[420.0, 700.0], [480.0, 700.0], [640.0, 480.0], [900.0, 600.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+        for name in ["article", "cantilever", "gravity"] {
+            let mut lab = lab_of(name, scene(name));
+            lab.solve();
+            let mut harness = window(size, lab);
+            harness.run();
+            let (low, high) = harness.state().simulation().mesh().bounds();
+            let on = |part: [f64; 2]| low + Vector2::new(part[0], part[1]).component_mul(&(high - low));
+            let grid = (0..=40).flat_map(|i| [0.1, 0.5, 0.9].map(|y| on([0.01 + 0.98 * f64::from(i) / 40.0, y])));
+            let grid: Vec<_> = grid.collect();
+            for part in [[0.03, 0.5], [0.35, 0.2], [0.6, 0.7], [0.97, 0.5]] {
+                let pos = on_body(harness.state(), on(part));
+                click(&mut harness, pos);
+                harness.run();
+                let card = harness.ctx.memory(|memory| memory.area_rect(id)).unwrap();
+                let hidden = grid.iter().filter(|at| card.contains(on_body(harness.state(), **at))).count();
+                assert!(3 * hidden < grid.len(), "{size:?}, {name}, {part:?}: {hidden} of {}, {card:?}", grid.len());
+                assert!(harness.query_by_label_contains("Point (").is_some(), "{size:?}, {name}, {part:?}");
+                click(&mut harness, pos);
+                harness.run();
+                assert!(harness.query_by_label_contains("Point (").is_none(), "{size:?}, {name}, {part:?}");
+            }
+            let pos = on_body(harness.state(), on([0.35, 0.2]));
+            click(&mut harness, pos);
+            harness.run();
+            if let Some(all) = harness.query_by_label("All values") {
+                assert!(harness.query_by_label("σ_x, σ_y").is_none() && size[0] < 1280.0, "{size:?}, {name}");
+                all.click();
+                harness.run();
+            }
+            assert!(harness.query_by_label("σ_x, σ_y").is_some(), "{size:?}, {name}");
+        }
+    }
+}
+
 /// The values of a card are copied as text; a kept point is a probe of the scene, has a row in every pane of Compare, and
 /// undo takes it back.
 #[test]

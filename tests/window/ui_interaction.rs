@@ -1224,18 +1224,18 @@ fn loads_and_supports_are_added_and_removed() {
         harness.get_by_role_and_label(Role::Button, place).click();
         harness.run();
     };
-    pick_place(&mut harness, ("Held at", 0), "lower left corner");
+    pick_place(&mut harness, ("Held at", 0), "lower left");
     assert_eq!(*harness.state().scene(), before, "a pin alone holds no body: refused");
     press(&mut harness, "Support");
     assert_eq!(harness.state().scene().supports.len(), 2);
-    pick_place(&mut harness, ("Held at", 1), "lower right corner");
-    pick_place(&mut harness, ("Held at", 0), "lower left corner");
+    pick_place(&mut harness, ("Held at", 1), "lower right");
+    pick_place(&mut harness, ("Held at", 0), "lower left");
     let scene = harness.state().scene();
     let beam = scene.beam.as_ref().unwrap();
     let [pin, roller] = [&scene.supports[0], &scene.supports[1]];
     assert_eq!((&pin.place, pin.fix.len()), (&[0.0, -0.5 * beam.height].into(), 2));
     assert_eq!((&roller.place, roller.fix.len()), (&[beam.length, -0.5 * beam.height].into(), 1));
-    pick_place(&mut harness, ("Force on", 0), "middle of the top");
+    pick_place(&mut harness, ("Force on", 0), "top, middle");
     press(&mut harness, "Force");
     assert_eq!(harness.state().scene().loads.len(), 2);
     // The sliders change the selected force.

@@ -42,14 +42,14 @@ pub(super) fn edge_for_moment(scene: &Scene, system: &System) -> Option<String> 
 
 /// Common points of loads and supports on a beam: the name of each, and its coordinates along and across the beam.
 const POINTS: [(&str, [f64; 2]); 8] = [
-    ("lower left corner", [0.0, -0.5]),
-    ("lower right corner", [1.0, -0.5]),
-    ("upper left corner", [0.0, 0.5]),
-    ("upper right corner", [1.0, 0.5]),
-    ("middle of the bottom", [0.5, -0.5]),
-    ("middle of the top", [0.5, 0.5]),
-    ("middle of the left end", [0.0, 0.0]),
-    ("middle of the right end", [1.0, 0.0]),
+    ("lower left", [0.0, -0.5]),
+    ("lower right", [1.0, -0.5]),
+    ("upper left", [0.0, 0.5]),
+    ("upper right", [1.0, 0.5]),
+    ("bottom, middle", [0.5, -0.5]),
+    ("top, middle", [0.5, 0.5]),
+    ("left, middle", [0.0, 0.0]),
+    ("right, middle", [1.0, 0.0]),
 ];
 
 /// Returns the named points of the beam, if the scene has one.

@@ -1,8 +1,8 @@
 //! Toolbar along the top: scene, run, modes, theme, help.
 
-use crate::app::widgets::buttons::{Icon, icon_button};
+use crate::app::widgets::buttons::{Icon, at_right, icon_button};
 use crate::app::widgets::text::with_keys;
-use egui::{Align, Button, Layout, Ui};
+use egui::{Button, Ui};
 
 use crate::app::action::Action;
 use crate::app::language::{Language, tr};
@@ -87,19 +87,19 @@ fn modes(ui: &mut Ui, view: &ViewOptions, actions: &mut Vec<Action>) {
 }
 
 fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &mut Vec<Action>) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    at_right(ui, "tools", |ui| {
         let mut button = |icon: Icon, name: &str, chosen: bool, tip: &str, action: Action| {
             let response = ui.add(|ui: &mut Ui| icon_button(ui, icon, tr(name), None, chosen));
             if response.on_hover_text(tr(tip)).clicked() {
                 actions.push(action);
             }
         };
-        button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
-        button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
-        // The other language is named in that language, for users who do not read the current one.
-        button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
         let tip = "Show or hide the controls (P)";
         button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
+        // The other language is named in that language, for users who do not read the current one.
+        button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
+        button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
+        button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
     });
 }
 

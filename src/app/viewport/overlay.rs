@@ -234,6 +234,9 @@ fn sections(
         let color = palette.support;
         let stroke = Stroke::new(1.5, color);
         painter.add(egui::Shape::dashed_line(&[from - tangent * OUTSIDE, to + tangent * OUTSIDE], stroke, 7.0, 3.0));
+        // The plots have positive distances at this end.
+        let plus = to + tangent * OUTSIDE - normal * 9.0;
+        painter.text(plus, Align2::CENTER_CENTER, "+", FontId::proportional(BODY), color);
         let SectionForces { normal: tension, shear, moment } = section.forces;
         let least = 1e-6 * (section.force.norm() + moment.abs() / overlay.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {

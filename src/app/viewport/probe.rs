@@ -6,17 +6,12 @@ use egui::{
 use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
+use crate::app::viewport::overlay;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::simulation::{Field, PointState, PointValues};
 
-/// Size of the card of a point while its matrices are folded, points; of a card in a low view, whose values are in two
-/// columns.
-const CARD: Vec2 = vec2(300.0, 262.0);
-const LOW_CARD: Vec2 = vec2(520.0, 148.0);
-/// Height below which a view is low, and the smallest width of one in which a card has two columns, points.
-const LOW: Vec2 = vec2(600.0, 520.0);
 /// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;
 
@@ -31,16 +26,14 @@ pub(crate) fn is_on(kept: Pos2, click: Pos2) -> bool {
 }
 
 /// Formats a value of a field with its unit.
-fn value(field: Field, value: f64) -> String {
+fn field_text((field, value): (Field, Option<f64>)) -> String {
     let (factor, unit) = field.display_unit();
-    engineering(three_digits(factor * value), unit)
+    value.map_or_else(|| tr("unknown").to_owned(), |value| engineering(three_digits(factor * value), unit))
 }
 
 /// Paints the value of the field and the displacement next to the pointer.
 pub(crate) fn paint_hover(ui: &Ui, painter: &Painter, at: Pos2, field: (Field, Option<f64>), u: Vector2<f64>) {
-    let (field, of_field) = field;
-    let of_field = of_field.map_or_else(|| tr("unknown").to_owned(), |v| value(field, v));
-    let text = format!("{}: {of_field}\nu = {}", tr(field.name()), metres(u));
+    let text = format!("{}: {}\nu = {}", tr(field.0.name()), field_text(field), metres(u));
     let visuals = ui.visuals();
     let place = at + vec2(16.0, 18.0);
     boxed_text(painter, place, Align2::LEFT_TOP, &text, visuals, visuals.strong_text_color(), 320.0);
@@ -55,6 +48,64 @@ fn matrix_rows(m: &Matrix2<f64>) -> String {
     // Adding 0 removes the sign of -0.
     let number = |v: f64| format!("{:>8}", format!("{:.4}", (1e4 * v).round() / 1e4 + 0.0));
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
+}
+
+/// Arrangement of the values on the card of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// The value of the displayed field, and the displacement.
+    Short,
+    /// All values in one column.
+    Tall,
+    /// All values in two columns.
+    Wide,
+}
+
+impl Form {
+    /// Returns the form with all values that fits a view.
+    fn of_all(view: Rect) -> Self {
+        /// Height below which a view is low, and the smallest width of one for two columns, points.
+        const LOW: Vec2 = vec2(600.0, 520.0);
+        if view.height() < LOW.y && view.width() >= LOW.x { Form::Wide } else { Form::Tall }
+    }
+
+    /// Returns the size of a card while its matrices are folded, points.
+    fn size(self) -> Vec2 {
+        match self {
+            Form::Short => vec2(300.0, 88.0),
+            Form::Tall => vec2(300.0, 262.0),
+            Form::Wide => vec2(520.0, 148.0),
+        }
+    }
+
+    /// Returns the alignments of a card in a view.
+    fn alignments(self, view: Rect) -> impl Iterator<Item = Align2> {
+        let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
+        let room = view.width() - self.beside().iter().sum::<f32>();
+        corners.into_iter().chain(Some(Align2::CENTER_BOTTOM).filter(|_| room >= self.size().x))
+    }
+
+    /// Returns the room left and right of a card at the lower side of a view for the status and the colour bar, points.
+    /// In a low view the status is in the bar below, and the scale alone is in the left corner.
+    fn beside(self) -> [f32; 2] {
+        const BAR: f32 = 290.0;
+        const SCALE: f32 = 96.0;
+        [if self == Form::Wide { SCALE } else { BAR }, BAR]
+    }
+
+    /// Returns the number of columns of values.
+    fn columns(self) -> usize {
+        if self == Form::Wide { 2 } else { 1 }
+    }
+}
+
+/// Choices of the user on the cards of points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CardChoice {
+    axes: Axes,
+    /// `true` if all values are shown where they hide much of the body too.
+    shows_all: bool,
+    shows_matrices: bool,
 }
 
 /// Axes of the stresses on a card.
@@ -81,6 +132,10 @@ pub(crate) enum CardRequest {
 /// Row of a card: name, value and tooltip.
 type Row = (&'static str, String, &'static str);
 
+fn displacement_row(point: &PointState) -> Row {
+    ("u", metres(point.displacement), "Displacement")
+}
+
 /// Returns the values of a point, with the stresses in these axes.
 fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
     let get = |field: Field| point.field(field).map(|v| three_digits(field.display_unit().0 * v));
@@ -101,7 +156,7 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
     } else {
         (["ε_X, ε_Y", "γ_XY"], "Strain ε = S − I, in the axes X, Y of the material")
     };
-    let mut rows = vec![("u", metres(point.displacement), "Displacement")];
+    let mut rows = vec![displacement_row(point)];
     if !point.is_linear {
         rows.push(("θ", none(one(Field::RotationAngle)), "Angle of the rotation R"));
     }
@@ -167,85 +222,122 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
-/// Returns the number of columns of values on a card in a view.
-fn card_columns(view: Rect) -> usize {
-    if view.height() < LOW.y && view.width() >= LOW.x { 2 } else { 1 }
-}
-
-/// Returns the size of a card in a view, points.
-fn card_size(view: Rect) -> Vec2 {
-    if card_columns(view) == 1 { CARD } else { LOW_CARD }
-}
-
-/// Returns the position of a card with this alignment in a view.
-fn card_position(view: Rect, align: Align2) -> Pos2 {
-    /// Room for the line key above, and for the colour bar and the status in the lower corners, points.
-    const ABOVE: f32 = 44.0;
-    const CORNER: f32 = 84.0;
-    const SIDE: f32 = 14.0;
-    let ([left, right], below) =
-        if align == Align2::CENTER_BOTTOM { (beside(view), SIDE) } else { ([SIDE; 2], CORNER) };
-    align.pos_in_rect(&Rect::from_min_max(view.min + vec2(left, ABOVE), view.max - vec2(right, below)))
-}
-
-/// Returns the room left and right of a card at the lower side of a view for the status and the colour bar, points. In
-/// a low view the status is in the bar below, and the scale alone is in the left corner.
-fn beside(view: Rect) -> [f32; 2] {
-    const BAR: f32 = 290.0;
-    const SCALE: f32 = 96.0;
-    [if card_columns(view) == 2 { SCALE } else { BAR }, BAR]
-}
-
-/// Returns the alignment in a view with which a card hides least: not its point at `at`, as few of the points of a body as
-/// possible, and the `tips` of arrows only for many of these. All positions are in the window.
-pub(crate) fn card_align(view: Rect, body: &[Pos2], at: Pos2, tips: &[Pos2]) -> Align2 {
-    /// Part of a body for which a tip is hidden.
-    const TIP: f32 = 0.15;
-    let size = card_size(view);
-    let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-    let middle = Some(Align2::CENTER_BOTTOM).filter(|_| view.width() >= beside(view).iter().sum::<f32>() + size.x);
-    let cost = |align: Align2| {
-        let card = align.anchor_size(card_position(view, align), size);
-        let hidden = |points: &[Pos2]| points.iter().filter(|at| card.contains(**at)).count() as f32;
-        let part = hidden(body) / body.len().max(1) as f32;
-        if card.contains(at) { f32::INFINITY } else { part + TIP * hidden(tips) }
+/// Returns points that are spread over triangles evenly: centroids and the middles of edges.
+pub(crate) fn spread(corners: &[Pos2], triangles: &[[u32; 3]]) -> Vec<Pos2> {
+    let corner = |p: u32| corners.get(p as usize).map(|at| at.to_vec2());
+    let of = |&[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [corner(a)?, corner(b)?, corner(c)?];
+        Some([(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0])
     };
-    let costs = corners.into_iter().chain(middle).map(|align| (align, cost(align)));
-    costs.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(Align2::RIGHT_TOP, |(align, _)| align)
+    triangles.iter().filter_map(of).flatten().map(Vec2::to_pos2).collect()
 }
 
-/// Shows the card of a pinned point at the window position `at`, with this alignment in the view. `is_kept` is `true` if
-/// the scene has a probe there.
+/// Place of the card of a pinned point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Card {
+    point: MaterialPoint,
+    view: Rect,
+    shows_all: bool,
+    form: Form,
+    align: Align2,
+}
+
+impl Card {
+    /// Places a card in a view where it hides least: not its point at `at`, as few of the points spread over a body as
+    /// possible, and the `tips` of arrows only for many of these. The form is short if all values would hide much of the
+    /// body and the user has not asked for them. All positions are in the window.
+    pub(crate) fn new(
+        point: MaterialPoint,
+        view: Rect,
+        choice: CardChoice,
+        (body, at, tips): (&[Pos2], Pos2, &[Pos2]),
+    ) -> Self {
+        /// Part of a body for which a tip is hidden.
+        const TIP: f32 = 0.15;
+        /// Part of a body that all values may hide.
+        const HIDDEN: f32 = 0.1;
+        let hidden = |points: &[Pos2], card: Rect| points.iter().filter(|at| card.contains(**at)).count() as f32;
+        let best = |form: Form| {
+            let card = Card { point, view, shows_all: choice.shows_all, form, align: Align2::RIGHT_TOP };
+            let aligned = form.alignments(view).map(|align| {
+                let card = Card { align, ..card };
+                let area = card.area();
+                let part = hidden(body, area) / body.len().max(1) as f32;
+                (card, if area.contains(at) { f32::INFINITY } else { part }, TIP * hidden(tips, area))
+            });
+            let least = aligned.min_by(|a, b| (a.1 + a.2).total_cmp(&(b.1 + b.2)));
+            least.map_or((card, 0.0), |(card, part, _)| (card, part))
+        };
+        let (all, part) = best(Form::of_all(view));
+        if choice.shows_all || part <= HIDDEN { all } else { best(Form::Short).0 }
+    }
+
+    /// Returns `true` if the card was placed for the point, the view and the choice.
+    pub(crate) fn is_for(&self, point: MaterialPoint, view: Rect, choice: CardChoice) -> bool {
+        (self.point, self.view, self.shows_all) == (point, view, choice.shows_all)
+    }
+
+    /// Returns the position of the aligned point of the card, in the window.
+    fn position(&self) -> Pos2 {
+        /// Room for the line key above, and for a colour bar under it in low views, points.
+        const KEY: f32 = 44.0;
+        const KEY_AND_BAR: f32 = 68.0;
+        /// Room for the scale in the lower left corner, and for it and a colour bar in both lower corners, points.
+        const SCALE: f32 = 50.0;
+        const SCALE_AND_BAR: f32 = 84.0;
+        const SIDE: f32 = 14.0;
+        let (view, is_bar_above) = (self.view, overlay::has_legend_on_top(self.view.height()));
+        let above = if is_bar_above && self.form == Form::Short { KEY_AND_BAR } else { KEY };
+        let ([left, right], below) = match self.align {
+            Align2::CENTER_BOTTOM => (self.form.beside(), SIDE),
+            Align2::RIGHT_BOTTOM if is_bar_above => ([SIDE; 2], SIDE),
+            _ => ([SIDE; 2], if is_bar_above { SCALE } else { SCALE_AND_BAR }),
+        };
+        self.align.pos_in_rect(&Rect::from_min_max(view.min + vec2(left, above), view.max - vec2(right, below)))
+    }
+
+    /// Returns the area of the card in the window while its matrices are folded.
+    fn area(&self) -> Rect {
+        self.align.anchor_size(self.position(), self.form.size())
+    }
+}
+
+/// Pinned point.
+pub(crate) struct Pinned<'a> {
+    /// Values at the point.
+    pub state: &'a PointState,
+    /// Displayed field, and its value at the point.
+    pub field: (Field, Option<f64>),
+    /// Position in the window.
+    pub at: Pos2,
+    /// `true` if the scene has a probe there.
+    pub is_kept: bool,
+}
+
+/// Shows the card of a pinned point.
 pub(crate) fn show_card(
     ui: &Ui,
     painter: &Painter,
-    (view, at): (Rect, Pos2),
-    align: Align2,
-    (point, is_kept): (&PointState, bool),
-    axes: &mut Axes,
+    card: Card,
+    pinned: &Pinned<'_>,
+    choice: &mut CardChoice,
 ) -> Option<CardRequest> {
+    let (id, at) = (egui::Id::unique("probe"), pinned.at);
     let visuals = ui.visuals();
     let color = visuals.strong_text_color();
-    let (id, position) = (egui::Id::unique("probe"), card_position(view, align));
-    let card = ui.memory(|memory| memory.area_rect(id)).unwrap_or(align.anchor_size(position, card_size(view)));
-    painter.line_segment([at, card.clamp(at)], Stroke::new(1.2, color));
+    let area = ui.memory(|memory| memory.area_rect(id)).unwrap_or(card.area());
+    painter.line_segment([at, area.clamp(at)], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
-    paint_principal(painter, at, point, color);
-    let area = Area::new(id).order(Order::Middle).pivot(align).fixed_pos(position).constrain_to(view);
-    let card = area.show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).show(ui, |ui| card_content(ui, (point, is_kept), card_columns(view), axes)).inner
-    });
-    card.inner
+    paint_principal(painter, at, pinned.state, color);
+    let area = Area::new(id).order(Order::Middle).pivot(card.align).fixed_pos(card.position()).constrain_to(card.view);
+    let shown = area
+        .show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, card.form, pinned, choice)).inner);
+    shown.inner
 }
 
-fn card_content(
-    ui: &mut Ui,
-    (point, is_kept): (&PointState, bool),
-    columns: usize,
-    axes: &mut Axes,
-) -> Option<CardRequest> {
-    let mut request = None;
+fn card_content(ui: &mut Ui, form: Form, pinned: &Pinned<'_>, choice: &mut CardChoice) -> Option<CardRequest> {
+    let (point, columns, mut request) = (pinned.state, form.columns(), None);
     ui.spacing_mut().item_spacing.y = 3.0;
     let title = fill!("Point %{place}", place = metres(point.rest));
     let (kind, tip) = match point.values {
@@ -255,20 +347,24 @@ fn card_content(
         ),
         PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
     };
-    let id = egui::Id::unique("probe matrices");
-    let mut shows_matrices = ui.memory(|memory| memory.data.get_temp(id)).unwrap_or(false);
     let matrices = matrices_of(point);
-    let rows = rows_of(point, *axes);
-    let mut buttons = |ui: &mut Ui, axes: Axes| {
-        if ui.button(tr("Copy")).on_hover_text(tr("Copies the values as text")).clicked() {
-            return Some(CardRequest::Copy(copied_text(&title, point, axes, &rows)));
+    let rows = rows_of(point, choice.axes);
+    let buttons = |ui: &mut Ui, choice: &mut CardChoice| {
+        if ui.button(tr("Copy")).on_hover_text(tr("Copies all values as text")).clicked() {
+            return Some(CardRequest::Copy(copied_text(&title, point, choice.axes, &rows)));
         }
         let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
-        if !is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
+        if !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
             return Some(CardRequest::Keep);
         }
-        let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
-        ui.toggle_value(&mut shows_matrices, names).on_hover_text(tr("Shows these matrices"));
+        if form == Form::Short || choice.shows_all {
+            let tip = "Shows all values, over the body too";
+            ui.toggle_value(&mut choice.shows_all, tr("All values")).on_hover_text(tr(tip));
+        }
+        if form != Form::Short {
+            let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+            ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
+        }
         None
     };
     ui.horizontal(|ui| {
@@ -280,25 +376,27 @@ fn card_content(
         }
         ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
         if columns > 1 {
-            request = request.take().or(buttons(ui, *axes));
+            request = request.take().or(buttons(ui, choice));
         }
     });
+    let few = [(pinned.field.0.name(), field_text(pinned.field), "Value of the colour"), displacement_row(point)];
+    let shown: &[Row] = if form == Form::Short { &few } else { &rows };
     // In linear theory the axes of the material do not rotate.
-    if !point.is_linear {
+    if form != Form::Short && !point.is_linear {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
             for (own, name) in [(Axes::Space, "space x, y"), (Axes::Material, "material X, Y")] {
-                ui.selectable_value(axes, own, RichText::new(tr(name)).size(12.0));
+                ui.selectable_value(&mut choice.axes, own, RichText::new(tr(name)).size(12.0));
             }
         });
     }
     ui.scope(|ui| {
         // Rows of text need less height than those of controls.
         ui.spacing_mut().interact_size.y = 16.0;
-        let height = rows.len().div_ceil(columns);
+        let height = shown.len().div_ceil(columns);
         Grid::new("probe values").num_columns(2 * columns).spacing([12.0, 1.0]).show(ui, |ui| {
             for row in 0..height {
-                for (name, text, tip) in rows.iter().skip(row).step_by(height) {
+                for (name, text, tip) in shown.iter().skip(row).step_by(height) {
                     ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
                     ui.label(text).on_hover_text(tr(tip));
                 }
@@ -307,9 +405,9 @@ fn card_content(
         });
     });
     if columns == 1 {
-        ui.horizontal(|ui| request = request.take().or(buttons(ui, *axes)));
+        ui.horizontal(|ui| request = request.take().or(buttons(ui, choice)));
     }
-    if shows_matrices {
+    if choice.shows_matrices && form != Form::Short {
         Grid::new("probe matrices").spacing([12.0, 3.0]).show(ui, |ui| {
             for (name, matrix, tip) in &matrices {
                 ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
@@ -320,7 +418,6 @@ fn card_content(
             }
         });
     }
-    ui.memory_mut(|memory| memory.data.insert_temp(id, shows_matrices));
     request
 }
 
@@ -359,9 +456,11 @@ mod tests {
         let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 738.0));
         let nodes = (0..=40_u8).flat_map(|i| [330.0, 374.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
         let (nodes, tip) = (nodes.collect::<Vec<_>>(), pos2(919.0, 422.0));
+        let point = MaterialPoint { element: 0, at: [0.3; 2] };
         for &at in &nodes {
-            let align = card_align(view, &nodes, at, &[tip]);
-            let card = align.anchor_size(card_position(view, align), card_size(view));
+            let card = Card::new(point, view, CardChoice::default(), (&nodes, at, &[tip]));
+            assert_eq!(card.form, Form::Tall);
+            let card = card.area();
             assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
         }
     }
@@ -372,9 +471,11 @@ mod tests {
         let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 456.0));
         let nodes = (0..=40_u8).flat_map(|i| [196.0, 216.0, 236.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
         let (nodes, tips) = (nodes.collect::<Vec<_>>(), [pos2(919.0, 290.0), pos2(490.0, 290.0)]);
+        let point = MaterialPoint { element: 0, at: [0.3; 2] };
         for &at in &nodes {
-            let align = card_align(view, &nodes, at, &tips);
-            let card = align.anchor_size(card_position(view, align), card_size(view));
+            let card = Card::new(point, view, CardChoice::default(), (&nodes, at, &tips));
+            assert_eq!(card.form, Form::Wide);
+            let card = card.area();
             assert!(nodes.iter().all(|at| !card.contains(*at)), "{at:?}: {card:?}");
         }
     }

@@ -15,7 +15,7 @@ use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
-use crate::app::viewport::probe::{Axes, CardRequest};
+use crate::app::viewport::probe::{Card, CardChoice, CardRequest, Pinned};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
 use crate::app::widgets::load_scale::OpeningLoads;
@@ -137,10 +137,10 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
-    /// Pinned point whose card is shown, and the alignment of the card in the view.
-    card: Option<(MaterialPoint, Align2)>,
-    /// Axes of the stresses at the pinned point.
-    axes: Axes,
+    /// Card of the pinned point, if it is shown.
+    card: Option<Card>,
+    /// Choices of the user on the cards of points.
+    card_choice: CardChoice,
     /// Material point whose menu was opened.
     menu: Option<MaterialPoint>,
     body: BodyMesh,
@@ -170,7 +170,7 @@ impl BodyView {
             pointer: Pointer::default(),
             probe: None,
             card: None,
-            axes: Axes::default(),
+            card_choice: CardChoice::default(),
             menu: None,
             body: BodyMesh::default(),
             magnification: 1.0,
@@ -520,17 +520,16 @@ impl BodyView {
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
         // The card stays where it is while the body moves.
-        let align = self.card.filter(|(pinned, _)| *pinned == point).map_or_else(
-            || {
-                let projection = self.projection();
-                let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
-                let body = self.body.points().iter().map(|point| projection.point(*point)).collect::<Vec<_>>();
-                probe::card_align(self.rect, &body, at, &tips)
-            },
-            |(_, align)| align,
-        );
-        self.card = Some((point, align));
-        match probe::show_card(ui, painter, (self.rect, at), align, (&state, is_kept), &mut self.axes)? {
+        let card = self.card.filter(|card| card.is_for(point, self.rect, self.card_choice)).unwrap_or_else(|| {
+            let projection = self.projection();
+            let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
+            let corners: Vec<_> = self.body.points().iter().map(|point| projection.point(*point)).collect();
+            let body = probe::spread(&corners, &content.session.geometry().triangles);
+            Card::new(point, self.rect, self.card_choice, (&body, at, &tips))
+        });
+        self.card = Some(card);
+        let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };
+        match probe::show_card(ui, painter, card, &pinned, &mut self.card_choice)? {
             CardRequest::Close => self.probe = None,
             CardRequest::Copy(text) => ui.ctx().copy_text(text),
             CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),

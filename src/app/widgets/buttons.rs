@@ -116,3 +116,16 @@ pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, a
 pub(crate) fn option_button<'a>(chosen: bool, text: impl IntoAtoms<'a>) -> Button<'a> {
     Button::selectable(chosen, text).frame_when_inactive(true)
 }
+
+/// Shows controls at the right end of a row, from left to right: Tab goes through them in the order of reading, which a
+/// layout from right to left reverses.
+pub(crate) fn at_right(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
+    let id = egui::Id::unique(("at right", name));
+    let width: f32 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    ui.add_space((ui.available_width() - width).max(0.0));
+    let shown = ui.scope(show).response.rect.width();
+    if (shown - width).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id, shown));
+        ui.ctx().request_discard("at right");
+    }
+}

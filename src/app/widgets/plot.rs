@@ -4,7 +4,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, MarkerShape, Plot
 
 use crate::app::widgets::palette::Palette;
 use crate::element::ELEMENTS;
-use crate::format::{engineering, three_digits, ticks};
+use crate::format::{engineering, three_digits, tick, ticks};
 use crate::scene::ElementKind;
 
 /// Space for the tick labels and the title of an axis, points, before egui_plot has measured them.
@@ -34,13 +34,15 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         move |mark, range| {
             // In the corner the label of the y axis has priority.
             let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
-            if in_corner { String::new() } else { engineering(mark.value, x_unit) }
+            if in_corner { String::new() } else { tick(mark.value, [*range.start(), *range.end()], x_unit) }
         },
     );
     let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);
     Plot::new(id.to_owned())
         .custom_x_axes(vec![x_axis])
-        .custom_y_axes(vec![y_axis.formatter(move |mark, _| engineering(mark.value, y_unit))])
+        .custom_y_axes(vec![
+            y_axis.formatter(move |mark, range| tick(mark.value, [*range.start(), *range.end()], y_unit)),
+        ])
         .x_grid_spacer(|input| round_marks(input, APART[0]))
         .y_grid_spacer(|input| round_marks(input, APART[1]))
         .label_formatter(move |at| match at {

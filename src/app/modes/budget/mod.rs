@@ -364,7 +364,18 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
+    let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
+    let id = egui::Id::unique("applied setting");
+    let is_other = ui.memory_mut(|memory| {
+        std::mem::replace(memory.data.get_temp_mut_or_default::<Option<usize>>(id), applied) != applied
+    });
     area.show_rows(ui, row_height, listed.len(), |ui, rows| {
+        // The setting that was applied in the plot may be anywhere in the list.
+        if let Some(row) = applied.filter(|_| is_other) {
+            let step = row_height + ui.spacing().item_spacing.y;
+            let top = ui.max_rect().top() + (row as f32 - rows.start as f32) * step;
+            ui.scroll_to_rect(ui.max_rect().with_min_y(top).with_max_y(top + row_height), None);
+        }
         for m in listed.get(rows).unwrap_or_default() {
             let mark = if budget.study.is_none_or(|study| study.converges(m)) { ' ' } else { '*' };
             let bound = format!("\u{2264}{}", bound_percent(error(m)));

@@ -467,9 +467,16 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let coarse = judged.and_then(|(error, first)| coarse_text(error, &first));
     let text = joined(coarse.into_iter().chain([text]));
     let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
-    let mut job = egui::text::LayoutJob::simple_singleline(text.clone(), FontId::proportional(size), ink);
-    job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(0.0));
-    let galley = painter.layout_job(job);
+    let room = (rect.right() - left - 4.0).max(0.0);
+    let lay_out = |text: &str| {
+        let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(size), ink);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(room);
+        painter.layout_job(job)
+    };
+    let whole = lay_out(&text);
+    // A narrow pane has the reason in the tooltip only.
+    let is_cut = whole.elided && matches!(pane.solve.activity(), Activity::Rests(_)) && bad;
+    let galley = if is_cut { lay_out(tr("Does not converge")) } else { whole };
     let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
     painter.galley(at.min, galley, ink);
     let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));

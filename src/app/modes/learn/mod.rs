@@ -11,6 +11,7 @@ use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Mode, Toggle};
+use crate::app::widgets::buttons::at_right;
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
@@ -300,23 +301,37 @@ impl Learn {
     fn header(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let (card, count) = (self.card, CARDS.len());
+        let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
+        let title = |ui: &mut Ui| ui.add(egui::Label::new(title.clone()).truncate());
+        let is_narrow = ui.available_width() < TWO_COLUMNS;
+        if is_narrow {
+            title(ui);
+        }
         ui.horizontal(|ui| {
             let wide = ui.available_width() > 720.0;
-            let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
             let nav = if wide { 540.0 } else { 316.0 };
-            let room = (ui.available_width() - nav).max(80.0);
-            ui.scope(|ui| {
-                ui.set_max_width(room);
-                ui.add(egui::Label::new(title).truncate());
-            });
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if !is_narrow {
+                let room = ui.available_width() - nav;
+                ui.scope(|ui| {
+                    ui.set_max_width(room);
+                    title(ui);
+                });
+            }
+            at_right(ui, "cards", |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
-                if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
-                    actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
+                let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
+                if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
+                    actions.push(Action::Card(card - 1));
                 }
-                let tip = "Twenty seconds on the article\u{2019}s beam; any key or click ends them";
-                if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
-                    actions.push(Action::Story);
+                ui.label(
+                    RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
+                );
+                if wide {
+                    dots(ui, &palette, card, actions);
+                }
+                let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
+                if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
+                    actions.push(Action::Card(card + 1));
                 }
                 if wide {
                     let tip = "Restores this card\u{2019}s scene";
@@ -324,19 +339,12 @@ impl Learn {
                         actions.push(Action::Card(card));
                     }
                 }
-                let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
-                if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
-                    actions.push(Action::Card(card + 1));
+                let tip = "Twenty seconds on the article\u{2019}s beam; any key or click ends them";
+                if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
+                    actions.push(Action::Story);
                 }
-                if wide {
-                    dots(ui, &palette, card, actions);
-                }
-                ui.label(
-                    RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
-                );
-                let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
-                if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
-                    actions.push(Action::Card(card - 1));
+                if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
+                    actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
                 }
             });
         });
@@ -383,9 +391,8 @@ fn split(rect: Rect) -> (Rect, Rect) {
 
 /// Shows one dot per card; a click goes to the card.
 fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) {
-    // The layout runs from right to left.
     ui.spacing_mut().item_spacing.x = 0.0;
-    for i in (0..CARDS.len()).rev() {
+    for (i, Card { title, .. }) in CARDS.iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(15.0, 20.0), Sense::click());
         let color = if i == card { palette.accent } else { palette.secondary };
         let radius = if i == card || response.hovered() { 4.5 } else { 3.0 };
@@ -393,9 +400,9 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
         if response.has_focus() {
             ui.painter().circle_stroke(rect.center(), 7.0, egui::Stroke::new(1.5, palette.accent));
         }
-        let name = fill!("Card %{n}: %{title}", n = i + 1, title = tr(CARDS[i].title));
+        let name = fill!("Card %{n}: %{title}", n = i + 1, title = tr(title));
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == card, &name));
-        if response.on_hover_text(tr(CARDS[i].title)).clicked() {
+        if response.on_hover_text(tr(title)).clicked() {
             actions.push(Action::Card(i));
         }
     }
