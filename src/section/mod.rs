@@ -263,11 +263,12 @@ fn cut_of(system: &System, line: SectionLine) -> Result<Cut, SectionError> {
     Ok(cuts.swap_remove(chosen))
 }
 
-/// Returns the length of the cut of a line at rest, m; `None` if it has none.
+/// Returns the distances of the ends of the cut of a line from [`SectionLine::at`] along its tangent, at rest, m; `None`
+/// if it has none.
 #[cfg(feature = "app")]
-pub(crate) fn cut_length(system: &System, line: SectionLine) -> Option<f64> {
+pub(crate) fn cut_ends(system: &System, line: SectionLine) -> Option<[f64; 2]> {
     let points = cut_of(system, line).ok()?.points;
-    Some(points.last()?.along - points.first()?.along)
+    Some([points.first()?.along, points.last()?.along])
 }
 
 /// Returns the nodes in front with the forces of the cut's elements on them, N.

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use crate::common::lab::{lab_of, window};
 use crate::common::scene;
-use crate::ui_interaction::on_body;
+use crate::ui_interaction::{drag, on_body};
 use warpbeam::Status;
 use warpbeam::app::Lab;
 use warpbeam::study::section_chart;
@@ -78,6 +78,27 @@ fn a_section_is_added_moved_and_removed() {
     choose(&mut harness, [4.0, 0.0], "Add a section here");
     choose(&mut harness, [4.0, 0.1], "Remove this section");
     assert_eq!(*harness.state().scene(), before);
+}
+
+/// A section is turned by either end of its cut, about its point, to multiples of 15° nearby.
+#[test]
+fn a_section_is_turned_by_its_ends() {
+    let mut harness = harness("cantilever");
+    choose(&mut harness, [4.0, 0.0], "Add a section here");
+    let line = harness.state().scene().sections[0];
+    // Each end of the cut, the place to which it is dragged, and the angle of the normal then.
+    for (end, to, degrees) in [([4.0, 0.5], [4.49, 0.5], -45.0), ([3.5, -0.5], [4.0, -0.5], 0.0)] {
+        let [from, to] = [end, to].map(|at| on_body(harness.state(), at.into()));
+        drag(&mut harness, from, to, Modifiers::NONE);
+        harness.run_steps(6);
+        let turned = harness.state().scene().sections[0];
+        assert_eq!((turned.at, turned.angle.to_degrees().round()), (line.at, degrees), "{turned:?}");
+        let text = forces(harness.state());
+        assert!(harness.query_by_label(&text).is_some(), "{text}");
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(6);
+    assert_eq!(harness.state().scene().sections[0].angle.to_degrees().round(), -45.0);
 }
 
 /// The plots show the stress along the section with N, V and M, and these along the beam with their largest values.

@@ -15,7 +15,10 @@ pub const FOCUS_KEYS: &[(&str, &str)] = &[
 /// Actions of the pointer, and their descriptions.
 pub const MOUSE: &[(&str, &str)] = &[
     ("Drag an arrow's tip", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
-    ("Drag the base of an object", "Move a force, a support, a probe or a section along the body"),
+    (
+        "Drag the base of an object",
+        "Move a force, a support, a probe or a section along the body; the ends of a section turn it",
+    ),
     ("Click the body with the secondary button", "Add or remove an object there"),
     ("Drag the body", "Pull it with a mouse spring; release it and it springs back"),
     ("Drag the background, two fingers", "Move the view"),

@@ -11,9 +11,10 @@ use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
-use crate::format::{engineering_pair, three_digits};
+use crate::format::{editable, engineering_pair, three_digits};
 use crate::mesh::{Mesh, Segment, bent, straightened};
-use crate::scene::{Load, Place, Scene};
+use crate::scene::{Load, Place, Scene, SectionLine};
+use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
 /// it, points.
@@ -24,6 +25,9 @@ const REACH: f64 = 80.0;
 /// Distance within which an object moves to the outline or to the axis of a beam, points.
 const CLOSE: f64 = 4.0;
 
+/// Distance from the point of a section within which its end does not turn it, points.
+const CLOSE_TO_POINT: f64 = 6.0;
+
 /// Object of a scene, by its index among those of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Object {
@@ -31,6 +35,11 @@ pub(crate) enum Object {
     Support(usize),
     Probe(usize),
     Section(usize),
+    /// End of the cut of a section, which turns about the point of the section.
+    SectionEnd {
+        section: usize,
+        end: usize,
+    },
 }
 
 /// Base of an object in the window.
@@ -71,7 +80,7 @@ impl Bases<'_> {
 
     /// Returns the bases of all objects.
     pub(crate) fn all(&self) -> Vec<Base> {
-        let Scene { loads, supports, probes, sections, .. } = self.scene;
+        let Scene { loads, supports, probes, sections: sections_of, .. } = self.scene;
         let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
             Load::Force { place, at_point, .. } => Some((Object::Force(i), self.applied(place, *at_point)?)),
             _ => None,
@@ -83,10 +92,41 @@ impl Bases<'_> {
             // A probe on an edge usually lies at the arrow of a load, so it has no base.
             Place::Edge(_) => None,
         });
-        let sections = (0..).zip(sections).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
+        let sections = (0..).zip(sections_of).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
+        let ends = (0..).zip(sections_of).flat_map(|(i, line)| self.ends_of_section(i, line));
         // A probe or a section that lies on a force or a support is in front.
-        let all = probes.chain(sections).chain(forces).chain(supports);
+        let all = probes.chain(sections).chain(forces).chain(supports).chain(ends);
         all.map(|(object, at)| Base { object, at: self.projection.point(at) }).collect()
+    }
+
+    /// Returns the ends of the cut of a section, with their drawn positions, m; without one at the point of the section.
+    fn ends_of_section(&self, section: usize, line: &SectionLine) -> Vec<(Object, Vector2<f64>)> {
+        /// Part of the cut between an end and its base, which rounding keeps inside the body.
+        const INSIDE: f64 = 1e-6;
+        let Some([from, to]) = cut_ends(self.system, *line) else { return Vec::new() };
+        let far = |along: f64| f64::from(NEAR) < along.abs() * self.projection.camera.scale;
+        let ends = [from + INSIDE * (to - from), to - INSIDE * (to - from)].into_iter().enumerate();
+        let ends = ends.filter(|(_, along)| far(*along)).filter_map(|(end, along)| {
+            Some((Object::SectionEnd { section, end }, self.drawn(line.at + line.tangent() * along)?))
+        });
+        ends.collect()
+    }
+
+    /// Returns the line of a section whose end is dragged to a rest position, m, turned to a multiple of 15° if it is
+    /// close to one.
+    fn turned(&self, section: usize, end: usize, to: Vector2<f64>) -> Option<SectionLine> {
+        /// Angle within which a section turns to a multiple of 15°, degrees.
+        const CLOSE: f64 = 1.5;
+        const STEP: f64 = 15.0;
+        let line = *self.scene.sections.get(section)?;
+        let tangent = if end == 0 { line.at - to } else { to - line.at };
+        if tangent.norm() * self.projection.camera.scale < CLOSE_TO_POINT {
+            return None;
+        }
+        let angle = (-tangent.x).atan2(tangent.y).to_degrees();
+        let whole = STEP * (angle / STEP).round();
+        let angle = if (angle - whole).abs() <= CLOSE { whole } else { angle.round() };
+        Some(SectionLine { angle: (angle + 0.0).to_radians(), ..line })
     }
 
     /// Returns the drawn point of application of a force or a support, m.
@@ -171,6 +211,10 @@ impl Bases<'_> {
                 Place::At(at) => scene.sections.get_mut(i)?.at = at.into(),
                 Place::Edge(_) => return None,
             },
+            Object::SectionEnd { section, end } => match place {
+                Place::At(at) => *scene.sections.get_mut(section)? = self.turned(section, end, at.into())?,
+                Place::Edge(_) => return None,
+            },
         }
         Some(scene)
     }
@@ -186,17 +230,28 @@ impl Bases<'_> {
             return;
         };
         let at = self.projection.point(at);
-        painter.line_segment([hot.base.at, at], Stroke::new(1.0, color));
+        let from = match hot.base.object {
+            Object::SectionEnd { section, .. } => self.scene.sections.get(section).and_then(|line| self.drawn(line.at)),
+            _ => None,
+        };
+        let from = from.map_or(hot.base.at, |pivot| self.projection.point(pivot));
+        painter.line_segment([from, at], Stroke::new(1.0, color));
         painter.circle_filled(at, 4.0, color);
-        let text = match place {
-            Place::Edge(name) => match hot.base.object {
+        let text = match (place, hot.base.object) {
+            (Place::At(to), Object::SectionEnd { section, end }) => {
+                let turned = self.turned(section, end, to.into());
+                turned.map_or_else(String::new, |line| {
+                    fill!("normal %{angle}", angle = editable(line.angle.to_degrees(), "°"))
+                })
+            }
+            (Place::Edge(name), _) => match hot.base.object {
                 Object::Support(i) => match self.scene.supports.get(i).map(|support| support.fix.len()) {
                     Some(2) => fill!("clamp %{edge}", edge = tr(&name)),
                     _ => fill!("roller on %{edge}", edge = tr(&name)),
                 },
                 _ => tr(&name).to_owned(),
             },
-            Place::At(at) => engineering_pair(at.map(three_digits), "m"),
+            (Place::At(at), _) => engineering_pair(at.map(three_digits), "m"),
         };
         let above = at - egui::vec2(0.0, 12.0);
         boxed_text(painter, above, egui::Align2::CENTER_BOTTOM, &text, visuals, color, 240.0);

@@ -165,7 +165,7 @@ fn normal_section(system: &System, at: Vector2<f64>) -> SectionLine {
         return SectionLine { at, angle: axis_angle(beam, straightened(beam, at)[0]) };
     }
     let [vertical, horizontal] = [0.0, FRAC_PI_2].map(|angle| SectionLine { at, angle });
-    let length = |line| section::cut_length(system, line).unwrap_or(f64::INFINITY);
+    let length = |line| section::cut_ends(system, line).map_or(f64::INFINITY, |[from, to]| to - from);
     if length(horizontal) < length(vertical) { horizontal } else { vertical }
 }
 

@@ -234,6 +234,10 @@ fn sections(
         let color = palette.support;
         let stroke = Stroke::new(1.5, color);
         painter.add(egui::Shape::dashed_line(&[from - tangent * OUTSIDE, to + tangent * OUTSIDE], stroke, 7.0, 3.0));
+        // The ends turn the section.
+        for end in [from, to] {
+            painter.circle_filled(end, 3.0, color);
+        }
         // The plots have positive distances at this end.
         let plus = to + tangent * OUTSIDE - normal * 9.0;
         painter.text(plus, Align2::CENTER_CENTER, "+", FontId::proportional(BODY), color);
@@ -265,7 +269,7 @@ fn sections(
         };
         // A label moves up from one that it would cover.
         let size = text_size(painter, &label);
-        let mut at = end + outward * (OUTSIDE + 4.0);
+        let mut at = end + outward * (OUTSIDE + 12.0);
         let place = |at| anchor.anchor_size(at, size).expand(4.0);
         while taken.iter().any(|other: &Rect| other.intersects(place(at))) {
             at.y -= size.y + 8.0;
