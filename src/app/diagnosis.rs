@@ -94,8 +94,10 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
             theory.map_or([0.0, 1.0], |fine| [(fine - first.displacement).norm(), (u - fine).norm()]);
+        // Where the errors of mesh and theory cancel, a finer mesh leaves the larger one.
+        let whole = (u - first.displacement).norm();
         match simulation.status() {
-            _ if of_theory > of_mesh => ErrorSource::Theory,
+            _ if of_theory > of_mesh.min(whole) => ErrorSource::Theory,
             Status::Accepted => ErrorSource::MeshOrIteration,
             _ => ErrorSource::Mesh,
         }
@@ -380,7 +382,14 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
             )
         });
     }
-    if !simulation.status().is_success() {
+    let part = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0);
+    if let Some(part) = part.filter(|_| simulation.residual() <= input.scene.solver.tolerance) {
+        let part = percent(100.0 * part);
+        lines.push(fill!(
+            "The last iterate balances %{part} of the load; the next step of the load is not reached.",
+            part = part
+        ));
+    } else if !simulation.status().is_success() {
         lines.push(fill!(
             "The forces of the last iterate do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
             residual = number(two_digits(simulation.residual())),

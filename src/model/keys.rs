@@ -126,7 +126,7 @@ pub const KEYS: &[Key] = keys! {
         "Plane stress, as in a thin plate, or plane strain, as in a slice of a long body.";
 
     "support": Tables, Optional("A static scene needs at least one"), "",
-        "Held nodes or points. A pin holds a point in x and y, a roller in one direction, a clamp an edge in x and y. On an edge, a roller also keeps the edge from rotating. A dynamic scene without supports is a free body.";
+        "Held nodes or points. A pin holds a point in x and y, a roller in one direction, a clamp an edge in x and y. On an edge, a roller normal to it also keeps the edge from rotating. A dynamic scene without supports is a free body.";
     "support.edge": Text, Optional("edge or at is required"), r#""left""#,
         "Edge all of whose nodes are held.";
     "support.at": Pair(limits::COORDINATE), Optional("edge or at is required"), "[10.0, 0.0]",

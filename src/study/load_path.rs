@@ -79,7 +79,13 @@ pub struct CriticalLoad {
 
 impl From<&CriticalLoad> for Sentence {
     fn from(critical: &CriticalLoad) -> Self {
-        let (percent, drive) = (engineering(100.0 * critical.factor, "%"), &critical.drive);
+        // Next to the load, four digits could say 100 %.
+        let percent = if critical.factor > 1.0 && critical.factor < 1.0005 {
+            sentence!("just beyond 100 %")
+        } else {
+            engineering(100.0 * critical.factor, "%").into()
+        };
+        let drive = &critical.drive;
         sentence!("becomes unstable at %{percent} of %{drive}", percent, drive)
     }
 }

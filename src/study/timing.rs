@@ -48,7 +48,8 @@ pub struct SolveFromRest {
 #[must_use]
 pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
-    let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop()?;
+    // Without a load there is no iteration.
+    let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop().unwrap_or_default();
     Some(SolveFromRest {
         timings,
         iterations: simulation.iterations(),

@@ -30,6 +30,6 @@ fn scene() -> Scene {
         .force([0.1, 0.0085], [0.0, -90.0])
         .probe("crown", [0.1, 0.008]);
     scene.name = "Jump".to_owned();
-    scene.about = "The arch of the scene snap under a force beyond its limit load of 80 N: it snaps through to the other side.".to_owned();
+    scene.about = "The arch of the scene snap under a force beyond its limit load of about 80 N: it snaps through to the other side.".to_owned();
     scene
 }

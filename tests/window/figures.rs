@@ -226,7 +226,7 @@ fn curves_are_saved_as_files() {
     assert_eq!(points(&rows, "exact beam"), own);
     let linear: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.linear.x, s.linear.y]).collect();
     assert_eq!(points(&rows, "linear beam theory"), linear);
-    assert_eq!(points(&rows, "linear error 3, 5, 10 %").len(), 3);
+    assert_eq!(points(&rows, "beam theory off by 3, 5, 10 %").len(), 3);
 
     export(&mut harness, "SVG");
     let svg = std::fs::read_to_string("warpbeam-001.svg").unwrap();

@@ -419,6 +419,13 @@ fn the_trade_off_is_measured_on_request() {
     assert!(harness.query_all_by_label(&words).next().is_some(), "{words}: {:?}", texts(&harness));
     // An element that does not reach this error shows its smallest one.
     assert!(texts(&harness).iter().any(|t| t.starts_with("at most ")));
+    // It stays for the next lesson.
+    harness.get_by_label("Leave").click();
+    harness.run();
+    assert!(harness.state().study().0.is_none() && harness.state().card().is_none());
+    harness.state_mut().show_card(9);
+    harness.run();
+    assert!(harness.query_all_by_label(&words).next().is_some(), "{words}: {:?}", texts(&harness));
 }
 
 /// Returns every painted text.

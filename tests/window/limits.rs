@@ -65,7 +65,7 @@ fn strips_are_those_of_the_command() {
     for strip in &limits.strips {
         let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
         harness.get_by_label(&format!(
-            "{} {}: within 1 % to: {good}; within 5 % to: {usable}; converges to: {converges}; strains above 10 %: {law}",
+            "{} {}: within 1 %: {good}; within 5 %: {usable}; converges: {converges}; strains above 10 %: {law}",
             strip.element.id(),
             strip.method.id()
         ));
@@ -76,7 +76,7 @@ fn strips_are_those_of_the_command() {
 fn strips(harness: &Harness<'_, Lab>) -> [Vec<String>; 2] {
     let labels = harness.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
     let labels: Vec<String> = labels.collect();
-    ["within 1 % to", "of the loads are solved"]
+    ["within 1 %: ", "of the loads are solved"]
         .map(|part| labels.iter().filter(|label| label.contains(part)).cloned().collect())
 }
 
@@ -225,7 +225,7 @@ fn an_edit_of_the_body_computes_the_limits_again() {
     let limits = MethodLimits::of(&longer, &|_| ControlFlow::Continue(())).unwrap();
     let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
     let usable = linear.words(&LoadAxis::of(&longer), limits.range)[1].to_string();
-    let found = |label: String| label.starts_with("t6 linear:") && label.contains(&format!("within 5 % to: {usable};"));
+    let found = |label: String| label.starts_with("t6 linear:") && label.contains(&format!("within 5 %: {usable};"));
     assert!(harness.query_by(|node| node.label().is_some_and(found)).is_some(), "{usable}");
 }
 
@@ -240,7 +240,7 @@ fn a_motion_has_limits_of_its_integrators() {
         let [good, usable, finishes, law] =
             strip.words(&limits::axis(&scene), found.range).map(|words| words.to_string());
         harness.get_by_label(&format!(
-            "{}: within 1 % to: {good}; within 5 % to: {usable}; finishes to: {finishes}; strains above 10 %: {law}",
+            "{}: within 1 %: {good}; within 5 %: {usable}; finishes: {finishes}; strains above 10 %: {law}",
             strip.integrator.unwrap().id()
         ));
     }

@@ -352,7 +352,7 @@ fn strips_have_the_words_of_limits() {
         let cells: Vec<&str> = row.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
         let [name, good, usable, converges, law] = cells[..] else { panic!("{row}") };
         let words = format!(
-            "{name}: within 1 % to: {good}; within 5 % to: {usable}; converges to: {converges}; strains above 10 %: {law}"
+            "{name}: within 1 %: {good}; within 5 %: {usable}; converges: {converges}; strains above 10 %: {law}"
         );
         assert!(shown.has(&words), "{words}: {:?}", shown.0);
     }

@@ -159,6 +159,12 @@ fn values_out_of_range_are_refused_with_a_message() {
         type_into(&mut harness, label, good);
         assert!(harness.query_by_label_contains(message).is_none(), "{label}: the message stays");
     }
+    // So does the present value.
+    let mut harness = harness("cantilever");
+    type_into(&mut harness, "Force", "12 Pa");
+    assert!(harness.query_by_label_contains("is a pressure").is_some());
+    type_into(&mut harness, "Force", "1 kN");
+    assert!(harness.query_by_label_contains("is a pressure").is_none(), "the message stays");
 }
 
 /// A refused text stays in its field, where it can be corrected; Escape restores the value.

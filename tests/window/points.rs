@@ -290,7 +290,12 @@ fn bases_of_objects_are_dragged_along_the_body() {
     let moved = harness.state().scene().clone();
     let (foot, goal) = (seen(&harness, point), seen(&harness, [9.999, 0.03]));
     drag(&mut harness, foot, goal, Modifiers::NONE);
-    assert_eq!(*harness.state().scene(), before, "back on the edge");
+    let Load::Force { place, at_point, .. } = &harness.state().scene().loads[0] else { panic!("a force") };
+    assert_eq!(
+        (place, at_point),
+        (&Place::At([10.0, 0.0]), &false),
+        "a force at a point is not distributed over an edge"
+    );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run();
     assert_eq!(*harness.state().scene(), moved, "one step of undo");

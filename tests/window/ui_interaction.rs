@@ -215,7 +215,16 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
         };
         ["tip Δx, Δy", "Energy", "Equilibrium", "Iterations", "ρ"].map(after)
     };
-    let before = details(&harness);
+    let quality = |harness: &Harness<'_, Lab>| {
+        let nodes = harness.get_all_by_role(Role::Label);
+        let values: Vec<String> = nodes.filter_map(|node| node.accesskit_node().value()).collect();
+        ["Mesh error", "Stress", "Strain"].map(|name| {
+            let at = values.iter().position(|value| value == name).unwrap();
+            values[at + 1].clone()
+        })
+    };
+    let (before, quality_before) = (details(&harness), quality(&harness));
+    assert!(quality_before[1].contains("797 kPa"), "{quality_before:?}");
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");
     assert!(
         before[3].starts_with("21 since the last change, residual") && before[4].contains("ρ = 0.47"),
@@ -227,7 +236,12 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     assert_eq!(harness.query_all_by_label("equilibrium at 30 kN; 176 kN not reached").count(), 2);
     let mut now = details(&harness);
     now[3] = now[3].replace("to the state that is drawn", "since the last change");
+    now[4] = now[4].replace("At 30 kN: ", "");
     assert_eq!(now, before);
+    // Stress, strain and mesh error are those of the drawn state too.
+    harness.state_mut().solve();
+    harness.run();
+    assert_eq!(quality(&harness), quality_before);
     harness.get_by_label_contains("ERROR \u{2013}");
     harness.get_by_label_contains("TIME \u{2013}");
     // ρ at the equilibrium that is not reached.

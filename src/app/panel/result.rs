@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, rho, stability, state_text};
+use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, load_text, rho, stability, state_text};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     if let Some(motion) = simulation.motion() {
         motion_rows(&mut row, input, motion);
         probe_row(&mut row, simulation);
-        frame_row(&mut row, input, "Computing time of a time step");
+        frame_row(&mut row, input, ("Step", "Computing time of a time step"));
     } else {
         search_rows(&mut row, input, errors);
     }
@@ -92,7 +92,11 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         let known = if input.shows_converged { own() } else { rho(input) };
         let text = known.filter(|_| simulation.status().is_success()).map_or_else(
             || UNKNOWN.to_owned(),
-            |rho| sentence(&said(&Claim::Disturbance { rho, has_converged: false })),
+            |rho| {
+                let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
+                let load = load_text(input.shown.scene()).filter(|_| input.shows_converged);
+                load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load = load, text = text))
+            },
         );
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
         row("ρ", text, tip);
@@ -112,7 +116,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         let tip = joined(error.into_iter().chain([solves, factors]));
         row("Auto", sentence(&said(&auto.decision)), &tip);
     }
-    frame_row(row, input, "Computing time of the iterations of one displayed frame");
+    frame_row(row, input, ("Frame", "Computing time of the iterations of one displayed frame"));
 }
 
 /// Function that shows a row of the result: name, value, and tooltip.
@@ -165,9 +169,9 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     row("Strain", text, &tip);
 }
 
-fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, what: &str) {
+fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, (name, what): (&str, &str)) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
-    row("Frame", joined([time(input.timings.total()), unknowns]), what);
+    row(name, joined([time(input.timings.total()), unknowns]), what);
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.
@@ -175,7 +179,7 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let clock = &input.playback.clock;
     let factor = match clock.factor() {
-        Some(factor) if clock.lags() => fill!("%{factor} of real time: too slow", factor = fraction(factor)),
+        Some(factor) if clock.lags() => fill!("%{factor} of real time: slower than asked", factor = fraction(factor)),
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
         None => UNKNOWN.to_owned(),
     };

@@ -76,7 +76,11 @@ pub(super) fn options(
                 if changed[0] < changed[1] {
                     view.fixed_range = Some(changed);
                 } else {
-                    state.messages.insert(label, sentence!("expected the lowest value below the highest"));
+                    let reason = match view.field.has_sign() {
+                        true => sentence!("expected a value other than 0: the colours are symmetric about 0"),
+                        false => sentence!("expected the lowest value below the highest"),
+                    };
+                    state.messages.insert(label, reason);
                 }
             }
         }

@@ -73,6 +73,8 @@ pub(crate) struct Changed {
     pub body: bool,
     /// `true` if the scene comes from another document.
     pub document: bool,
+    /// `true` if an exploded motion has started again.
+    pub restart: bool,
 }
 
 /// Message for the user about background work.
@@ -356,6 +358,7 @@ impl Session {
         // With other settings an exploded body would still be kilometres long.
         if has_exploded && self.is_motion() {
             self.reset();
+            self.changed.restart = true;
         }
         Ok(self.changed)
     }
@@ -628,7 +631,10 @@ impl Session {
 
     fn certify(&mut self) {
         self.simulation.certify();
-        self.quality.update(&self.simulation);
+        // The last equilibrium is drawn in place of a state that is none.
+        let kept = self.converged.as_ref().filter(|kept| Arc::ptr_eq(kept.system(), self.simulation.system()));
+        let kept = kept.filter(|_| !self.simulation.status().is_success());
+        self.quality.update(kept.unwrap_or(&self.simulation));
     }
 
     /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
@@ -643,8 +649,11 @@ impl Session {
                         && simulation.scene() == own.scene()
                         && simulation.status() == own.status()
                         && own.mouse_spring().is_none();
-                    if is_current {
+                    if is_current && simulation.status().is_success() {
                         (self.simulation, self.quality) = (simulation, quality);
+                    } else if is_current {
+                        self.simulation = simulation;
+                        self.certify();
                     }
                 }
                 Update::Died => self.certify(),

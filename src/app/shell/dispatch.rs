@@ -32,12 +32,12 @@ impl Lab {
         if changed.mesh {
             viewport.set_mesh(mesh);
         }
-        if changed.body || changed.document {
+        if changed.body || changed.document || changed.restart {
             viewport.clear_swept();
         }
         if changed.document {
             panel.clear();
-            budget.clear();
+            budget.open(session.scene());
             *compare = Compare::default();
             *motions = MotionCompare::default();
             *limits = LimitMap::default();
@@ -150,6 +150,7 @@ impl Lab {
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
             Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MAX_ITERATIONS)),
             Action::Fit => {
+                self.desk.viewport.clear_swept();
                 self.desk.viewport.fit();
                 self.desk.compare.fit();
                 self.desk.motions.fit();

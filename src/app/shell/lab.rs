@@ -163,6 +163,8 @@ pub struct Lab {
     pub(super) lesson: Option<Box<Lesson>>,
     /// Number of the last displayed card, from 0.
     pub(super) card: usize,
+    /// Measurements of the last lesson.
+    pub(super) card_study: Budget,
     pub(super) intro: Option<Intro>,
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
@@ -191,6 +193,7 @@ impl Lab {
             desk: Desk::new(Session::new(source, scene, simulation)),
             lesson: None,
             card: 0,
+            card_study: Budget::default(),
             intro: None,
             story: None,
             dialog: None,

@@ -203,7 +203,7 @@ impl Lab {
         let mut view = self.desk.view.clone();
         let Desk { session, compare, .. } = &self.desk;
         // The body that the panel describes may be in no pane.
-        let is_drawn = view.mode != Mode::Compare || session.is_motion() || compare.shows(session.scene());
+        let is_drawn = view.mode != Mode::Compare || !session.is_motion() && compare.shows(session.scene());
         panel::show(ui, &self.readout(), is_drawn.then_some(errors), &mut state, &mut view, actions);
         (self.desk.panel, self.desk.view) = (state, view);
     }

@@ -120,7 +120,7 @@ impl Lab {
         }
         boxed_text(
             painter,
-            rect.center_bottom() - egui::vec2(0.0, 24.0),
+            rect.center_bottom() - egui::vec2(0.0, if self.desk.session.is_motion() { 48.0 } else { 24.0 }),
             Align2::CENTER_BOTTOM,
             message,
             ui.visuals(),

@@ -132,7 +132,8 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
                 _ => Cow::default(),
             },
             tip: tr(
-                "Computing time of a solve from rest, the median of repeated solves, without the check of stability",
+                "Computing time of a solve from rest, the median of repeated solves, without the check of stability. Linear \
+                 theory factors its matrix once for all loads: that time is not in it.",
             )
             .to_owned(),
             color: palette.text,
@@ -187,7 +188,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
                 None if input.running => UNKNOWN.to_owned(),
                 None => tr("paused").to_owned(),
             },
-            word: if clock.lags() { tr("too slow").into() } else { Cow::default() },
+            word: if clock.lags() { tr("slower than asked").into() } else { Cow::default() },
             tip: tr("Simulated seconds per second; fewer than requested if the machine cannot keep up").to_owned(),
             color: if clock.lags() { palette.error } else { palette.text },
             ratio: None,

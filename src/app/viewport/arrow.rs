@@ -231,9 +231,32 @@ impl Arrow {
 
     /// Paints the arrow of the force on a body that is not in the state that was asked for, without a handle; nothing for a
     /// force of zero.
-    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32) {
+    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32, visuals: &Visuals) {
         if self.magnitude > 0.0 {
             paint_arrow(painter, self.from, self.vector, color);
+            self.paint_break(painter, color, visuals);
+        }
+    }
+
+    /// Returns `true` if the arrow is shorter than its force, because its tip stays in the view.
+    pub(crate) fn is_broken(&self) -> bool {
+        f64::from(self.vector.length()) < self.scale.length(self.magnitude) - 1.0
+    }
+
+    /// Paints the gap of a shaft that is shorter than its force.
+    fn paint_break(&self, painter: &Painter, color: Color32, visuals: &Visuals) {
+        /// Fraction of the vector at which the shaft is broken.
+        const AT: f32 = 0.3;
+        if !self.is_broken() {
+            return;
+        }
+        let direction = self.vector.normalized();
+        let (middle, slanted) = (self.from + AT * self.vector, (direction.rot90() + 0.6 * direction) * 7.0);
+        let ends = |at: Pos2| [at - slanted, at + slanted];
+        let sides = [middle - direction * 2.5, middle + direction * 2.5];
+        painter.line_segment(ends(middle), Stroke::new(5.0, visuals.extreme_bg_color));
+        for side in sides {
+            painter.line_segment(ends(side), Stroke::new(1.5, color));
         }
     }
 
@@ -255,6 +278,7 @@ impl Arrow {
         } else {
             paint_arrow(painter, self.from, self.vector, faint)
         };
+        self.paint_break(painter, faint, visuals);
         paint_grip(painter, tip - direction * 6.0, faint, is_hot);
         let view = painter.clip_rect();
         if !view.contains(self.from) && !view.contains(tip) {

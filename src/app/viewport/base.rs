@@ -149,8 +149,9 @@ impl Bases<'_> {
         let edges = edges.filter_map(|name| {
             let edge = Place::from(name.as_str());
             let at = self.applied(&edge, false)?;
-            // On a whole edge, a support of a point would also hold rotation: a pin would become a clamp.
-            if !self.holds_point(object) {
+            // On a whole edge, a support of a point would also hold rotation: a pin would become a clamp. A force of a
+            // point would be distributed.
+            if !self.is_at_point(object) {
                 return Some((edge, at));
             }
             let middle = point_of_application(mesh, mesh.nodes(), &edge, false)?;
@@ -170,10 +171,17 @@ impl Bases<'_> {
         Some((Place::At(rest.into()), self.drawn(rest)?))
     }
 
-    /// Returns `true` if an object is a support of a point.
-    fn holds_point(&self, object: Object) -> bool {
-        let Object::Support(i) = object else { return false };
-        self.scene.supports.get(i).is_some_and(|support| matches!(support.place, Place::At(_)))
+    /// Returns `true` if an object is a force or a support at a point.
+    fn is_at_point(&self, object: Object) -> bool {
+        let place = match object {
+            Object::Force(i) => match self.scene.loads.get(i) {
+                Some(Load::Force { place, .. }) => Some(place),
+                _ => None,
+            },
+            Object::Support(i) => self.scene.supports.get(i).map(|support| &support.place),
+            _ => None,
+        };
+        matches!(place, Some(Place::At(_)))
     }
 
     /// Returns the nearest point of the outline at rest, m; `None` if it is not close to the rest position `at`.

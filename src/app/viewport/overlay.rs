@@ -178,15 +178,22 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
 /// `legend`.
 fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, legend: Option<Rect>) {
     let palette = Palette::new(visuals);
-    let Overlay { system, camera, .. } = *overlay;
-    let projection = Projection { camera, rect };
+    let projection = Projection { camera: overlay.camera, rect };
     if let Some(edge) = &overlay.options.edge {
-        let segments = system.mesh().edges().get(edge).into_iter().flatten();
-        for piece in segments.flat_map(|s| s.nodes().windows(2)) {
-            let ends = [piece[0], piece[1]].map(|n| overlay.positions[n as usize]);
-            if let Some(segment) = projection.segment(ends[0], ends[1]) {
-                painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
-                painter.line_segment(segment, Stroke::new(3.5, palette.load));
+        for segment in edge_segments(&projection, overlay, edge) {
+            painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
+            painter.line_segment(segment, Stroke::new(3.5, palette.load));
+        }
+    }
+    if !overlay.apart {
+        // A force on an edge is distributed along it; its arrow is that of the whole.
+        for load in &overlay.scene.loads {
+            if let Load::Force { place: Place::Edge(edge), .. } = load
+                && arrow::is_seen(load, overlay.time)
+            {
+                for segment in edge_segments(&projection, overlay, edge) {
+                    painter.line_segment(segment, Stroke::new(2.5, palette.load));
+                }
             }
         }
     }
@@ -201,6 +208,19 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
         probes(painter, &named, visuals);
         sections(painter, &projection, overlay, &named, &palette, visuals);
     }
+}
+
+/// Returns the drawn sides of a named edge.
+fn edge_segments<'a>(
+    projection: &'a Projection,
+    overlay: &'a Overlay<'_>,
+    edge: &str,
+) -> impl Iterator<Item = [Pos2; 2]> + use<'a> {
+    let segments = overlay.system.mesh().edges().get(edge).into_iter().flatten();
+    segments.flat_map(|side| side.nodes().windows(2)).filter_map(|piece| {
+        let [from, to] = [*piece.first()?, *piece.get(1)?].map(|n| overlay.positions.get(n as usize).copied());
+        projection.segment(from?, to?)
+    })
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
@@ -461,7 +481,7 @@ fn loads(
     let is_outline = overlay.wanted.is_some();
     if is_outline {
         for own in of(scene).arrows(projection) {
-            own.paint_body_load(painter, palette.load);
+            own.paint_body_load(painter, palette.load, visuals);
         }
         for own in of(scene).moment_arrows(projection) {
             own.paint_body_load(painter, palette.load);

@@ -28,7 +28,8 @@ pub(crate) fn is_on(kept: Pos2, click: Pos2) -> bool {
 /// Formats a value of a field with its unit.
 fn field_text((field, value): (Field, Option<f64>)) -> String {
     let (factor, unit) = field.display_unit();
-    value.map_or_else(|| tr("unknown").to_owned(), |value| engineering(three_digits(factor * value), unit))
+    let unknown = if unit == "Pa" { "not defined: crushed or inverted here" } else { "unknown" };
+    value.map_or_else(|| tr(unknown).to_owned(), |value| engineering(three_digits(factor * value), unit))
 }
 
 /// Paints the value of the field and the displacement next to the pointer.
@@ -106,6 +107,13 @@ pub(crate) struct CardChoice {
     /// `true` if all values are shown where they hide much of the body too.
     shows_all: bool,
     shows_matrices: bool,
+}
+
+impl CardChoice {
+    /// Begins the card of another point, with as many values as fit.
+    pub(crate) fn begin(&mut self) {
+        self.shows_all = false;
+    }
 }
 
 /// Axes of the stresses on a card.
@@ -272,6 +280,11 @@ impl Card {
         if choice.shows_all || part <= HIDDEN { all } else { best(Form::Short).0 }
     }
 
+    /// Returns `true` if the card is of a point.
+    pub(crate) fn is_of(&self, point: MaterialPoint) -> bool {
+        self.point == point
+    }
+
     /// Returns `true` if the card was placed for the point, the view and the choice.
     pub(crate) fn is_for(&self, point: MaterialPoint, view: Rect, choice: CardChoice) -> bool {
         (self.point, self.view, self.shows_all) == (point, view, choice.shows_all)
@@ -287,8 +300,14 @@ impl Card {
         const SCALE_AND_BAR: f32 = 84.0;
         const SIDE: f32 = 14.0;
         let (view, is_bar_above) = (self.view, overlay::has_legend_on_top(self.view.height()));
-        let above = if is_bar_above && self.form == Form::Short { KEY_AND_BAR } else { KEY };
+        let above = match self.form {
+            // All values that the user asks for hide the key and the bar rather than the body.
+            _ if self.shows_all => SIDE,
+            Form::Short if is_bar_above => KEY_AND_BAR,
+            _ => KEY,
+        };
         let ([left, right], below) = match self.align {
+            _ if self.shows_all => ([SIDE; 2], SIDE),
             Align2::CENTER_BOTTOM => (self.form.beside(), SIDE),
             Align2::RIGHT_BOTTOM if is_bar_above => ([SIDE; 2], SIDE),
             _ => ([SIDE; 2], if is_bar_above { SCALE } else { SCALE_AND_BAR }),

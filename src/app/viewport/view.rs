@@ -519,6 +519,10 @@ impl BodyView {
         let (scene, system) = (content.session.scene(), content.simulation().system());
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
+        // Another point begins with the values that fit.
+        if self.card.is_none_or(|card| !card.is_of(point)) {
+            self.card_choice.begin();
+        }
         // The card stays where it is while the body moves.
         let card = self.card.filter(|card| card.is_for(point, self.rect, self.card_choice)).unwrap_or_else(|| {
             let projection = self.projection();

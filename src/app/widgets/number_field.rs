@@ -66,12 +66,13 @@ impl NumberField {
         original: Option<f64>,
     ) -> Option<f64> {
         let mut edited = None;
-        let mut is_reset = false;
+        let (mut is_reset, mut is_committed) = (false, false);
         let tip = self.tip(original);
         let refused = RefCell::new(None);
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
         // In the frame after Escape egui reads the typed text once more.
         let escape_id = Id::unique((self.label, "escape"));
+        let refused_id = Id::unique((self.label, "refused"));
         let has_escaped = ui.data_mut(|data| data.remove_temp::<bool>(escape_id)).is_some();
         let label = ui
             .horizontal(|ui| {
@@ -108,6 +109,7 @@ impl NumberField {
                         // A refused text stays in the field, which keeps the focus, so that it can be corrected.
                         ui.memory_mut(|memory| memory.request_focus(response.id));
                     }
+                    is_committed = response.lost_focus();
                     if response.double_clicked() && original.is_some() {
                         is_reset = true;
                         // The first click of the double click has started editing the text.
@@ -139,6 +141,7 @@ impl NumberField {
         }
         let accepted = match (refused.into_inner(), edited) {
             (Some(reason), _) => {
+                ui.data_mut(|data| data.insert_temp(refused_id, ()));
                 messages.insert(self.label, reason);
                 None
             }
@@ -152,7 +155,13 @@ impl NumberField {
                     None
                 }
             },
-            (None, None) => None,
+            (None, None) => {
+                // The present value was typed in place of a refused text.
+                if is_committed && ui.data_mut(|data| data.remove_temp::<()>(refused_id)).is_some() {
+                    messages.remove(self.label);
+                }
+                None
+            }
         };
         if messages.contains_key(self.label) {
             show_over_slider(ui, messages, self.label, slider);

@@ -18,7 +18,7 @@ const NEAREST: f32 = 8.0;
 /// Smallest distances between tick labels, points: horizontal and vertical.
 const APART: [f32; 2] = [66.0, 26.0];
 
-/// Fraction of the x axis, from its beginning, in which a tick label would overlap the labels of the y axis.
+/// Fraction of the x axis, from either end, in which a tick label would overlap the labels of the y axis or be cut.
 const CORNER: f64 = 0.02;
 
 /// Returns a plot that cannot be dragged or zoomed, with round ticks and values in engineering units.
@@ -32,9 +32,13 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
     let near = egui::Rangef::new(0.5 * APART[0], 0.75 * APART[0]);
     let x_axis = AxisHints::new_x().label(x_name.to_owned()).label_spacing(near).min_thickness(X_AXIS).formatter(
         move |mark, range| {
-            // In the corner the label of the y axis has priority.
-            let in_corner = mark.value - range.start() < CORNER * (range.end() - range.start());
-            if in_corner { String::new() } else { tick(mark.value, [*range.start(), *range.end()], x_unit) }
+            // In the corner the label of the y axis has priority; at the end there is room for half of a label only.
+            let distance = (mark.value - range.start()).min(range.end() - mark.value);
+            if distance < CORNER * (range.end() - range.start()) {
+                String::new()
+            } else {
+                tick(mark.value, [*range.start(), *range.end()], x_unit)
+            }
         },
     );
     let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);

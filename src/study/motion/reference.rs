@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use super::plan::{Plan, Samples, cells, nodes_of_shape, slenderness};
 use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
+use crate::format::percent;
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
@@ -48,10 +49,10 @@ impl std::fmt::Display for MotionReference {
         };
         write!(
             f,
-            "{} with steps of {} on {mesh} (its own error about {:.1e} %)",
+            "{} with steps of {} on {mesh} (its own error about {})",
             IntegratorKind::EnergyMomentum.id(),
             step_text(self.time_step),
-            self.error_percent
+            percent(self.error_percent)
         )
     }
 }

@@ -6,6 +6,7 @@ use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStu
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
+use crate::study::claim::Claim;
 use crate::study::ranking::Ranked;
 use crate::study::trade::mesh_text;
 
@@ -100,6 +101,10 @@ impl MotionStudy {
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         });
+        if let Claim::NotKnown { .. } = Claim::of_ranking(ranking, 1.0) {
+            text.push('\n');
+            return;
+        }
         let close = ranking.within(1.0);
         let real = close.first().filter(|m| m.milliseconds <= REAL_TIME);
         let cost = real.map_or_else(

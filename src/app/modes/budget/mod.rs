@@ -38,9 +38,19 @@ pub(crate) struct Budget {
     study: Option<Measured>,
     /// Measured scene.
     of: Option<Scene>,
+    /// Last study of a scene that was open before.
+    kept: Option<Kept>,
     error: Option<Sentence>,
     limits: Limits,
     messages: Messages,
+}
+
+/// Study of a scene that is not open.
+#[derive(Debug)]
+struct Kept {
+    of: Scene,
+    study: Measured,
+    is_partial: bool,
 }
 
 /// Limits for a solve.
@@ -83,9 +93,16 @@ impl Budget {
         }
     }
 
-    /// Drops the study; the limits stay.
-    pub(crate) fn clear(&mut self) {
-        *self = Self { limits: self.limits, ..Self::default() };
+    /// Shows the last study of another scene than before, if it is of that scene; it is kept until there is another one.
+    pub(crate) fn open(&mut self, scene: &Scene) {
+        let last =
+            self.of.take().zip(self.study.take()).map(|(of, study)| Kept { of, study, is_partial: self.is_partial });
+        let kept = last.filter(|_| !self.runs()).or(self.kept.take());
+        *self = Self { limits: self.limits, kept, ..Self::default() };
+        let is_of = |kept: &mut Kept| without_settings(&kept.of) == without_settings(scene);
+        if let Some(Kept { of, study, is_partial }) = self.kept.take_if(is_of) {
+            (self.of, self.study, self.is_partial) = (Some(of), Some(study), is_partial);
+        }
     }
 
     /// Cancels the study, which then ends soon; measurements made so far are kept.
@@ -193,7 +210,7 @@ impl Budget {
                 let room = bottom - ui.cursor().top() - LOW_PLOT - LEGEND;
                 list(ui, &budget, room.max(LOW_LIST), actions);
                 legend(ui, moves);
-                ui.allocate_ui(vec2(ui.available_width(), LOW_PLOT), |ui| plot(ui, &budget));
+                ui.allocate_ui(vec2(ui.available_width(), LOW_PLOT), |ui| plot(ui, &budget, actions));
             });
             return;
         }
@@ -205,7 +222,7 @@ impl Budget {
             });
             ui.vertical(|ui| {
                 legend(ui, moves);
-                plot(ui, &budget);
+                plot(ui, &budget, actions);
             });
         });
     }
@@ -366,9 +383,12 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Act
     let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
     let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
     let id = egui::Id::unique("applied setting");
-    let is_other = ui.memory_mut(|memory| {
-        std::mem::replace(memory.data.get_temp_mut_or_default::<Option<usize>>(id), applied) != applied
+    let (length, before) = ui.memory_mut(|memory| {
+        let last = memory.data.get_temp_mut_or_default::<(usize, Option<usize>)>(id);
+        std::mem::replace(last, (listed.len(), applied))
     });
+    // A new list begins at its top.
+    let is_other = length == listed.len() && before != applied;
     area.show_rows(ui, row_height, listed.len(), |ui, rows| {
         // The setting that was applied in the plot may be anywhere in the list.
         if let Some(row) = applied.filter(|_| is_other) {
@@ -435,7 +455,7 @@ fn legend(ui: &mut Ui, moves: bool) {
     });
 }
 
-fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
+fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     /// Space for the tick labels and the title of the axis, points.
     const BUDGET_Y_AXIS: f32 = 62.0;
     /// Space beyond the outermost points, in decades.
@@ -444,6 +464,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     const LABEL: f32 = 40.0;
     /// Least distance of the labels of the axis of errors, points.
     const LINE: f32 = 22.0;
+    /// Distance within which a click applies a setting, points.
+    const NEAR: f32 = 12.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
@@ -466,7 +488,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
     let step =
         |[low, high]: [f64; 2], label: f32, room: f32| ((high - low) as f32 * label / room).ceil().max(1.0) as usize;
     let [step, step_up] = [step(x, LABEL, room), step(y, LINE, (ui.available_height() - X_AXIS).max(LINE))];
-    Plot::new("budget")
+    let shown = Plot::new("budget")
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label(tr(time))
@@ -536,6 +558,19 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>) {
                 plot.points(ring);
             }
         });
+    let under = shown.response.hover_pos().and_then(|pointer| {
+        let at = shown.transform.value_from_position(pointer);
+        let found = nearest(at.x, at.y)?;
+        let [x, y] = place(found);
+        let is_near = shown.transform.position_from_point(&PlotPoint::new(x, y)).distance(pointer) <= NEAR;
+        (is_near && budget.current).then_some(found)
+    });
+    if let Some(choice) = under {
+        ui.set_cursor_icon(egui::CursorIcon::PointingHand);
+        if shown.response.clicked() {
+            actions.push(choice.action(budget.scene));
+        }
+    }
 }
 
 /// Shades the errors that the reference's own error hides, in these ranges of the logarithms of times and errors.

@@ -334,7 +334,7 @@ fn header(panes: &Panes<MotionPane>, ui: &mut Ui, number: usize, input: &PaneInp
     let (pane, scene) = (panes.list.get(number)?, input.scene);
     let palette = Palette::new(ui.visuals());
     let color = pane.color(scene, &palette);
-    let widths = ([0.4, 0.24, 0.36], 150.0);
+    let widths = ([0.5, 0.2, 0.3], 190.0);
     let change = panes.show_pickers(ui, (number, color), input, widths, |ui, name, widths, setting| {
         let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
         let panels = (scene.dynamics.integrator.id(), "as in the panel");

@@ -40,6 +40,8 @@ use locking::ElementError;
 
 /// Height of the row of cards, points, and its largest fraction of the window's height.
 const HEIGHT: f32 = 258.0;
+/// Height of a narrow row, whose title and controls are on rows of their own, points.
+const NARROW_HEIGHT: f32 = 300.0;
 const SHARE: f32 = 0.42;
 /// Largest fraction in a low window, which has no status bar in this mode.
 const LOW_SHARE: f32 = 0.46;
@@ -255,7 +257,9 @@ impl Learn {
             actions.extend(self.keys(ui.ctx()));
         }
         let share = if is_low(ui.ctx()) { LOW_SHARE } else { SHARE };
-        let height = HEIGHT.min(share * ui.ctx().content_rect().height());
+        let is_narrow = ui.available_width() < TWO_COLUMNS;
+        let height = if is_narrow { NARROW_HEIGHT } else { HEIGHT };
+        let height = height.min(share * ui.ctx().content_rect().height());
         let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
         let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
         Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
@@ -277,11 +281,13 @@ impl Learn {
                     show(ui);
                 });
             };
-            if ui.available_width() < TWO_COLUMNS {
+            if is_narrow {
                 scroll(ui, "card", &mut |ui| {
-                    text(ui, card);
+                    text(ui, card, false);
                     ui.add_space(8.0);
                     (card.show)(ui, shown, self, actions);
+                    ui.add_space(8.0);
+                    symbols(ui, card);
                 });
                 return;
             }
@@ -292,7 +298,16 @@ impl Learn {
                 ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 show(&mut ui);
             };
-            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
+            column(left, &mut |ui| {
+                // In a low window the row of cards scrolls: the task comes first, so that it is seen without scrolling.
+                let is_low = is_low(ui.ctx());
+                scroll(ui, "words", &mut |ui| {
+                    text(ui, card, !is_low);
+                    if is_low {
+                        symbols(ui, card);
+                    }
+                });
+            });
             column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
         });
     }
@@ -410,8 +425,8 @@ fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) 
     ui.add_space(6.0);
 }
 
-/// Shows sentences, formulas, definitions of symbols, and the task.
-fn text(ui: &mut Ui, card: &Card) {
+/// Shows sentences, formulas and the task, with the definitions of symbols in between if `has_symbols`.
+fn text(ui: &mut Ui, card: &Card, has_symbols: bool) {
     let palette = Palette::new(ui.visuals());
     let is_low = is_low(ui.ctx());
     let text = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
@@ -434,13 +449,8 @@ fn text(ui: &mut Ui, card: &Card) {
             }
         });
     });
-    let symbols = |ui: &mut Ui| {
-        ui.add_space(2.0);
-        let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
-        ui.add(egui::Label::new(spaced(symbols, SMALL)).wrap());
-    };
-    if !is_low {
-        symbols(ui);
+    if has_symbols {
+        symbols(ui, card);
     }
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
@@ -449,10 +459,13 @@ fn text(ui: &mut Ui, card: &Card) {
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
-    // In a low window the row of cards scrolls: the task comes first, so that it is seen without scrolling.
-    if is_low {
-        symbols(ui);
-    }
+}
+
+/// Shows the definitions of symbols.
+fn symbols(ui: &mut Ui, card: &Card) {
+    ui.add_space(2.0);
+    let text = RichText::new(tr(card.symbols)).size(SMALL).color(Palette::new(ui.visuals()).secondary);
+    ui.add(egui::Label::new(spaced(text, SMALL)).wrap());
 }
 
 const NOT_TRIANGLES: &str = "These numbers are for three-node triangles only.";

@@ -77,7 +77,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
         Some(study) => {
             fill!(
                 "Bounds: parts of the error added, against %{reference}. Grey: the smallest bound, if none is that small. \
-                 *: stopped early, the method does not converge here.",
+                 *: stopped early, the method does not converge here. Up to 40 cells; Budget measures finer meshes too.",
                 reference = said(&study.reference)
             )
         }

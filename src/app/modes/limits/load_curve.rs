@@ -209,7 +209,7 @@ fn departure_text(departures: &[Departure], (full, unit): (f64, &str)) -> Option
     let percent = each(&|departure| departure.percent.to_string());
     let loads = each(&|departure| engineering(three_digits(departure.at.factor * full), unit));
     (!departures.is_empty())
-        .then(|| (fill!("linear error %{percent} %", percent = percent), fill!("at %{load}", load = loads)))
+        .then(|| (fill!("beam theory off by %{percent} %", percent = percent), fill!("at %{load}", load = loads)))
 }
 
 #[cfg(test)]

@@ -474,8 +474,7 @@ impl<'a> StripChart<'a> {
         let text = match strip.done < 1.0 {
             true => fill!("%{name}: %{done} of the loads are solved", name = name.as_str(), done = done.as_str()),
             false if strip.integrator.is_some() => fill!(
-                "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; finishes to: %{finishes}; strains above \
-                 10 %: %{law}",
+                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
                 name = name.as_str(),
                 good = good,
                 usable = usable,
@@ -483,8 +482,7 @@ impl<'a> StripChart<'a> {
                 law = law
             ),
             false => fill!(
-                "%{name}: within 1 % to: %{good}; within 5 % to: %{usable}; converges to: %{converges}; strains above \
-                 10 %: %{law}",
+                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}",
                 name = name.as_str(),
                 good = good,
                 usable = usable,
