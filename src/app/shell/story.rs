@@ -9,7 +9,7 @@ use crate::app::modes::learn;
 use crate::app::platform::page;
 use crate::app::shell::lab::{Desk, Lab, Story};
 use crate::app::view_options::ViewOptions;
-use crate::app::viewport::overlay;
+use crate::app::widgets::legend;
 use crate::app::widgets::palette::{HEADLINE, Palette};
 use crate::render::{Camera, Margins};
 use crate::scene::{ElementKind, MethodKind};
@@ -207,7 +207,7 @@ impl Lab {
         let (low, high) = session.simulation().system().mesh().bounds();
         let (low, high) = (low - Vector2::new(0.0, BEYOND.y), high + Vector2::new(BEYOND.x, 0.0));
         let rect = viewport.rect();
-        let margins = if overlay::has_legend_on_top(rect.height()) { LOW_MARGINS } else { MARGINS };
+        let margins = if legend::has_bar_on_top(rect.height()) { LOW_MARGINS } else { MARGINS };
         viewport.set_camera(Camera::fit(low, high, [rect.width(), rect.height()].map(f64::from), margins));
     }
 
@@ -224,7 +224,7 @@ impl Lab {
         let caption = tr(caption);
         let font = FontId::proportional(HEADLINE);
         let galley = painter.layout(caption.to_owned(), font, palette.text, (rect.width() - 48.0).max(40.0));
-        let area = if overlay::has_legend_on_top(rect.height()) {
+        let area = if legend::has_bar_on_top(rect.height()) {
             Align2::CENTER_BOTTOM.anchor_size(rect.center_bottom() - vec2(0.0, 12.0), galley.size())
         } else {
             Align2::CENTER_TOP.anchor_size(rect.center_top() + vec2(0.0, CAPTION), galley.size())

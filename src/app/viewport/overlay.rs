@@ -17,7 +17,7 @@ use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, ForceArrows};
 use crate::app::viewport::handle::HotHandle;
 use crate::app::viewport::moment_arrow::MomentArrow;
-use crate::app::widgets::legend::LegendMark;
+use crate::app::widgets::legend::{LegendMark, has_bar_on_top};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::assembly::{MouseSpring, System};
@@ -98,7 +98,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
     if let Some((note, color)) = overlay.note {
         // In a low view the body begins at the top; the note is beside it.
-        let (at, align) = if has_legend_on_top(rect.height()) {
+        let (at, align) = if has_bar_on_top(rect.height()) {
             (rect.left_top() + vec2(14.0, 40.0), Align2::LEFT_TOP)
         } else {
             (rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP)
@@ -200,7 +200,7 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
     if !overlay.apart {
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals, legend);
-        let on_top = legend.filter(|_| has_legend_on_top(rect.height()));
+        let on_top = legend.filter(|_| has_bar_on_top(rect.height()));
         let below = on_top.map_or(0.0, |legend| legend.bottom() - rect.top());
         weights(painter, rect, below, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
@@ -236,7 +236,7 @@ fn sections(
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
-    let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_legend_on_top(projection.rect.height());
+    let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_bar_on_top(projection.rect.height());
     if overlay.sections.is_empty() {
         return;
     }
@@ -568,13 +568,7 @@ const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
 
 /// Returns `true` if a view of size `view`, points, has a colour bar at its bottom.
 pub(crate) fn has_legend_below(view: Vec2) -> bool {
-    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_legend_on_top(view.y)
-}
-
-/// Returns `true` if a view of this height, points, is so low that the colour bar is at its top; at the bottom it would
-/// cover the arrows.
-pub(crate) fn has_legend_on_top(height: f32) -> bool {
-    height < 400.0
+    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_bar_on_top(view.y)
 }
 
 /// Paints the colour bar with its title and ticks in the lower right corner, or, in a low view, in one row at the top,
@@ -616,7 +610,7 @@ fn legend(
     });
     let font = FontId::proportional(SMALL);
     let text = |text: String| painter.layout_no_wrap(text, font.clone(), palette.text);
-    if has_legend_on_top(rect.height()) {
+    if has_bar_on_top(rect.height()) {
         let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
         let ends = if overlay.has_values { [low, format!("{high} {symbol}{unit}")] } else { Default::default() };
         let ends = ends.map(text);

@@ -6,7 +6,7 @@ use egui::{
 use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
-use crate::app::viewport::overlay;
+use crate::app::widgets::legend;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
@@ -299,7 +299,7 @@ impl Card {
         const SCALE: f32 = 50.0;
         const SCALE_AND_BAR: f32 = 84.0;
         const SIDE: f32 = 14.0;
-        let (view, is_bar_above) = (self.view, overlay::has_legend_on_top(self.view.height()));
+        let (view, is_bar_above) = (self.view, legend::has_bar_on_top(self.view.height()));
         let above = match self.form {
             // All values that the user asks for hide the key and the bar rather than the body.
             _ if self.shows_all => SIDE,

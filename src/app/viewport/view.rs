@@ -18,6 +18,7 @@ use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interac
 use crate::app::viewport::probe::{Card, CardChoice, CardRequest, Pinned};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
+use crate::app::widgets::legend;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -667,7 +668,7 @@ impl BodyView {
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.whole_arrows(&projection));
         }
-        let on_top = overlay::has_legend_on_top(size.y);
+        let on_top = legend::has_bar_on_top(size.y);
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
@@ -801,7 +802,7 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
 
 /// Returns the margins around a box that do not depend on the loads.
 fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
-    match (content.card.is_some(), overlay::has_legend_on_top(view[1] as f32)) {
+    match (content.card.is_some(), legend::has_bar_on_top(view[1] as f32)) {
         // The first view is a point, because nothing has been laid out.
         (true, true) if view[0] > 1.0 && view[0] < ONE_ROW => Margins { top: LOW_MARGINS.top, ..LOW_CARD_MARGINS },
         (true, true) => LOW_CARD_MARGINS,
