@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::scene::{Analysis, Source};
-use warpbeam::{IntegratorKind, LoadId, Scene, Simulation, State};
+use warpbeam::{IntegratorKind, LoadId, Scene, Simulation, State, Status};
 
 fn harness_of(name: &str, scene: Scene) -> Harness<'static, Lab> {
     let simulation = Simulation::new(&scene).unwrap();
@@ -268,4 +268,28 @@ fn a_body_that_crosses_itself_is_reported_once() {
 
 fn scene_of_clip() -> Scene {
     scene("clip")
+}
+
+/// After an explosion, the remedy shows the body again as it was seen before.
+#[test]
+fn the_view_of_an_exploded_motion_comes_back() {
+    let mut harness = harness("swing");
+    harness.run_steps(4);
+    let before = harness.state().camera().scale;
+    let mut scene = harness.state().scene().clone();
+    scene.dynamics.integrator = IntegratorKind::SymplecticEuler;
+    harness.state_mut().set_scene(scene).unwrap();
+    for _ in 0..400 {
+        harness.step();
+        if matches!(harness.state().simulation().status(), Status::Stopped(_)) {
+            break;
+        }
+    }
+    assert!(matches!(harness.state().simulation().status(), Status::Stopped(_)));
+    harness.run_steps(4);
+    harness.get_by_label("Use tr-bdf2").click();
+    harness.run_steps(8);
+    assert!(time(&harness) < 2.0, "it starts again");
+    let scale = harness.state().camera().scale;
+    assert!(scale > 0.3 * before, "{scale} px/m, before {before}");
 }

@@ -2,7 +2,7 @@
 
 use crate::common::lab::{pick, type_into, unfold, wait};
 use crate::common::{scene, scene_with, solve_json};
-use crate::ui_interaction::on_body;
+use crate::ui_interaction::{click, on_body};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
@@ -866,6 +866,29 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     harness.run();
     assert!(listed(&harness).contains(&last), "{last} was applied, and {:?} are shown", listed(&harness));
+
+    // A click on a setting in the plot applies it.
+    let is_setting = |lab: &Lab| {
+        let of = |m: &&warpbeam::study::Measurement| m.is_applied_to(lab.scene());
+        lab.study().0.is_some_and(|study| study.measurements.iter().any(|m| of(&m)))
+    };
+    let applied = harness.state().scene().clone();
+    let right = harness.get_by_label("Panel").rect().left() - 320.0;
+    let under = |harness: &mut Harness<'_, Lab>, at: egui::Pos2| {
+        harness.hover_at(at);
+        harness.step();
+        harness.output().platform_output.cursor_icon == egui::CursorIcon::PointingHand
+    };
+    let mut places =
+        (0..60).flat_map(|i| (0..30).map(move |j| egui::pos2(right - 6.0 * i as f32, 560.0 + 6.0 * j as f32)));
+    let is_applied = places.any(|at| {
+        if under(&mut harness, at) {
+            click(&mut harness, at);
+            harness.run();
+        }
+        *harness.state().scene() != applied
+    });
+    assert!(is_applied && is_setting(harness.state()), "{:?}", harness.state().scene().solver);
     // Another scene starts another study.
     pick(&mut harness, "Scene", "bridge");
     assert!(harness.state().study().0.is_none());

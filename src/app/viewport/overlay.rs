@@ -262,7 +262,7 @@ fn sections(
         let plus = to + tangent * OUTSIDE - normal * 9.0;
         painter.text(plus, Align2::CENTER_CENTER, "+", FontId::proportional(BODY), color);
         let SectionForces { normal: tension, shear, moment } = section.forces;
-        let least = 1e-6 * (section.force.norm() + moment.abs() / overlay.system.size());
+        let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {
             if force.abs() > least {
                 arrow::paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
@@ -793,7 +793,7 @@ pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
 
 /// Paints a scale bar of a round length.
 pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
-    if rect.width() < 220.0 || rect.height() < 80.0 {
+    if rect.width() < 220.0 || rect.height() < 100.0 {
         return;
     }
     let (length, bar) = scale(camera);

@@ -290,6 +290,11 @@ impl Card {
         (self.point, self.view, self.shows_all) == (point, view, choice.shows_all)
     }
 
+    /// Returns `true` if the card covers a position in the window.
+    pub(crate) fn hides(&self, at: Pos2) -> bool {
+        self.area().contains(at)
+    }
+
     /// Returns the position of the aligned point of the card, in the window.
     fn position(&self) -> Pos2 {
         /// Room for the line key above, and for a colour bar under it in low views, points.

@@ -524,8 +524,9 @@ impl BodyView {
         if self.card.is_none_or(|card| !card.is_of(point)) {
             self.card_choice.begin();
         }
-        // The card stays where it is while the body moves.
-        let card = self.card.filter(|card| card.is_for(point, self.rect, self.card_choice)).unwrap_or_else(|| {
+        // The card stays where it is while the body moves, unless the point comes under it.
+        let is_well_placed = |card: &Card| card.is_for(point, self.rect, self.card_choice) && !card.hides(at);
+        let card = self.card.filter(is_well_placed).unwrap_or_else(|| {
             let projection = self.projection();
             let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
             let corners: Vec<_> = self.body.points().iter().map(|point| projection.point(*point)).collect();
