@@ -387,12 +387,14 @@ impl Strip {
         };
         let within = |percent: f64| match (self.within(percent), self.last_known()) {
             (Some(0.0), _) if self.is_undecided(percent) => sentence!("not known"),
-            (Some(factor), _) if self.is_undecided(percent) => {
-                let loads = sentence!("at least %{load}", load = load(factor));
-                self.within_again(percent, range).into_iter().fold(loads, again)
-            }
             (Some(0.0), _) => sentence!("not at %{load}", load = load(range[0])),
-            (Some(factor), _) => self.within_again(percent, range).into_iter().fold(load(factor).into(), again),
+            (Some(factor), _) => {
+                let first = match self.is_undecided(percent) {
+                    true => sentence!("at least %{load}", load = load(factor)),
+                    false => load(factor).into(),
+                };
+                self.within_again(percent, range).into_iter().fold(first, again)
+            }
             // It does not converge beyond.
             (None, Some((factor, _))) if self.ends_at() == Some(factor) => load(factor).into(),
             (None, Some((factor, _))) => sentence!("at least %{load}", load = load(factor)),

@@ -165,6 +165,12 @@ fn values_out_of_range_are_refused_with_a_message() {
     assert!(harness.query_by_label_contains("is a pressure").is_some());
     type_into(&mut harness, "Force", "1 kN");
     assert!(harness.query_by_label_contains("is a pressure").is_none(), "the message stays");
+    // A value that the scene refuses keeps its message, whatever was refused before.
+    unfold(&mut harness, "Cells across");
+    for text in ["lots", "4", "90000"] {
+        type_into(&mut harness, "Cells across", text);
+    }
+    assert!(harness.query_by_label_contains("cells in all").is_some(), "no message");
 }
 
 /// A refused text stays in its field, where it can be corrected; Escape restores the value.

@@ -632,9 +632,10 @@ impl Session {
     fn certify(&mut self) {
         self.simulation.certify();
         // The last equilibrium is drawn in place of a state that is none.
-        let kept = self.converged.as_ref().filter(|kept| Arc::ptr_eq(kept.system(), self.simulation.system()));
-        let kept = kept.filter(|_| !self.simulation.status().is_success());
-        self.quality.update(kept.unwrap_or(&self.simulation));
+        let mut quality = std::mem::take(&mut self.quality);
+        let kept = self.converged().filter(|_| !self.simulation.status().is_success());
+        quality.update(kept.unwrap_or(&self.simulation));
+        self.quality = quality;
     }
 
     /// Certifies the result, that of a large body in the background; returns `true` while that is pending.

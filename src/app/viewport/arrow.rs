@@ -239,7 +239,7 @@ impl Arrow {
     }
 
     /// Returns `true` if the arrow is shorter than its force, because its tip stays in the view.
-    pub(crate) fn is_broken(&self) -> bool {
+    fn is_broken(&self) -> bool {
         f64::from(self.vector.length()) < self.scale.length(self.magnitude) - 1.0
     }
 

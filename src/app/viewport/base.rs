@@ -80,7 +80,7 @@ impl Bases<'_> {
 
     /// Returns the bases of all objects.
     pub(crate) fn all(&self) -> Vec<Base> {
-        let Scene { loads, supports, probes, sections: sections_of, .. } = self.scene;
+        let Scene { loads, supports, probes, sections: lines, .. } = self.scene;
         let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
             Load::Force { place, at_point, .. } => Some((Object::Force(i), self.applied(place, *at_point)?)),
             _ => None,
@@ -92,8 +92,8 @@ impl Bases<'_> {
             // A probe on an edge usually lies at the arrow of a load, so it has no base.
             Place::Edge(_) => None,
         });
-        let sections = (0..).zip(sections_of).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
-        let ends = (0..).zip(sections_of).flat_map(|(i, line)| self.ends_of_section(i, line));
+        let sections = (0..).zip(lines).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
+        let ends = (0..).zip(lines).flat_map(|(i, line)| self.ends_of_section(i, line));
         // A probe or a section that lies on a force or a support is in front.
         let all = probes.chain(sections).chain(forces).chain(supports).chain(ends);
         all.map(|(object, at)| Base { object, at: self.projection.point(at) }).collect()

@@ -196,8 +196,6 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
                 }
             }
         }
-    }
-    if !overlay.apart {
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals, legend);
         let on_top = legend.filter(|_| has_bar_on_top(rect.height()));

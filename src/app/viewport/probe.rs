@@ -101,7 +101,7 @@ impl Form {
 }
 
 /// Choices of the user on the cards of points.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CardChoice {
     axes: Axes,
     /// `true` if all values are shown where they hide much of the body too.
@@ -242,7 +242,7 @@ pub(crate) fn spread(corners: &[Pos2], triangles: &[[u32; 3]]) -> Vec<Pos2> {
 
 /// Place of the card of a pinned point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Card {
+pub(crate) struct PointCard {
     point: MaterialPoint,
     view: Rect,
     shows_all: bool,
@@ -250,7 +250,7 @@ pub(crate) struct Card {
     align: Align2,
 }
 
-impl Card {
+impl PointCard {
     /// Places a card in a view where it hides least: not its point at `at`, as few of the points spread over a body as
     /// possible, and the `tips` of arrows only for many of these. The form is short if all values would hide much of the
     /// body and the user has not asked for them. All positions are in the window.
@@ -266,9 +266,9 @@ impl Card {
         const HIDDEN: f32 = 0.1;
         let hidden = |points: &[Pos2], card: Rect| points.iter().filter(|at| card.contains(**at)).count() as f32;
         let best = |form: Form| {
-            let card = Card { point, view, shows_all: choice.shows_all, form, align: Align2::RIGHT_TOP };
+            let card = PointCard { point, view, shows_all: choice.shows_all, form, align: Align2::RIGHT_TOP };
             let aligned = form.alignments(view).map(|align| {
-                let card = Card { align, ..card };
+                let card = PointCard { align, ..card };
                 let area = card.area();
                 let part = hidden(body, area) / body.len().max(1) as f32;
                 (card, if area.contains(at) { f32::INFINITY } else { part }, TIP * hidden(tips, area))
@@ -342,7 +342,7 @@ pub(crate) struct Pinned<'a> {
 pub(crate) fn show_card(
     ui: &Ui,
     painter: &Painter,
-    card: Card,
+    card: PointCard,
     pinned: &Pinned<'_>,
     choice: &mut CardChoice,
 ) -> Option<CardRequest> {
@@ -482,7 +482,7 @@ mod tests {
         let (nodes, tip) = (nodes.collect::<Vec<_>>(), pos2(919.0, 422.0));
         let point = MaterialPoint { element: 0, at: [0.3; 2] };
         for &at in &nodes {
-            let card = Card::new(point, view, CardChoice::default(), (&nodes, at, &[tip]));
+            let card = PointCard::new(point, view, CardChoice::default(), (&nodes, at, &[tip]));
             assert_eq!(card.form, Form::Tall);
             let card = card.area();
             assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
@@ -497,7 +497,7 @@ mod tests {
         let (nodes, tips) = (nodes.collect::<Vec<_>>(), [pos2(919.0, 290.0), pos2(490.0, 290.0)]);
         let point = MaterialPoint { element: 0, at: [0.3; 2] };
         for &at in &nodes {
-            let card = Card::new(point, view, CardChoice::default(), (&nodes, at, &tips));
+            let card = PointCard::new(point, view, CardChoice::default(), (&nodes, at, &tips));
             assert_eq!(card.form, Form::Wide);
             let card = card.area();
             assert!(nodes.iter().all(|at| !card.contains(*at)), "{at:?}: {card:?}");

@@ -15,7 +15,7 @@ use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
-use crate::app::viewport::probe::{Card, CardChoice, CardRequest, Pinned};
+use crate::app::viewport::probe::{CardChoice, CardRequest, Pinned, PointCard};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
 use crate::app::widgets::legend;
@@ -139,7 +139,7 @@ pub(crate) struct BodyView {
     /// Pinned material point, whose values are shown.
     probe: Option<MaterialPoint>,
     /// Card of the pinned point, if it is shown.
-    card: Option<Card>,
+    card: Option<PointCard>,
     /// Choices of the user on the cards of points.
     card_choice: CardChoice,
     /// Material point whose menu was opened.
@@ -525,13 +525,13 @@ impl BodyView {
             self.card_choice.begin();
         }
         // The card stays where it is while the body moves, unless the point comes under it.
-        let is_well_placed = |card: &Card| card.is_for(point, self.rect, self.card_choice) && !card.hides(at);
+        let is_well_placed = |card: &PointCard| card.is_for(point, self.rect, self.card_choice) && !card.hides(at);
         let card = self.card.filter(is_well_placed).unwrap_or_else(|| {
             let projection = self.projection();
             let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
             let corners: Vec<_> = self.body.points().iter().map(|point| projection.point(*point)).collect();
             let body = probe::spread(&corners, &content.session.geometry().triangles);
-            Card::new(point, self.rect, self.card_choice, (&body, at, &tips))
+            PointCard::new(point, self.rect, self.card_choice, (&body, at, &tips))
         });
         self.card = Some(card);
         let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };

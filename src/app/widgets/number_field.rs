@@ -139,7 +139,10 @@ impl NumberField {
             refused.replace(None);
             edited = Some(original);
         }
-        let accepted = match (refused.into_inner(), edited) {
+        let refused = refused.into_inner();
+        let is_settled = refused.is_none() && (is_committed || edited.is_some());
+        let was_refused = is_settled && ui.data_mut(|data| data.remove_temp::<()>(refused_id)).is_some();
+        let accepted = match (refused, edited) {
             (Some(reason), _) => {
                 ui.data_mut(|data| data.insert_temp(refused_id, ()));
                 messages.insert(self.label, reason);
@@ -157,7 +160,7 @@ impl NumberField {
             },
             (None, None) => {
                 // The present value was typed in place of a refused text.
-                if is_committed && ui.data_mut(|data| data.remove_temp::<()>(refused_id)).is_some() {
+                if was_refused {
                     messages.remove(self.label);
                 }
                 None

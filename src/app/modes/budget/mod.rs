@@ -38,19 +38,11 @@ pub(crate) struct Budget {
     study: Option<Measured>,
     /// Measured scene.
     of: Option<Scene>,
-    /// Last study of a scene that was open before.
-    kept: Option<Kept>,
+    /// Budget of a scene that was open before, with its study.
+    kept: Option<Box<Budget>>,
     error: Option<Sentence>,
     limits: Limits,
     messages: Messages,
-}
-
-/// Study of a scene that is not open.
-#[derive(Debug)]
-struct Kept {
-    of: Scene,
-    study: Measured,
-    is_partial: bool,
 }
 
 /// Limits for a solve.
@@ -95,14 +87,18 @@ impl Budget {
 
     /// Shows the last study of another scene than before, if it is of that scene; it is kept until there is another one.
     pub(crate) fn open(&mut self, scene: &Scene) {
-        let last =
-            self.of.take().zip(self.study.take()).map(|(of, study)| Kept { of, study, is_partial: self.is_partial });
-        let kept = last.filter(|_| !self.runs()).or(self.kept.take());
-        *self = Self { limits: self.limits, kept, ..Self::default() };
-        let is_of = |kept: &mut Kept| without_settings(&kept.of) == without_settings(scene);
-        if let Some(Kept { of, study, is_partial }) = self.kept.take_if(is_of) {
-            (self.of, self.study, self.is_partial) = (Some(of), Some(study), is_partial);
-        }
+        let Self { limits, is_partial, .. } = *self;
+        let kept = if self.study.is_some() && !self.runs() {
+            let (study, of) = (self.study.take(), self.of.take());
+            Some(Box::new(Self { study, of, is_partial, ..Self::default() }))
+        } else {
+            self.kept.take()
+        };
+        *self = match kept {
+            Some(kept) if kept.is_of(scene) => *kept,
+            kept => Self { kept, ..Self::default() },
+        };
+        self.limits = limits;
     }
 
     /// Cancels the study, which then ends soon; measurements made so far are kept.

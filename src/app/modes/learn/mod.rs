@@ -257,13 +257,13 @@ impl Learn {
             actions.extend(self.keys(ui.ctx()));
         }
         let share = if is_low(ui.ctx()) { LOW_SHARE } else { SHARE };
-        let is_narrow = ui.available_width() < TWO_COLUMNS;
-        let height = if is_narrow { NARROW_HEIGHT } else { HEIGHT };
-        let height = height.min(share * ui.ctx().content_rect().height());
         let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
         let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
+        let is_narrow = ui.available_width() - frame.inner_margin.sum().x < TWO_COLUMNS;
+        let height = if is_narrow { NARROW_HEIGHT } else { HEIGHT };
+        let height = height.min(share * ui.ctx().content_rect().height());
         Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
-            self.header(ui, actions);
+            self.header(ui, is_narrow, actions);
             ui.add_space(2.0);
             let card = self.card();
             let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
@@ -312,13 +312,12 @@ impl Learn {
         });
     }
 
-    /// Shows the title, and the navigation to the other cards.
-    fn header(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    /// Shows the title, on a row of its own if the window is narrow, and the navigation to the other cards.
+    fn header(&self, ui: &mut Ui, is_narrow: bool, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let (card, count) = (self.card, CARDS.len());
         let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
         let title = |ui: &mut Ui| ui.add(egui::Label::new(title.clone()).truncate());
-        let is_narrow = ui.available_width() < TWO_COLUMNS;
         if is_narrow {
             title(ui);
         }
