@@ -8,4 +8,5 @@ mod examples;
 #[path = "../common/files.rs"]
 mod files;
 mod public_api;
+mod size;
 mod topics;
