@@ -76,8 +76,6 @@ pub(crate) enum Action {
     RecordScene,
     /// Copy the scene as TOML.
     Copy,
-    /// Copy the scene as a Rust program.
-    CopyRust,
     /// Copy a link to the web page with the scene in it.
     CopyLink,
     /// Start (`true`) or cancel (`false`) the speed–accuracy study.

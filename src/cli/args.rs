@@ -128,8 +128,6 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Gpu(AdapterArgs),
-    /// Print a scene as a Rust program that builds and solves it with the library.
-    Rust(RequiredSceneArgs),
     /// Print shell completions.
     #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
     Completions {

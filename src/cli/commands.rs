@@ -339,11 +339,6 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
     tuned
 }
 
-pub(super) fn rust(source: &scene::Source) -> Result<ExitCode, CliError> {
-    text::print(&scene::open(source)?.to_rust(&source.folder()))?;
-    Ok(ExitCode::SUCCESS)
-}
-
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (cases, motion_cases) = (extremes::cases(extent(out)), extremes::motion::cases(extent(out)));
     let all = cases.len() + motion_cases.len();

@@ -154,7 +154,6 @@ pub fn main() -> ExitCode {
         Some(Command::Record(args)) => record::record(args),
         #[cfg(feature = "app")]
         Some(Command::Gpu(args)) => window::gpu(args.adapter.as_deref()),
-        Some(Command::Rust(args)) => commands::rust(&args.into()),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man) => manual::man(),
     };

@@ -8,7 +8,6 @@ mod mesh;
 mod open;
 pub mod registry;
 mod required;
-mod rust_code;
 
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use mesh::built_in_mesh;

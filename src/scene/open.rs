@@ -111,9 +111,10 @@ impl Scene {
     /// Reads a scene from TOML text. Reads no other file: a scene with a mesh file needs [`Self::from_toml_in`].
     ///
     /// ```
-    /// use warpbeam::Scene;
+    /// use warpbeam::{Scene, Simulation};
     ///
-    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
+    /// let scene = Scene::from_toml(include_str!("../../assets/scenes/cantilever.toml"))?;
+    /// assert!(Simulation::new(&scene)?.solve().is_success());
     /// assert_eq!(Scene::from_toml(&scene.to_toml()?)?, scene);
     /// let error = Scene::from_toml("name = \"Beam\"\nlength = 10.0").unwrap_err();
     /// assert!(error.to_string().contains("length"));

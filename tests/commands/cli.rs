@@ -9,45 +9,6 @@ use crate::common::{ids_of, program, scene, scene_ids, solve_json, stderr, stdou
 use warpbeam::scene::{Analysis, registry};
 
 #[test]
-fn every_command_has_help() {
-    for args in [
-        &["--help"][..],
-        &["run", "--help"],
-        &["scenes", "--help"],
-        &["solve", "--help"],
-        &["shot", "--help"],
-        &["curve", "--help"],
-        &["study", "--help"],
-        &["tune", "--help"],
-        &["extremes", "--help"],
-        &["record", "--help"],
-        &["rust", "--help"],
-        &["completions", "--help"],
-        &["man", "--help"],
-    ] {
-        let output = warpbeam(args);
-        assert_eq!(output.status.code(), Some(0), "{args:?}");
-        let text = stdout(&output);
-        assert!(text.contains("Usage: warpbeam"), "{args:?}: {text}");
-        assert!(text.lines().all(|line| line.len() < 200));
-    }
-    for command in
-        ["run", "scenes", "solve", "curve", "study", "tune", "extremes", "shot", "record", "rust", "completions", "man"]
-    {
-        assert!(stdout(&warpbeam(&["--help"])).contains(&format!("  {command}")));
-    }
-    assert!(stdout(&warpbeam(&["solve", "--help"])).contains("Exit codes"));
-    // The help documents the columns of files that scripts read, and interruption.
-    for words in ["NAME_v_x", "dissipated", "about 300", "Ctrl-C"] {
-        assert!(stdout(&warpbeam(&["solve", "--help"])).contains(words), "{words}");
-    }
-    for words in ["frame times", "ffmpeg", "Ctrl-C"] {
-        assert!(stdout(&warpbeam(&["record", "--help"])).contains(words), "{words}");
-    }
-    assert!(stdout(&warpbeam(&["--version"])).starts_with("warpbeam "));
-}
-
-#[test]
 fn scenes_lists_every_scene_with_its_sentence() {
     let text = stdout(&warpbeam(&["scenes"]));
     for id in scene_ids() {
@@ -1189,18 +1150,4 @@ fn an_accepted_result_is_a_success() {
     assert_eq!((json["status"].as_str(), json["iterations"].as_u64()), (Some("accepted"), Some(3)));
     let output = warpbeam(&["solve", "cantilever", "--set", "solver.accept_after=3"]);
     assert!(stdout(&output).contains("accepted after 3 iterations"), "{}", stdout(&output));
-}
-
-#[test]
-fn a_scene_is_printed_as_a_rust_program() {
-    let program = fs::read_to_string("tests/programs/snap.rs").unwrap();
-    assert_eq!(stdout(&warpbeam(&["rust", "snap"])), program);
-    let edited = stdout(&warpbeam(&["rust", "snap", "--set", "support.2.displacement=[0, -3 mm]"]));
-    assert_eq!(edited, program.replace("-0.012", "-0.003"));
-    // The mesh file is found from any folder.
-    let folder = std::env::current_dir().unwrap().join("assets/scenes");
-    let program = stdout(&warpbeam(&["rust", "assets/scenes/../scenes/clip.toml"]));
-    let mesh = program.lines().find(|line| line.contains("mesh_file")).unwrap();
-    assert!(mesh.contains(&format!("(\"../meshes/clip.msh\", \"{}", folder.parent().unwrap().display())), "{mesh}");
-    assert_eq!(warpbeam(&["rust", "nowhere"]).status.code(), Some(2));
 }

@@ -1,4 +1,4 @@
-//! Tests of the command line, of the Rust programs that it prints, of the examples and of the documents. `cargo test
+//! Tests of the command line, of the examples and of the documents. `cargo test
 //! --test commands TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
@@ -11,7 +11,6 @@ mod docs;
 mod examples;
 mod limits;
 mod packages;
-mod programs;
 #[cfg(feature = "app")]
 mod record;
 mod section;

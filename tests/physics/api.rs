@@ -10,8 +10,8 @@ use warpbeam::scene::{Source, open};
 use warpbeam::solver::{Factor, Symbolic};
 use warpbeam::study::{LoadCurve, Reference};
 use warpbeam::{
-    Axis, ElementKind, GmshError, LoadId, Material, MaterialPoint, Mesh, MeshError, MethodKind, Scene, Simulation,
-    SimulationError, StateError, Status,
+    Axis, Diagonals, ElementKind, GmshError, IntegratorKind, LoadId, Material, MaterialPoint, Mesh, MeshError,
+    MethodKind, Plane, Scene, Simulation, SimulationError, StateError, Status,
 };
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
@@ -108,6 +108,49 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
         // An edit is refused for the same scenes as a new simulation.
         assert!(solved(&good()).change_scene(&scene).is_err(), "{scene:?}");
     }
+}
+
+/// A scene of builder calls is the scene of the file that sets the same keys.
+#[test]
+fn builders_set_what_a_file_sets() {
+    let material = Material { plane: Plane::Strain, thickness: 0.2, density: 7.0, ..Material::new(1e5, 0.2) };
+    let mut rest = Scene::beam(10.0, 0.7)
+        .with_cells(7, 2)
+        .with_rise(0.5)
+        .with_element(ElementKind::T3)
+        .with_diagonals(Diagonals::Same)
+        .with_material(material)
+        .with_method(MethodKind::Auto)
+        .clamp("left")
+        .moved([-0.1, 0.2], 0.3)
+        .support("right", &[Axis::Y])
+        .point_support([5.1, 0.8], &[Axis::X])
+        .force("top", [1.0, 2.0])
+        .point_force([2.3, 0.1], [3.0, 4.0])
+        .moment("right", 5.0)
+        .gravity([0.0, -6.0])
+        .probe("tip", "right")
+        .section([4.0, 0.5], 0.1);
+    rest.name = "all".to_owned();
+    let file = "name = 'all'\n[beam]\nlength = 10\nheight = 0.7\nrise = 0.5\ncells = [7, 2]\nelement = 't3'\ndiagonals = 'same'\n\
+        [material]\nyoung = 1e5\npoisson = 0.2\ndensity = 7\nthickness = 0.2\nplane = 'strain'\n[solver]\nmethod = 'auto'\n\
+        [[support]]\nedge = 'left'\nfix = ['x', 'y']\ndisplacement = [-0.1, 0.2]\nturn = 0.3\n\
+        [[support]]\nedge = 'right'\nfix = ['y']\n[[support]]\nat = [5.1, 0.8]\nacts_on = 'point'\nfix = ['x']\n\
+        [[load]]\nkind = 'force'\nedge = 'top'\nforce = [1, 2]\n\
+        [[load]]\nkind = 'force'\nat = [2.3, 0.1]\nacts_on = 'point'\nforce = [3, 4]\n\
+        [[load]]\nkind = 'moment'\nedge = 'right'\nmoment = 5\n[[load]]\nkind = 'gravity'\nacceleration = [0, -6]\n\
+        [[probe]]\nname = 'tip'\nedge = 'right'\n[[section]]\nat = [4, 0.5]\nangle = 0.1\n";
+    assert_eq!(rest, Scene::from_toml(file).unwrap());
+    let mut moving = Scene::mesh_file("../meshes/cook.msh", "").unwrap().with_scale(0.01).gravity([0.0, -1.0]);
+    moving = moving.pulse(0.1, 0.2).moving(IntegratorKind::ImplicitEuler, 0.05).starting([0.3, 0.4], 0.5);
+    let file = format!(
+        "name = '{}'\nanalysis = 'dynamic'\n[mesh]\nfile = '../meshes/cook.msh'\nscale = 0.01\n[material]\nyoung = {}\npoisson = {}\n\
+         [[load]]\nkind = 'gravity'\nacceleration = [0, -1]\npulse = {{ start = 0.1, duration = 0.2 }}\n\
+         [dynamics]\nintegrator = 'implicit-euler'\ntime_step = 0.05\n[start]\nvelocity = [0.3, 0.4]\nspin = 0.5\n",
+        moving.name, moving.material.young, moving.material.poisson
+    );
+    assert_eq!(moving, Scene::from_toml_in(&file, "".as_ref()).unwrap());
+    assert!(Scene::mesh_file("nowhere.msh", "").unwrap_err().to_string().contains("nowhere.msh"));
 }
 
 #[test]

@@ -1285,33 +1285,6 @@ fn loads_and_supports_are_added_and_removed() {
     assert_eq!(*harness.state().scene(), before);
 }
 
-/// The current scene is copied to the clipboard as a Rust program.
-#[test]
-fn the_scene_is_copied_as_a_rust_program() {
-    let mut harness = harness("article");
-    type_into(&mut harness, "Force", "12345.5");
-    // Only pressed: a release would be another frame with its own output.
-    harness.event(Event::Key {
-        key: Key::C,
-        physical_key: None,
-        pressed: true,
-        repeat: false,
-        modifiers: Modifiers::SHIFT,
-    });
-    harness.step();
-    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    let copied = copied.unwrap();
-    assert_eq!(copied, harness.state().scene().to_rust("".as_ref()));
-    assert!(copied.contains(r#".force("right", [0.0, -12345.5])"#), "{copied}");
-    assert!(harness.query_by_label("Scene copied as a Rust program").is_some());
-    harness.get_by_label_contains("File: ").click();
-    harness.run_steps(8);
-    assert!(harness.query_by_role_and_label(Role::Button, "Copy as Rust").is_some());
-}
-
 /// Rows of the card of a point.
 const CARD: &[&str] =
     &["u", "θ", "σ_x, σ_y", "τ_xy", "σ_1, σ_2", "von Mises", "ε_X, ε_Y", "γ_XY", "ε_1, ε_2", "ψ", "F", "R", "S"];

@@ -177,7 +177,6 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
                 Action::RecordScene,
             ),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
-            ("Copy as Rust", "Copy a Rust program that builds the scene and solves it (Shift+C)", Action::CopyRust),
             ("Copy link", "Copy the address of this page with the whole scene in it (U)", Action::CopyLink),
         ] {
             let tip = with_keys(ui.ctx(), tr(tip));

@@ -199,7 +199,6 @@ impl Lab {
             Action::Record => requests.push(Request::Record),
             Action::RecordScene => requests.push(Request::RecordScene),
             Action::Copy => self.copy(ctx),
-            Action::CopyRust => self.copy_rust(ctx),
             Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {
                 // A full study of a motion takes many minutes.

@@ -174,10 +174,4 @@ impl Lab {
             Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
         }
     }
-
-    /// Copies the scene as a Rust program.
-    pub(super) fn copy_rust(&mut self, ctx: &egui::Context) {
-        ctx.copy_text(self.scene().to_rust(&self.source().folder()));
-        self.say(ctx, tr("Scene copied as a Rust program").to_owned());
-    }
 }

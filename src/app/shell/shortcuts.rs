@@ -82,7 +82,6 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::V, "Record the window as a GIF in the current folder; again: stop", || Action::Record),
     with(Modifiers::SHIFT, Key::V, "Record the scene from its start as a GIF; again: stop", || Action::RecordScene),
     key(Key::C, "Copy the scene as TOML, with the command that solves it", || Action::Copy),
-    with(Modifiers::SHIFT, Key::C, "Copy the scene as a Rust program", || Action::CopyRust),
     key(Key::U, "Copy the address of this page with the whole scene in it", || Action::CopyLink),
     with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),
     with(Modifiers::COMMAND, Key::S, "Save the scene", || Action::Save),
