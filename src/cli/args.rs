@@ -86,10 +86,6 @@ pub(super) enum Command {
         scene: SceneArgs,
         #[command(flatten)]
         out: FolderArgs,
-        /// Measure instead the time and memory of an iteration of a static scene with 100 to 200 000 unknowns, for
-        /// every element, with fitted exponents (scaling.csv, .svg, .png, .txt).
-        #[arg(long)]
-        scaling: bool,
     },
     /// Find the loads up to which each method and element holds on the cells of a static scene, from a hundredth to ten
     /// times its load: within 1 % and 5 % of the reference solution, converged, and with strains below 10 %. For a dynamic

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
-use super::memory::PeakMemory;
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
 use super::{
@@ -19,8 +18,8 @@ use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult}
 use crate::stress::{inversion_warning, strain_warning};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MemoryMeter, MotionStudy, PathSummary,
-    Reference, Scaling, Study, StudyError, Tuning, extremes, moved_points, parallel, path_chart,
+    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MotionStudy, PathSummary, Reference, Study,
+    StudyError, Tuning, extremes, moved_points, parallel, path_chart,
 };
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
@@ -268,23 +267,6 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     write_folder(&out.folder, "study", &table, &drawing, Some(&summary))?;
     text::print(&summary)?;
     Ok(ended(interrupted, "the study has only the settings measured until then"))
-}
-
-pub(super) fn scaling(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let (scene, _) = validated(source)?;
-    let watch = Watch::new();
-    let memory = PeakMemory::watch();
-    let meter = memory.as_ref().map(|memory| memory as &dyn MemoryMeter);
-    let study = Scaling::new(&scene, extent(out), meter, &|progress| watch.observe(progress));
-    drop(watch);
-    let study = match study {
-        Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
-        study => study.map_err(failed(source))?,
-    };
-    let summary = study.summary();
-    write_folder(&out.folder, "scaling", &study.table(), &plot::scaling(&study), Some(&summary))?;
-    text::print(&summary)?;
-    Ok(ended(study.is_partial, "finer meshes have not been measured"))
 }
 
 /// Returns the exit code of a command that may have been interrupted; prints what is missing if it was.

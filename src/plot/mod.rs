@@ -15,6 +15,6 @@ pub use figure::figure;
 pub use limits::limits;
 #[cfg(feature = "app")]
 pub use trade::{LARGEST_ERROR, SMALLEST_ERROR};
-pub use trade::{motion_study, scaling, study};
+pub use trade::{motion_study, study};
 #[cfg(feature = "app")]
 pub(crate) use {axes::ScaledAxis, limits::rating_color};

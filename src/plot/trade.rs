@@ -1,4 +1,4 @@
-//! Studies as drawings: error over time with the Pareto front, and time over unknowns; both axes are logarithmic.
+//! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
 use super::axes::{MARGINS, ROW, ScaledAxis, mark};
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, INK, Outline, Shape, Stroke, Text, solid};
@@ -7,7 +7,7 @@ use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::color;
 use crate::study::motion::{MotionStudy, REAL_TIME};
-use crate::study::{Measurement, Ranked, Ranking, Scaling, ScalingPoint, Study};
+use crate::study::{Measurement, Ranked, Ranking, Study};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
 pub const SMALLEST_ERROR: f64 = 1e-3;
@@ -67,29 +67,6 @@ pub fn motion_study(study: &MotionStudy) -> Drawing {
         mark: Some(TradeMark { time: REAL_TIME, label: "real time" }),
     };
     chart.draw()
-}
-
-/// Draws the time of an iteration over unknowns, a line for each element.
-#[must_use]
-pub fn scaling(study: &Scaling) -> Drawing {
-    let point = |p: &ScalingPoint| [p.dofs as f64, p.milliseconds];
-    let x = ScaledAxis::decades(study.points.iter().map(|p| point(p)[0]), MARGINS.across());
-    let y = ScaledAxis::decades(study.points.iter().map(|p| point(p)[1]), MARGINS.up());
-    let mut drawing = MARGINS.start(format!("{}: time of an iteration", study.scene));
-    MARGINS.grid(&mut drawing, [x.ticks(), y.ticks()], ["unknowns", "time of an iteration, ms"]);
-    let [_, right] = MARGINS.across();
-    for (i, element) in ElementKind::all().enumerate() {
-        // Colours of methods, which differ in brightness too, serve for elements here.
-        let color = color(METHODS[element as usize % METHODS.len()].id, false);
-        let points = study.points.iter().filter(|p| p.element == element).map(point);
-        let places: Vec<[f64; 2]> = points.map(|p| [x.place(p[0]), y.place(p[1])]).collect();
-        drawing.line(places.clone(), color, solid(WIDTH));
-        places.into_iter().for_each(|place| drawing.add(mark(place, element, color, 4.5)));
-        let row = MARGINS.top + 10.0 + ROW * i as f64;
-        drawing.add(mark([right + 22.0, row], element, color, 5.0));
-        drawing.text([right + 36.0, row + 4.0], Anchor::Start, element.id());
-    }
-    drawing
 }
 
 /// A measurement in a chart.

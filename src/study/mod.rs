@@ -17,7 +17,6 @@ mod progress;
 mod ranking;
 mod reference;
 mod report;
-mod scaling;
 pub mod section_chart;
 mod timing;
 mod trade;
@@ -41,7 +40,6 @@ pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
 pub(crate) use reference::{FOLDS, is_known_unstable};
 pub use reference::{ProbeReference, Reference, ReferenceSource};
-pub use scaling::{Exponents, MemoryMeter, Scaling, ScalingPoint};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
 pub use trade::{ErrorSplit, Measurement, Setting, Study};
 pub use tune::Tuning;

@@ -1,5 +1,4 @@
-//! Tests of the speed–accuracy study of bodies at rest and in motion, the atlas of motions, and
-//! the scaling of an iteration.
+//! Tests of the speed–accuracy study of bodies at rest and in motion, and the atlas of motions.
 
 use std::fs;
 use std::ops::ControlFlow;
