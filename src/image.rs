@@ -8,12 +8,6 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// The picture has too many pixels.
-    #[error("expected a picture of at most 65535 pixels a side, got {} x {}", size[0], size[1])]
-    TooLarge {
-        /// Width and height.
-        size: [u32; 2],
-    },
     /// The picture cannot be written.
     #[error("{path}: {reason}", path = path.display())]
     Write {

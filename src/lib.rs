@@ -122,7 +122,7 @@ mod exact_beam;
 pub mod export;
 #[doc(hidden)]
 pub mod format;
-#[cfg(feature = "cli")]
+#[cfg(feature = "app")]
 mod image;
 mod material;
 mod mesh;

@@ -111,21 +111,16 @@ impl Action {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FigureFile {
     Csv,
-    Png,
     Svg,
 }
 
 impl FigureFile {
-    pub(crate) const ALL: [(Self, &'static str); 3] = [
-        (Self::Csv, "Every point as a table, with units"),
-        (Self::Png, "The plot and its table as a bitmap"),
-        (Self::Svg, "The plot and its table as a vector drawing"),
-    ];
+    pub(crate) const ALL: [(Self, &'static str); 2] =
+        [(Self::Csv, "Every point as a table, with units"), (Self::Svg, "The plot and its table as a vector drawing")];
 
     pub(crate) fn extension(self) -> &'static str {
         match self {
             Self::Csv => "csv",
-            Self::Png => "png",
             Self::Svg => "svg",
         }
     }

@@ -78,7 +78,7 @@ pub(super) enum Command {
     #[command(after_help = EXIT_CODES)]
     Section(SectionArgs),
     /// Measure error against time on this machine, for every element, mesh, method and number of iterations: a table
-    /// (study.csv), a plot with the Pareto front (study.svg and .png) and a summary (study.txt). For a dynamic scene:
+    /// (study.csv), a plot with the Pareto front (study.svg) and a summary (study.txt). For a dynamic scene:
     /// the error of the first probe's path against the computing time per simulated second, also for every integrator
     /// and time step, with the energy drift.
     Study {
@@ -101,9 +101,9 @@ pub(super) enum Command {
     )]
     Tune(TuneArgs),
     /// Solve at extremes of load, stiffness, Poisson ratio, slenderness, cells and initial state, and on mesh files,
-    /// and count the outcomes of each method: a table (extremes.csv), a heat map (extremes.svg and .png) and a summary.
-    /// The same for every integrator in motion, at extremes of stiffness, time step and weight: extremes-motion.csv,
-    /// .svg and .png.
+    /// and count the outcomes of each method: a table (extremes.csv), a heat map (extremes.svg) and a summary.
+    /// The same for every integrator in motion, at extremes of stiffness, time step and weight: extremes-motion.csv
+    /// and .svg.
     Extremes {
         #[command(flatten)]
         out: FolderArgs,

@@ -366,7 +366,6 @@ fn write_folder(out: &Path, name: &str, table: &str, drawing: &Drawing, summary:
     let file = |extension: &str| out.join(format!("{name}.{extension}"));
     export::write_text(&file("csv"), table)?;
     export::write_text(&file("svg"), &drawing.svg())?;
-    drawing.picture()?.write_png(&file("png"))?;
     summary.map_or(Ok(()), |summary| export::write_text(&file("txt"), summary))?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Commands `run`, `scenes`, `solve`, `curve`, `section`, `study`, `limits`, `tune`, `extremes`, `shot`, `record`, `gpu`, `rust`,
+//! Commands `run`, `scenes`, `solve`, `curve`, `section`, `study`, `limits`, `tune`, `extremes`, `shot`, `record`, `gpu`,
 //! `completions` and `man`; without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator,
@@ -15,7 +15,6 @@ use self::args::{Cli, Command};
 use crate::assembly::{Problem, System, SystemError};
 use crate::export::ExportError;
 use crate::format::number;
-use crate::image::PictureError;
 use crate::scene::{self, Analysis, Scene, SceneError};
 use crate::section::{Section, SectionError};
 use crate::simulation::{Simulation, SimulationError, Status};
@@ -33,7 +32,6 @@ mod explorer;
 mod json;
 mod limits;
 mod manual;
-mod memory;
 mod outputs;
 mod progress;
 #[cfg(feature = "app")]
@@ -77,8 +75,6 @@ enum CliError {
     Output(std::io::Error),
     #[error(transparent)]
     Export(#[from] ExportError),
-    #[error(transparent)]
-    Picture(#[from] PictureError),
     #[error(
         "{scene}: expected a scene with analysis = \"{}\" for {option}: {reason}",
         if *moves { "dynamic" } else { "static" }

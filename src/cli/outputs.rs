@@ -14,7 +14,7 @@ pub(super) struct OutputArgs {
     #[arg(long = "out", value_name = "FILE.csv")]
     table: Option<PathBuf>,
     /// Also draw a picture.
-    #[arg(long, value_name = "FILE.svg|.png")]
+    #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
 }
 
@@ -24,7 +24,7 @@ impl OutputArgs {
     /// # Errors
     /// [`CliError::Suffix`].
     pub fn check(&self) -> Result<(), CliError> {
-        self.picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg", ".png"], ".svg or .png"))?;
+        self.picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg"], ".svg"))?;
         self.table.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))
     }
 
@@ -43,12 +43,6 @@ impl OutputArgs {
     /// That of the drawing, or the file cannot be written.
     pub fn write_picture(&self, drawing: impl FnOnce() -> Result<Drawing, CliError>) -> Result<(), CliError> {
         let Some(path) = &self.picture else { return Ok(()) };
-        let drawing = drawing()?;
-        if check_suffix(path, &[".png"], ".png").is_ok() {
-            drawing.picture()?.write_png(path)?;
-        } else {
-            export::write_text(path, &drawing.svg())?;
-        }
-        Ok(())
+        Ok(export::write_text(path, &drawing()?.svg())?)
     }
 }

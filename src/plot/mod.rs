@@ -1,11 +1,10 @@
-//! Drawings of measurements: error over time, lines of elements, atlases and figures, as SVG and as pixels.
+//! Drawings of measurements: error over time, lines of elements, atlases and figures, as SVG.
 
 mod atlas;
 mod axes;
 mod drawing;
 mod figure;
 mod limits;
-mod raster;
 mod trade;
 
 pub use atlas::{atlas, motion_atlas};

@@ -442,189 +442,6 @@ edge = "right"
 force = [0.0, -10.0]
 "#;
 
-/// The scene above with one line changed gives exit code 2, and one message with file, line and the expected value.
-#[test]
-fn bad_scene_files_get_one_clear_message() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    let cases: &[(&str, &str, Option<usize>, &str)] = &[
-        // Missing keys.
-        ("name = \"Bar\"\n", "", Some(1), "scene.toml:1: name: expected a title, got nothing"),
-        ("length = 2.0\n", "", Some(2), "beam.length: expected a length (m), got nothing"),
-        ("poisson = 0.3\n", "", Some(7), "material.poisson: expected a pure number, got nothing"),
-        ("young = 1.0e6\n", "", Some(7), "material.young: expected a pressure (Pa), got nothing"),
-        (
-            "cells = [4, 2]\n",
-            "",
-            Some(2),
-            "beam.cells: expected the cells along and across, as in [20, 2], got nothing",
-        ),
-        (
-            "[material]\nyoung = 1.0e6\npoisson = 0.3\n",
-            "",
-            Some(1),
-            "material: expected the table [material], got nothing",
-        ),
-        ("fix = [\"x\", \"y\"]\n", "", Some(11), "support.0.fix: expected the directions it fixes, as in"),
-        (
-            "kind = \"force\"\n",
-            "",
-            Some(15),
-            "load.0.kind: expected one of \"force\", \"gravity\", \"moment\", got nothing",
-        ),
-        ("[[load]]", "[[probe]]\nedge = \"left\"\n[[load]]", Some(15), "probe.0.name: expected a name for its results"),
-        ("force = [0.0, -10.0]\n", "", Some(15), "force = [fx, fy] in N"),
-        ("[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n", "", None, "at least one [[support]]"),
-        // Unknown keys and words.
-        ("length = 2.0", "length = 2.0\nlenght = 3.0", Some(4), "unknown field `lenght`"),
-        (
-            "kind = \"force\"",
-            "kind = \"wind\"",
-            Some(16),
-            "load.0.kind: expected \"force\", \"gravity\" or \"moment\", got \"wind\"",
-        ),
-        (
-            "cells = [4, 2]",
-            "cells = [4, 2]\nelement = \"q9\"",
-            Some(6),
-            "beam.element: expected \"t3\", \"t6\" or \"q4\", got \"q9\"",
-        ),
-        ("edge = \"right\"", "edge = \"rihgt\"", Some(17), "expected one of bottom, left, right, top"),
-        // Numbers out of range.
-        ("length = 2.0", "length = -2.0", Some(3), "expected 1e-6 to 1000000 m, got -2"),
-        ("height = 1.0", "height = 0.0", Some(4), "beam.height: expected"),
-        ("height = 1.0", "height = nan", Some(4), "got NaN"),
-        ("young = 1.0e6", "young = inf", Some(8), "got inf"),
-        ("poisson = 0.3", "poisson = 0.6", Some(9), "expected -0.99 to 0.5, got 0.6"),
-        ("poisson = 0.3", "poisson = 0.5\nplane = \"strain\"", Some(9), "to 0.4999, got 0.5"),
-        ("force = [0.0, -10.0]", "force = [0.0, nan]", Some(18), "load.0.force: expected"),
-        ("cells = [4, 2]", "cells = [0, 2]", Some(5), "beam.cells: expected 1 to"),
-        ("cells = [4, 2]", "cells = [1000000000, 1]", Some(5), "beam.cells: expected 1 to 100000"),
-        ("cells = [4, 2]", "cells = [31623, 31623]", Some(5), "cells in all"),
-        ("cells = [4, 2]", "cells = [99999999999, 1]", Some(5), "99999999999"),
-        // Wrong types.
-        ("length = 2.0", "length = \"2 N\"", Some(3), "beam.length: `2 N` is a force (N); expected a length (m)"),
-        ("length = 2.0", "length = \"2 ell\"", Some(3), "unknown unit `ell`; expected a length (m)"),
-        ("young = 1.0e6", "young = \"much\"", Some(8), "`much` is not a number; expected a pressure (Pa)"),
-        ("force = [0.0, -10.0]", "force = [0.0,\n\"-1 kPa\"]", Some(19), "load.0.force.1: `-1 kPa` is a pressure (Pa)"),
-        ("force = [0.0, -10.0]", "force = [0.0, \"-1e12 GN\"]", Some(18), "expected 0 to 1e15 N, got 1e21"),
-        ("cells = [4, 2]", "cells = 4", Some(5), "beam.cells: expected a list of two numbers, as in [20, 2], got 4"),
-        ("cells = [4, 2]", "cells = [4.5, 2]", Some(5), "expected u32"),
-        ("edge = \"left\"", "edge = \"left\"\nat = [0.0, 0.0]", Some(11), "got both"),
-        ("fix = [\"x\", \"y\"]", "fix = [\"x\"]", Some(11), "can still move freely"),
-        (
-            "fix = [\"x\", \"y\"]",
-            "fix = [\"z\"]",
-            Some(13),
-            "support.0.fix: expected a list of \"x\" or \"y\", as in [\"x\", \"y\"], got [\"z\"]",
-        ),
-        (
-            "cells = [4, 2]",
-            "cells = [4, 2, 7]",
-            Some(5),
-            "beam.cells: expected a list of two numbers, as in [20, 2], got [4, 2, 7]",
-        ),
-        ("force = [0.0, -10.0]", "force = [0.0, -10.0, 5.0]", Some(18), "load.0.force: expected a list of two numbers"),
-        (
-            "fix = [\"x\", \"y\"]",
-            "fix = \"x\"",
-            Some(13),
-            "support.0.fix: expected a list, as in [\"x\", \"y\"], got \"x\"",
-        ),
-        (
-            "force = [0.0, -10.0]",
-            "force = [0.0, -10.0]\npulse = 0.01",
-            Some(19),
-            "load.0.pulse: expected a table, as in { start = ",
-        ),
-        (
-            "[[support]]",
-            "[support]\nedge = \"left\"\n[support]",
-            Some(13),
-            "a second table [support]; several are written [[support]]",
-        ),
-        ("length = 2.0", "length = 2.0\nlength = 3.0", Some(4), "a second `length` in the same table"),
-        // Not TOML.
-        ("[material]", "[material", Some(7), "unclosed table"),
-        ("name = \"Bar\"", "{ \"name\": \"Bar\" }", Some(1), ""),
-    ];
-    fs::write(&path, GOOD).unwrap();
-    assert_eq!(warpbeam(&["solve", path.to_str().unwrap()]).status.code(), Some(0));
-    for (old, new, line, message) in cases {
-        assert!(GOOD.contains(old));
-        fs::write(&path, GOOD.replacen(old, new, 1)).unwrap();
-        for command in [&["solve"][..], &["shot", "-o", "never.png"]] {
-            let output = warpbeam(&[command, &[path.to_str().unwrap()]].concat());
-            let text = stderr(&output);
-            assert_eq!(output.status.code(), Some(2), "{new}: {text}");
-            assert!(output.stdout.is_empty());
-            assert!(text.contains(message), "{new}: {text}");
-            assert_eq!(text.trim().lines().count(), 1, "{new}: {text}");
-            assert!(text.contains("scene.toml"), "{new}: {text}");
-            if let Some(line) = line {
-                assert!(text.contains(&format!("scene.toml:{line}:")), "{new}: line {line} in {text}");
-            }
-        }
-    }
-}
-
-#[test]
-fn unreadable_files_and_wrong_usage_get_one_clear_message() {
-    let folder = tempfile::tempdir().unwrap();
-    let bytes = folder.path().join("bytes.toml");
-    fs::write(&bytes, [0xff, 0xfe, 0x00]).unwrap();
-    let bytes = bytes.to_str().unwrap();
-    let cases: &[(&[&str], &str)] = &[
-        (&["solve", "no-such-scene"], "built-in scenes: article, cantilever"),
-        (&["solve", folder.path().to_str().unwrap()], "not a file"),
-        (&["solve", bytes], "UTF-8"),
-        (&["solve", "article", "--set", "material.young"], "expected PATH=VALUE"),
-        (&["solve", "article", "--set", "material.young=-1"], "--set material.young=-1: expected"),
-        (&["solve", "article", "--set", "material.yuong=1"], "unknown field `yuong`"),
-        (
-            &["solve", "article", "--set", "load.0.pulse.start=1"],
-            "--set load.0.pulse.start=1: load.0.pulse.duration: expected a time (s), got nothing",
-        ),
-        (
-            &["solve", "article", "--set", "material.young=12 kN"],
-            "--set material.young=12 kN: `12 kN` is a force (N); expected a pressure (Pa)",
-        ),
-        (&["solve", "article", "--set", "load.0.force=[0 N, fast]"], "`fast` is not a number; expected a force (N)"),
-        (&["solve", "article", "--set", "load.0.edge=nowhere"], "--set load.0.edge=nowhere: expected one of bottom"),
-        (&["solve", "article", "--set", "load.3.force=[0,1]"], "expected an index below 1, got 3"),
-        (&["solve", "article", "--set", "load.0.force=[0]"], "--set load.0.force=[0]"),
-        (&["solve", "article", "--set", "name.x=1"], "expected a table or a list"),
-        (&["solve", "article", "--set", "beam.cells=[1000000000,1]"], "expected 1 to 100000"),
-        (&["solve"], "SCENE"),
-        (&["melt"], "melt"),
-        (&["article"], "`warpbeam solve article` solves it"),
-        (&["shot", "article", "-o", "x.png", "--size", "10x10"], "64 to 8192"),
-        (&["shot", "article", "-o", "x.png", "--size", "big"], "WIDTHxHEIGHT"),
-        (&["shot", "article", "-o", "x.png", "--compare", "warped"], "expected 2 to 4 panes"),
-        (&["shot", "article", "-o", "x.png", "--compare", "t3,t5"], "got \u{201c}t5\u{201d}"),
-        (&["shot", "swing", "-o", "x.png", "--compare", "t3,t6"], "expected a scene with analysis = \"static\""),
-        (&["shot", "article", "-o", "/no/such/folder/x.png"], "/no/such/folder/x.png"),
-        (&["solve", "article", "--out", "/no/such/folder/x.csv"], "/no/such/folder/x.csv"),
-    ];
-    for (args, message) in cases {
-        let output = warpbeam(args);
-        let text = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {text}");
-        assert!(text.contains(message), "{args:?}: {text}");
-        assert!(!text.contains("panicked"), "{text}");
-    }
-}
-
-/// A solve without a result gives its reason in JSON, as in the text output.
-#[test]
-fn json_states_why_a_solve_failed() {
-    let args = ["solve", "cantilever", "--set", "solver.max_iterations=2"];
-    let words = stdout(&warpbeam(&args));
-    let json: serde_json::Value = serde_json::from_str(&stdout(&warpbeam(&[&args[..], &["--json"]].concat()))).unwrap();
-    let reason = json["reason"].as_str().unwrap();
-    assert!(!reason.is_empty() && words.contains(reason), "{reason}: {words}");
-}
-
 #[test]
 fn a_certificate_can_be_left_out() {
     let json = solve_json(&["elastica", "--no-certificate"]);
@@ -802,10 +619,9 @@ fn curve_prints_linear_theory_the_reference_and_every_method() {
         (&["curve", "swing"][..], "expected a static scene"),
         (&["curve", "shear", "--set", "solver.method=linear"], "expected a static scene"),
         (
-            &["curve", "snap", "--picture", "x.png", "--of", "nobody"],
+            &["curve", "snap", "--picture", "x.svg", "--of", "nobody"],
             "expected one of quarter, quarter.x, quarter.y, quarter.path, crown",
         ),
-        (&["curve", "snap", "--picture", "x.pdf"], "expected a name that ends in .svg or .png"),
     ] {
         let none = warpbeam(args);
         assert_eq!(none.status.code(), Some(2), "{args:?}");
@@ -843,10 +659,9 @@ fn curve_follows_an_arch_through_its_limit_load() {
     assert!(rows.iter().filter(|row| row[stable] == "false").count() > 20);
     assert!(picture.contains("stroke-dasharray=\"9 5\""));
     for of in ["crown", "support.0"] {
-        let output = warpbeam_in(folder.path(), &["curve", "snap", "--picture", "snap.png", "--of", of]);
+        let output = warpbeam_in(folder.path(), &["curve", "snap", "--picture", "snap.svg", "--of", of]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
-    assert!(fs::read(folder.path().join("snap.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 /// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
@@ -974,7 +789,6 @@ fn extremes_writes_the_stability_atlas() {
         words.starts_with(&["t6", "newton"]) && words[2] == certified.to_string()
     }));
     assert!(fs::read_to_string(out.join("extremes.svg")).unwrap().contains("stalled"));
-    assert!(fs::metadata(out.join("extremes.png")).unwrap().len() > 10_000);
     // The atlas of motions, too, has counts that add up, and finite numbers.
     let csv = fs::read_to_string(out.join("extremes-motion.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
@@ -987,7 +801,6 @@ fn extremes_writes_the_stability_atlas() {
     assert_eq!(line.split_whitespace().nth(5).unwrap(), exploded.to_string());
     assert!(summary.contains(&format!("in motion: {} cases", rows.len())));
     assert!(fs::read_to_string(out.join("extremes-motion.svg")).unwrap().contains("gained energy"));
-    assert!(fs::metadata(out.join("extremes-motion.png")).unwrap().len() > 5_000);
 }
 
 /// The speed–accuracy study splits errors, has positive times and a correct front, and writes its files.
@@ -1035,7 +848,6 @@ fn study_measures_error_against_time() {
             assert!(!beaten, "{f:?}");
         }
         assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
-        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
     }
     // Locking is distinguished from the model error: converged T3 has only discretization error, and
     // linear T6 only model error.

@@ -264,14 +264,3 @@ fn a_study_says_which_errors_are_not_reached() {
     assert!(text.contains("an error of 1 % is not reached by a measured setting"), "{text}");
     assert!(!text.contains("costs not reached"), "{text}");
 }
-
-/// Sentences name a status in words, not by its identifier.
-#[cfg(feature = "app")]
-#[test]
-fn a_picture_of_an_unfinished_solve_says_why_in_words() {
-    let folder = tempfile::tempdir().unwrap();
-    let args = ["shot", "cantilever", "--set", "solver.max_iterations=2", "-o", "shot.png"];
-    let output = warpbeam_in(folder.path(), &args);
-    let said = stderr(&output);
-    assert!(output.status.code() == Some(1) && said.contains("warpbeam: not converged: "), "{said}");
-}

@@ -48,67 +48,6 @@ fn a_long_solve_shows_a_bar() {
     let (code, text) = on_a_terminal(Path::new("."), &args);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("the reference solution, "), "{text}");
-    assert!(!text.contains("0s left"), "{text}");
-}
-
-#[test]
-fn outputs_of_another_kind_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    let toml = "name = \"Bar\"\n[beam]\nlength = 2.0\nheight = 1.0\ncells = [4, 2]\n[material]\nyoung = 1e6\npoisson = 0.3\n\
-                [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[probe]]\nname = \"tip\"\nedge = \"right\"\n";
-    fs::write(&path, toml).unwrap();
-    for (args, expected) in [
-        (&["shot", "scene.toml", "-o", "scene.toml"][..], "scene.toml: expected a name that ends in .png"),
-        (&["shot", "scene.toml", "-o", "scene.jpg"], "scene.jpg: expected a name that ends in .png"),
-        (&["shot", "scene.toml", "-o", "scene"], "expected a name that ends in .png"),
-        (&["run", "scene.toml", "-o", "scene.toml"], "expected a name that ends in .png"),
-        (&["curve", "scene.toml", "--out", "scene.toml"], "expected a name that ends in .csv"),
-        (&["curve", "scene.toml", "--picture", "scene.jpg"], "expected a name that ends in .svg or .png"),
-        (&["tune", "scene.toml", "--write", "scene.csv"], "expected a name that ends in .toml"),
-        (&["solve", "scene.toml", "--out", "scene.toml"], "expected a file name ending in .csv or .vtu"),
-        (&["record", "scene.toml", "-o", "scene.toml"], "expected a file name ending in .gif, or the name of a folder"),
-    ] {
-        let refused = warpbeam_in(folder.path(), args);
-        assert_eq!(refused.status.code(), Some(2), "{args:?}");
-        assert!(stderr(&refused).contains(expected), "{args:?}: {}", stderr(&refused));
-        assert_eq!(fs::read_to_string(&path).unwrap(), toml, "{args:?}");
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-}
-
-#[test]
-fn options_that_do_not_fit_a_scene_are_refused() {
-    for (args, expected) in [
-        (
-            &["shot", "swing", "--curve", "-o", "a.png"][..],
-            "swing: expected a scene with analysis = \"static\" for --curve",
-        ),
-        (
-            &["shot", "swing", "--study", "-o", "a.png"],
-            "swing: expected a scene with analysis = \"static\" for --study",
-        ),
-        (
-            &["shot", "swing", "--compare", "linear,newton", "-o", "a.png"],
-            "swing: expected a scene with analysis = \"static\" for --compare",
-        ),
-        (
-            &["shot", "cantilever", "--motion", "-o", "a.png"],
-            "cantilever: expected a scene with analysis = \"dynamic\" for --motion",
-        ),
-        (
-            &["solve", "swing", "--reference", "full"],
-            "swing: expected a scene with analysis = \"static\" for --reference full",
-        ),
-        (&["solve", "swing", "--certificate"], "swing: expected a scene with analysis = \"static\" for --certificate"),
-        (&["record", "cantilever", "--seconds", "1", "-o", "a.gif"], "expected no --seconds and no --speed"),
-        (&["curve", "swing"], "expected a static scene"),
-        (&["tune", "swing"], "expected a scene with analysis = \"static\""),
-    ] {
-        let refused = warpbeam(args);
-        assert_eq!(refused.status.code(), Some(2), "{args:?}: {}", stderr(&refused));
-        assert!(stderr(&refused).contains(expected), "{args:?}: {}", stderr(&refused));
-    }
 }
 
 /// Numbered pictures of an earlier recording are not mixed with those of a new one.

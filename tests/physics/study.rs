@@ -316,7 +316,6 @@ fn study_of_a_motion_writes_its_files() {
         let svg = fs::read_to_string(out.join("study.svg")).unwrap();
         assert!(svg.contains("Pareto front") && svg.contains("real time") && svg.contains("t6 energy-momentum"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        assert!(fs::metadata(out.join("study.png")).unwrap().len() > 10_000);
     }
     let refused = warpbeam(&["tune", "swing"]);
     assert_eq!(refused.status.code(), Some(2));

@@ -14,7 +14,6 @@ use crate::app::platform::new_file::NewFile;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{marker, segments, still};
-use crate::image::PictureError;
 use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
@@ -24,7 +23,6 @@ use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 pub(crate) enum FigureSaveError {
     NoFile(#[from] std::io::Error),
     File { path: PathBuf, reason: std::io::Error },
-    Picture(#[from] PictureError),
 }
 
 impl From<&FigureSaveError> for Sentence {
@@ -32,7 +30,6 @@ impl From<&FigureSaveError> for Sentence {
         match error {
             FigureSaveError::NoFile(error) => error.to_string().into(),
             FigureSaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
-            FigureSaveError::Picture(error) => error.to_string().into(),
         }
     }
 }
@@ -43,7 +40,6 @@ pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, FigureS
     let bytes = match file {
         FigureFile::Csv => figure.csv().into_bytes(),
         FigureFile::Svg => crate::plot::figure(figure).svg().into_bytes(),
-        FigureFile::Png => crate::plot::figure(figure).picture()?.png()?,
     };
     let path = new.path().to_owned();
     match files::save(&path, &bytes) {
