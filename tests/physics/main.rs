@@ -29,8 +29,6 @@ mod point_values;
 mod precision;
 mod pulses;
 mod reference;
-#[cfg(feature = "rivals")]
-mod rivals;
 mod sections;
 mod stress;
 mod study;

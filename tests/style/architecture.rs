@@ -145,8 +145,8 @@ fn sources(root: &Path) -> Sources {
     for file in rust_files(root) {
         let relative = file.strip_prefix(root).unwrap().with_extension("");
         let mut module: Module = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
-        // Programs are separate crates, and tests may import everything.
-        if module[0] == "main" || module[0] == "bin" || module.last().is_some_and(|name| name == "tests") {
+        // The program is a separate crate, and tests may import everything.
+        if module[0] == "main" || module.last().is_some_and(|name| name == "tests") {
             continue;
         }
         module.pop_if(|last| last == "mod" || last == "lib");
