@@ -97,8 +97,8 @@ pub const MAX_STATES: u64 = 300;
 /// - `.csv`: one row per time step, and one for the start. Columns: `t` (s); for every probe NAME its mean position
 ///   `NAME_x`, `NAME_y` and displacement `NAME_u_x`, `NAME_u_y` (m), and velocity `NAME_v_x`, `NAME_v_y` (m/s); then
 ///   the energies of the [`Ledger`](crate::dynamics::Ledger), J: `kinetic`, `elastic`, `potential`, `dissipated`,
-///   `integrator`, `pulses`, `hands` (work of the mouse spring). In every row kinetic + elastic + potential + dissipated +
-///   integrator − pulses − hands is the same.
+///   `integrator`, `pulses`, `mouse_spring` (work of it). In every row kinetic + elastic + potential + dissipated +
+///   integrator − pulses − mouse_spring is the same.
 /// - `.pvd`: a collection of the files `NAME_0000.vtu`, `NAME_0001.vtu`, … in the same folder: the first and the last
 ///   state, and every n-th step, with the smallest n that gives at most [`MAX_STATES`] states.
 /// - `.vtu`: the last state.
@@ -243,7 +243,7 @@ fn table_header(simulation: &Simulation) -> String {
             let _ = write!(text, ",{}", csv_field(&format!("{}_{column}", probe.name)));
         }
     }
-    text.push_str(",kinetic,elastic,potential,dissipated,integrator,pulses,hands\n");
+    text.push_str(",kinetic,elastic,potential,dissipated,integrator,pulses,mouse_spring\n");
     text
 }
 

@@ -29,7 +29,7 @@ const SOLVE_FILES: &str = "--out of a static scene:
           NAME_x, NAME_y, NAME_u_x, NAME_u_y (m), NAME_v_x, NAME_v_y (m/s);
         then energies (J):
           kinetic, elastic, potential, dissipated, integrator (energy lost by it),
-          pulses and hands (work of pulses and of the mouse spring)
+          pulses and mouse_spring (work of pulses and of the mouse spring)
   .pvd  a ParaView collection of FILE_0000.vtu, FILE_0001.vtu, ... next to it:
         at most about 300 states, evenly spread in time
   .vtu  the last state
@@ -148,9 +148,6 @@ pub(super) struct SolveArgs {
     /// or two; `full`: meshes fine enough for an error of 0.01 %; `none`: no reference solution and no errors.
     #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
     pub reference: ReferenceEffort,
-    /// Same as --reference none.
-    #[arg(long = "no-truth", hide = true, conflicts_with = "reference")]
-    pub no_reference: bool,
     /// Certify the result, whatever the size of the scene: stability, spectral radius ρ of the warped iteration, and
     /// jumps on the load path to it.
     #[arg(long)]
@@ -172,7 +169,6 @@ impl SolveArgs {
     /// Returns the effort for the reference solution; `None` for no reference.
     pub fn effort(&self) -> Option<Effort> {
         match self.reference {
-            _ if self.no_reference => None,
             ReferenceEffort::None => None,
             ReferenceEffort::Bounded => Some(Effort::Bounded),
             ReferenceEffort::Full => Some(Effort::Full),

@@ -114,7 +114,7 @@ fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
     let energy = &mut object["energy"];
     energy["integrator"] = json!(ledger.integrator);
     energy["pulses"] = json!(ledger.pulses);
-    energy["hands"] = json!(ledger.mouse_spring);
+    energy["mouse_spring"] = json!(ledger.mouse_spring);
 }
 
 fn tensor(tensor: &PlaneTensor) -> Value {
@@ -137,9 +137,6 @@ fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&
         "reference_source": source.map(|source| source.to_string()),
         "reference_error_percent": reference.map(|r| r.own_error_percent),
         "error_percent": reference.and_then(|r| r.error_percent(result)),
-        // Deprecated names of version 0.1, kept for one more version.
-        "truth_u": u,
-        "truth_source": source.map(|source| source.to_string()),
     })
 }
 

@@ -115,7 +115,6 @@ pub(super) fn run(
                 json: false,
                 out: None,
                 reference: ReferenceEffort::Bounded,
-                no_reference: false,
                 certificate: false,
                 no_certificate: false,
             })?;

@@ -65,23 +65,6 @@ fn json_has_every_field_of_the_contract() {
         assert_eq!(keys, contract, "{id}");
         assert_eq!(json["status"], "converged", "{id}");
         assert!(json["residual"].as_f64().unwrap() <= 1e-8);
-        let probe = &json["probes"][0];
-        for key in [
-            "name",
-            "x",
-            "u",
-            "rotation_deg",
-            "strain",
-            "stress",
-            "von_mises",
-            "reference_u",
-            "reference_source",
-            "reference_error_percent",
-            "error_percent",
-            "truth_u",
-        ] {
-            assert!(probe.get(key).is_some(), "{id}: {key}");
-        }
         // A body at rest has no kinetic energy and no dissipation: absent values are null.
         assert!(json["energy"]["kinetic"].is_null() && json["energy"]["dissipated"].is_null());
         for (object, keys) in [
@@ -131,7 +114,7 @@ fn json_of_a_motion_has_its_energy_ledger() {
         assert_eq!((json["integrator"].as_str(), json["steps"].as_u64()), (Some(integrator), Some(30)));
         assert!((json["time"].as_f64().unwrap() - 0.5).abs() < 1e-9);
         let energy = |key: &str| json["energy"][key].as_f64().unwrap_or_else(|| panic!("{integrator}: {key}"));
-        let lost = energy("dissipated") + energy("integrator") - energy("pulses") - energy("hands");
+        let lost = energy("dissipated") + energy("integrator") - energy("pulses") - energy("mouse_spring");
         let sum = energy("kinetic") + energy("elastic") - energy("external") + lost;
         assert!(sum.abs() < 1e-9 * energy("external"), "{integrator}: the terms of the ledger sum to {sum} J");
         assert!(json["energy_drift"].as_f64().unwrap() < 1e-6);
@@ -241,7 +224,7 @@ fn a_motion_is_written_as_a_table() {
             })
         );
         let energies = &header[header.len() - 7..];
-        assert_eq!(energies, ["kinetic", "elastic", "potential", "dissipated", "integrator", "pulses", "hands"]);
+        assert_eq!(energies, ["kinetic", "elastic", "potential", "dissipated", "integrator", "pulses", "mouse_spring"]);
         let steps = json["steps"].as_u64().unwrap() as usize;
         assert_eq!((rows.len(), steps > 20), (steps + 1, true), "{id}");
         assert!(rows.windows(2).all(|w| w[1][0] > w[0][0]) && rows[0][0] == 0.0, "{id}: times increase");
@@ -252,7 +235,7 @@ fn a_motion_is_written_as_a_table() {
             assert!(same(*column, value), "{id}: {column} {value}");
         }
         let from = header.len() - 7;
-        for key in ["kinetic", "elastic", "dissipated", "integrator", "pulses", "hands"] {
+        for key in ["kinetic", "elastic", "dissipated", "integrator", "pulses", "mouse_spring"] {
             let column = header.iter().position(|c| c == key).unwrap();
             assert!(same(last[column], &json["energy"][key]), "{id}: {key}");
         }
@@ -610,7 +593,7 @@ fn curve_prints_linear_theory_the_reference_and_every_method() {
         .collect();
     // The row of the full load is the reference solution that `solve` compares with.
     let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
-    let reference = &solve_json(&["elastica"])["probes"][0]["truth_u"];
+    let reference = &solve_json(&["elastica"])["probes"][0]["reference_u"];
     assert!(
         (full[3] - reference[0].as_f64().unwrap()).abs() < 1e-6
             && (full[4] - reference[1].as_f64().unwrap()).abs() < 1e-6
@@ -667,18 +650,18 @@ fn curve_follows_an_arch_through_its_limit_load() {
 /// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
 #[test]
 fn a_jump_is_reported() {
-    let json = solve_json(&["jump", "--no-truth"]);
+    let json = solve_json(&["jump", "--reference=none"]);
     assert_eq!((&json["jumped"], &json["stable"]), (&true.into(), &true.into()));
     let at = json["jumped_at"].as_f64().unwrap();
     assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
     assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
-    let text = stdout(&warpbeam(&["solve", "jump", "--no-truth"]));
+    let text = stdout(&warpbeam(&["solve", "jump", "--reference=none"]));
     assert!(text.contains("jumped: beyond the limit point at 89."), "{text}");
     for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {
-        let json = solve_json(&[scene, &["--no-truth"]].concat());
+        let json = solve_json(&[scene, &["--reference=none"]].concat());
         assert_eq!((&json["jumped"], &json["jumped_at"]), (&false.into(), &serde_json::Value::Null), "{scene:?}");
     }
-    let unknown = solve_json(&["jump", "--no-truth", "--no-certificate"]);
+    let unknown = solve_json(&["jump", "--reference=none", "--no-certificate"]);
     assert!(unknown["jumped"].is_null());
 }
 
@@ -686,7 +669,7 @@ fn a_jump_is_reported() {
 #[test]
 fn solve_prints_the_reaction_of_every_support() {
     let set = ["--set", "support.1.turn=30°", "--set", "support.1.displacement=[-5 mm, 0 mm]"];
-    let json = solve_json(&[&["snap", "--no-truth"][..], &set].concat());
+    let json = solve_json(&[&["snap", "--reference=none"][..], &set].concat());
     let supports = json["supports"].as_array().unwrap();
     assert_eq!(supports.len(), 3);
     assert_eq!((&supports[1]["edge"], &supports[1]["displacement"][0]), (&"right".into(), &(-0.005).into()));
@@ -694,7 +677,7 @@ fn solve_prints_the_reaction_of_every_support() {
     assert_eq!(supports[2]["at"], serde_json::json!([0.1, 0.0085]));
     let sum: f64 = supports.iter().map(|s| s["force"][1].as_f64().unwrap()).sum();
     assert!(sum.abs() < 1e-3, "{sum}");
-    let text = stdout(&warpbeam(&[&["solve", "snap", "--no-truth"][..], &set].concat()));
+    let text = stdout(&warpbeam(&[&["solve", "snap", "--reference=none"][..], &set].concat()));
     assert!(text.contains("support right, moved by (-5, 0) mm, rotated by 30°: reaction ("), "{text}");
     let wrong = warpbeam(&["solve", "snap", "--set", "support.1.turn=3 mm"]);
     assert!(stderr(&wrong).contains("`3 mm` is a length (m); expected an angle (rad)"), "{}", stderr(&wrong));
@@ -720,17 +703,13 @@ fn json_certifies_its_result() {
     ] {
         let probe = &solve_json(&[id])["probes"][0];
         assert_eq!(probe["reference_source"], source, "{id}");
-        // Field names of the previous version.
-        assert_eq!((&probe["truth_u"], &probe["truth_source"]), (&probe["reference_u"], &probe["reference_source"]));
         let own = probe["reference_error_percent"].as_f64().unwrap();
         assert!(probe["error_percent"].as_f64().unwrap() > 0.0 && own > 0.0 && own < 1.0, "{id}: {own}");
         let text = stdout(&warpbeam(&["solve", id]));
         assert!(text.contains(&format!("  {source}: (")) && text.contains("its own error at most "), "{id}: {text}");
     }
-    for none in ["--no-truth", "--reference=none"] {
-        let none = solve_json(&["shear", none]);
-        assert!(none["probes"][0]["reference_u"].is_null() && none["probes"][0]["error_percent"].is_null());
-    }
+    let none = solve_json(&["shear", "--reference=none"]);
+    assert!(none["probes"][0]["reference_u"].is_null() && none["probes"][0]["error_percent"].is_null());
     // A probe that moves only by rounding errors has no error relative to its displacement.
     let still = solve_json(&["shear", "--set", "load.0.force=[0,0]"]);
     assert!(still["probes"][0]["error_percent"].is_null());

@@ -157,18 +157,12 @@ fn every_link_to_code_leads_to_a_definition() {
 }
 
 #[test]
-fn the_map_names_every_page_and_old_paths_lead_to_new_ones() {
+fn the_map_names_every_page() {
     let map = std::fs::read_to_string("docs/README.md").unwrap();
     let listed: BTreeSet<_> = links(&map).into_iter().map(|link| link.target).collect();
     for file in markdown_files(Path::new("docs")) {
         let name = file.strip_prefix("docs").unwrap().to_str().unwrap();
-        if name.contains('/') {
-            assert!(listed.contains(name), "docs/README.md does not name {name}");
-        } else if name != "README.md" {
-            let text = std::fs::read_to_string(&file).unwrap();
-            assert_eq!(text.lines().count(), 1, "{name}");
-            assert!(links(&text).iter().any(|link| listed.contains(&link.target)), "{name}: {text}");
-        }
+        assert!(name == "README.md" || listed.contains(name), "docs/README.md does not name {name}");
     }
 }
 

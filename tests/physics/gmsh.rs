@@ -295,7 +295,7 @@ fn a_mesh_has_the_unit_and_the_element_of_its_file() {
              [[support]]\nedge = \"wall\"\nfix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0.0, -1.0]\n"
         );
         fs::write(&path, text).unwrap();
-        warpbeam(&["solve", path.to_str().unwrap(), "--json", "--no-truth"])
+        warpbeam(&["solve", path.to_str().unwrap(), "--json", "--reference=none"])
     };
     let json = |output: &std::process::Output| serde_json::from_str::<serde_json::Value>(&stdout(output)).unwrap();
     // By default, the element is that of the file.

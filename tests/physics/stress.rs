@@ -367,9 +367,9 @@ fn files_and_json_agree_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name).display().to_string();
     let csv = out("a.csv");
-    let json = crate::common::solve_json(&["bracket", "--no-truth", "--out", &csv]);
+    let json = crate::common::solve_json(&["bracket", "--reference=none", "--out", &csv]);
     let vtu = out("a.vtu");
-    crate::common::solve_json(&["bracket", "--no-truth", "--out", &vtu]);
+    crate::common::solve_json(&["bracket", "--reference=none", "--out", &vtu]);
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let csv = std::fs::read_to_string(csv).unwrap();
     let rows: Vec<Vec<f64>> =

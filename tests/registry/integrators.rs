@@ -115,7 +115,7 @@ fn the_ledger_closes(kind: IntegratorKind) {
     for (what, recorded) in [
         ("dissipated", ledger.dissipated),
         ("pulses", ledger.pulses.abs()),
-        ("hands", ledger.mouse_spring.abs()),
+        ("mouse_spring", ledger.mouse_spring.abs()),
         ("edits", ledger.edits.abs()),
     ] {
         assert!(recorded > 1e-3, "{what} {recorded}");
