@@ -1,33 +1,31 @@
 //! Progress of commands that take long, and their cancellation by Ctrl-C or SIGTERM.
 
+use std::io::{IsTerminal as _, Write as _};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-
 use crate::progress::Progress;
 use crate::simulation::{Simulation, Status};
 
-/// Number of steps of a full bar.
-const FULL: u64 = 10_000;
-/// Interval between drawings of the bar.
+/// Interval between drawings of the line.
 const REDRAW: Duration = Duration::from_millis(100);
-/// Time before the bar is first drawn.
+/// Time before the line is first drawn.
 const LONG: Duration = Duration::from_millis(400);
 /// Completed fraction from which on the remaining time is estimated.
 const TELLING: f64 = 0.02;
 /// Exit code after a second Ctrl-C, as used by shells.
 const KILLED_BY_INTERRUPT: i32 = 130;
 
-/// Progress bar on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal
+/// Line of progress on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal
 /// makes the command end with its partial result, the second ends the process.
 #[derive(Debug)]
 pub(super) struct Watch {
-    bar: ProgressBar,
+    is_on_terminal: bool,
     began: Instant,
-    drawn: Mutex<Option<Instant>>,
+    /// Time of the last drawing, and its number of letters.
+    drawn: Mutex<(Option<Instant>, usize)>,
     cancelled: Arc<AtomicBool>,
 }
 
@@ -44,12 +42,8 @@ impl Watch {
         if let Err(error) = listening {
             log::warn!("Ctrl-C ends the process without its result: {error}");
         }
-        // The bar is hidden if standard error is not a terminal.
-        let bar = ProgressBar::new(FULL);
-        if let Ok(style) = ProgressStyle::with_template("{msg}  {wide_bar} {prefix}") {
-            bar.set_style(style);
-        }
-        Self { bar, began: Instant::now(), drawn: Mutex::new(None), cancelled }
+        let is_on_terminal = std::io::stderr().is_terminal();
+        Self { is_on_terminal, began: Instant::now(), drawn: Mutex::default(), cancelled }
     }
 
     /// Returns `true` if the command should end with its partial result.
@@ -67,18 +61,19 @@ impl Watch {
         let now = Instant::now();
         let spent = now.duration_since(self.began);
         let mut drawn = self.drawn.lock().unwrap_or_else(PoisonError::into_inner);
-        let fresh = drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW);
-        if self.bar.is_hidden() || fresh || spent < LONG {
+        let fresh = drawn.0.is_some_and(|drawn| now.duration_since(drawn) < REDRAW);
+        if !self.is_on_terminal || fresh || spent < LONG {
             return;
         }
-        *drawn = Some(now);
         let fraction = fraction.clamp(0.0, 1.0);
-        self.bar.set_position((fraction * FULL as f64) as u64);
-        self.bar.set_message(message());
-        self.bar.set_prefix(match fraction >= TELLING {
-            true => format!("{:.0} %, {} left", 100.0 * fraction, HumanDuration(spent.mul_f64(1.0 / fraction - 1.0))),
-            false => format!("{:.0} %", 100.0 * fraction),
-        });
+        let mut line = format!("{}: {:.0} %", message(), 100.0 * fraction);
+        if fraction >= TELLING {
+            let left = spent.as_secs_f64() * (1.0 / fraction - 1.0);
+            line +=
+                &if left < 120.0 { format!(", {left:.0} s left") } else { format!(", {:.0} min left", left / 60.0) };
+        }
+        overwrite(drawn.1, &line);
+        *drawn = (Some(now), line.chars().count());
     }
 
     /// Iterates a search until its status is final, or it is cancelled.
@@ -115,6 +110,15 @@ impl Watch {
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        let drawn = self.drawn.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if drawn.0.is_some() {
+            overwrite(drawn.1, "");
+            overwrite(0, "");
+        }
     }
+}
+
+/// Writes a line over the last one, which had `letters`. Text that a terminal does not accept is lost.
+fn overwrite(letters: usize, line: &str) {
+    let _ = write!(std::io::stderr(), "\r{line:letters$}").and_then(|()| std::io::stderr().flush());
 }

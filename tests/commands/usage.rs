@@ -41,7 +41,7 @@ fn interrupted_static_commands_print_their_partial_result() {
     assert!(said.contains("interrupted"), "{said}");
 }
 
-/// A slow reference solution shows a progress bar on a terminal.
+/// A slow reference solution shows its progress on a terminal.
 #[test]
 fn a_long_solve_shows_a_bar() {
     let args = [&["solve", "--reference", "full"][..], &LARGE].concat();
