@@ -5,8 +5,6 @@ use std::ops::ControlFlow;
 use crate::sentence::Sentence;
 
 /// Progress of a long computation.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
     /// Completed fraction, 0 to 1, of the expected time, which is estimated from sizes and from times measured so far.
@@ -17,8 +15,6 @@ pub struct Progress<'a> {
 
 /// Callback that receives the progress of a computation from any of its threads, and cancels it with
 /// [`ControlFlow::Break`]. A computation calls it before each solve, so that it ends soon once cancelled.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 pub type Observer<'a> = &'a (dyn Fn(Progress<'_>) -> ControlFlow<()> + Sync);
 
 impl Progress<'_> {

@@ -7,8 +7,6 @@ use nalgebra::{Matrix2, SimdBool, Vector2};
 use crate::simd::Number;
 
 /// Proper rotation of the plane, stored as cosine and sine; with SIMD `T`, one rotation per lane.
-///
-/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rotation<T = f64> {
     /// Cosine of the angle.

@@ -5,8 +5,6 @@ use std::fmt::{Display, Formatter, Result};
 
 /// Sentence with its parts: `Display` renders it in English, [`Self::render`] in another language. A plain text has no
 /// parts.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sentence {
     /// English text with a placeholder `%{name}` for every part.

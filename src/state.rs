@@ -8,8 +8,6 @@ use crate::rotation::Rotation;
 
 /// Positions, rotations and velocities of a body. Slices over nodes are in the mesh's order; rotations are in the order
 /// of the elements.
-///
-/// See [`Simulation::restore`](crate::Simulation::restore) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// u = x − X of every node, m.
@@ -30,8 +28,6 @@ pub struct State {
 }
 
 /// Error for a state or a nodal vector that does not fit a body.
-///
-/// See [`Simulation::restore`](crate::Simulation::restore) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum StateError {

@@ -3,8 +3,6 @@
 use web_time::{Duration, Instant};
 
 /// Time spent in each stage of an iteration or a time step.
-///
-/// See [`Simulation::timings`](crate::Simulation::timings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Timings {
     /// Rotations and edge angles computed separately at the end of time steps. Those of an iteration are computed in

@@ -11,8 +11,6 @@ const REACH: f64 = 0.25;
 /// Mouse spring: a damped spring from a material point at x to the pointer at p. Its force k (p − x + τ (ṗ − ẋ)), with
 /// stiffness k, N/m, and delay τ, s, is capped smoothly (Huber 1964), so that its tangent is never negative and no
 /// pointer motion exerts more force than a time step can handle.
-///
-/// See [`Simulation::grab`](crate::Simulation::grab) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MouseSpring {
     point: MaterialPoint,

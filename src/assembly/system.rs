@@ -18,8 +18,6 @@ use crate::solver::{SolverError, Symbolic};
 use crate::state::{State, StateError};
 
 /// Reason why the equations of a scene could not be set up.
-///
-/// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

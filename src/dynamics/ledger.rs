@@ -18,8 +18,6 @@ const MIN_NOTED_LOSS: f64 = 0.1;
 
 /// Energies of a motion, J, and the energy added and removed since its start: kinetic + elastic + potential +
 /// dissipated + integrator − pulses − mouse_spring − edits = start, up to the rounding error [`Self::imbalance`].
-///
-/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Ledger {
@@ -189,8 +187,6 @@ fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
 }
 
 /// Momentum and angular momentum of a body.
-///
-/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Momentum {
     /// Σ M v, kg m/s.

@@ -3,8 +3,6 @@
 use crate::sentence::{Sentence, displayed, sentence};
 
 /// Decisions of `auto` since the start of a motion.
-///
-/// See [`MotionResult`](crate::MotionResult) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[non_exhaustive]
 pub struct MotionReport {
@@ -23,8 +21,6 @@ pub struct MotionReport {
 }
 
 /// Kind of a time step.
-///
-/// See [`MotionResult`](crate::MotionResult) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -12,8 +12,6 @@ use crate::solver::SolverError;
 use crate::state::State;
 
 /// Reason why a step failed.
-///
-/// See [`StopReason`](crate::StopReason) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
@@ -126,8 +124,6 @@ impl Solves {
 }
 
 /// Counts of operations since the start.
-///
-/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Counts {

@@ -17,8 +17,6 @@ use crate::model::ElementKind;
 use crate::model::limits::{COORDINATE, TOTAL_CELLS};
 
 /// Reason why a mesh file cannot be used.
-///
-/// See [`Mesh::from_gmsh`](crate::Mesh::from_gmsh) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GmshError {

@@ -5,8 +5,6 @@ use nalgebra::Vector2;
 use super::{Mesh, Segment};
 
 /// Point that moves with the body: an element and a place in it.
-///
-/// See [`Simulation::grab`](crate::Simulation::grab) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPoint {
     /// Element number.

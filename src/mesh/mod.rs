@@ -21,8 +21,6 @@ pub use locate::MaterialPoint;
 pub use recovery::Recovery;
 
 /// Error of a mesh. Elements are numbered from 0.
-///
-/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -77,8 +75,6 @@ pub enum MeshError {
 }
 
 /// Side of an element, by node numbers.
-///
-/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     nodes: [u32; MAX_SIDE_NODES],
@@ -129,8 +125,6 @@ fn side_key([a, b]: [u32; 2]) -> [u32; 2] {
 }
 
 /// Nodes, elements and named edges of a body at rest.
-///
-/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     nodes: Vec<Vector2<f64>>,

@@ -9,8 +9,6 @@ use crate::solver::lanczos::extreme_eigenvalues;
 use crate::state::State;
 
 /// Properties of a result independent of the method that found it.
-///
-/// See [`Simulation::certify`](crate::Simulation::certify) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Certificate {
     /// `true` if the exact tangent is positive definite; `None` for linear theory and away from equilibria.

@@ -11,8 +11,6 @@ use crate::state::State;
 use crate::timings::{Timings, timed};
 
 /// Reason why an iteration produced no new state.
-///
-/// See [`Status`](crate::Status) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]

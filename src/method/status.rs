@@ -8,8 +8,6 @@ use crate::sentence::{Sentence, displayed, sentence};
 use crate::state::{State, largest};
 
 /// Reason why an iteration stopped before it converged.
-///
-/// See [`Status`](crate::Status) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Reason {

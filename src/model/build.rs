@@ -31,8 +31,6 @@ impl LoadId {
 }
 
 /// Handle of a support in a scene. It is valid as long as no support before it is removed.
-///
-/// See [`Scene::add_support`](crate::Scene::add_support) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SupportId(usize);
 

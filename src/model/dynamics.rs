@@ -56,8 +56,6 @@ impl Default for DynamicsSettings {
 }
 
 /// Rayleigh damping: mass-proportional and stiffness-proportional.
-///
-/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -69,8 +67,6 @@ pub struct Damping {
 }
 
 /// Time integration schemes.
-///
-/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -87,8 +83,6 @@ pub enum IntegratorKind {
 }
 
 /// Initial velocities of a dynamic scene.
-///
-/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
@@ -100,8 +94,6 @@ pub struct Start {
 }
 
 /// Time dependence of a load: the factor is sin²(π (t − start)/duration) during the pulse and 0 at other times.
-///
-/// See [`Scene::pulse`](crate::Scene::pulse) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {

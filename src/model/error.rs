@@ -45,8 +45,6 @@ impl From<&Invalid> for Sentence {
 }
 
 /// Reason why the text of a scene could not be read.
-///
-/// See [`SceneError`](crate::SceneError) for an example.
 #[derive(Clone, Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {

@@ -24,8 +24,6 @@ use crate::format::number;
 use crate::sentence::sentence;
 
 /// Complete description of a simulation.
-///
-/// See [`Scene::beam`](crate::Scene::beam) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -70,8 +68,6 @@ pub struct Scene {
 }
 
 /// Kind of result.
-///
-/// See [`DynamicsSettings`](crate::DynamicsSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -117,8 +113,6 @@ pub struct Beam {
 }
 
 /// Mesh from a Gmsh file.
-///
-/// See [`Scene::mesh_file`](crate::Scene::mesh_file) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -137,8 +131,6 @@ pub struct MeshFile {
 }
 
 /// Element types.
-///
-/// See [`Mesh::new`](crate::Mesh::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -153,8 +145,6 @@ pub enum ElementKind {
 }
 
 /// Directions in which the cells of a beam are cut.
-///
-/// See [`Beam`](crate::Beam) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -167,8 +157,6 @@ pub enum Diagonals {
 }
 
 /// Linear elastic, isotropic material.
-///
-/// See [`Material::new`](crate::Material::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -201,8 +189,6 @@ fn default_thickness() -> f64 {
 }
 
 /// Conditions out of the plane.
-///
-/// See [`Material::new`](crate::Material::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Plane {
@@ -266,8 +252,6 @@ fn is_off(iterations: &u32) -> bool {
 }
 
 /// Methods that find an equilibrium or solve a time step.
-///
-/// See [`SolverSettings`](crate::SolverSettings) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]

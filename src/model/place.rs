@@ -110,8 +110,6 @@ impl Place {
 }
 
 /// Support: nodes or a point that are fixed, or moved along a prescribed displacement.
-///
-/// See [`Scene::add_support`](crate::Scene::add_support) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SupportTable", into = "SupportTable")]
 #[non_exhaustive]
@@ -184,8 +182,6 @@ impl Support {
 }
 
 /// Direction of the plane.
-///
-/// See [`Scene::support`](crate::Scene::support) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
@@ -196,8 +192,6 @@ pub enum Axis {
 }
 
 /// Displacement to report: the mean over an edge, or of a material point.
-///
-/// See [`Place`](crate::Place) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ProbeTable", into = "ProbeTable")]
 #[non_exhaustive]
@@ -209,8 +203,6 @@ pub struct Probe {
 }
 
 /// Straight line through a body at rest, along which it is cut.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "SectionTable", into = "SectionTable")]
 pub struct SectionLine {
@@ -241,8 +233,6 @@ impl SectionLine {
 
 /// Load. Forces and gravity are dead loads: they keep their direction as the body rotates; a moment rotates with its
 /// edge.
-///
-/// See [`Scene::add_load`](crate::Scene::add_load) for an example.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LoadTable", into = "LoadTable")]
 #[non_exhaustive]

@@ -21,8 +21,6 @@ pub(super) struct PlacedMesh<'a> {
 }
 
 /// Force and moment about a point.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Wrench {
     /// Force, N.

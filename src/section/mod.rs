@@ -31,8 +31,6 @@ pub use load::Wrench;
 use load::{PlacedMesh, beyond_nodes};
 
 /// Reason why a line has no section.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
@@ -62,8 +60,6 @@ impl From<&SectionError> for Sentence {
 }
 
 /// Normal force, shear force and bending moment.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct SectionForces {
     /// Normal force N along the normal, N; positive in tension.
@@ -77,8 +73,6 @@ pub struct SectionForces {
 }
 
 /// Stress at a point of a cut.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionPoint {
     /// Rest position, m.
@@ -93,8 +87,6 @@ pub struct SectionPoint {
 }
 
 /// Forces in a cut through the body: those that the part in front exerts on the part behind.
-///
-/// See [`Simulation::section`](crate::Simulation::section) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Section {

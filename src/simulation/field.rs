@@ -13,8 +13,6 @@ use crate::stress::{ErrorEstimate, Local, NodalStress, visit_points};
 ///
 /// Stresses are Cauchy stresses. Strains are Biot strains ε = S − I, in the axes of the material: x and y of the body at
 /// rest, which rotate with R.
-///
-/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Field {

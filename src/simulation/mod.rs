@@ -88,8 +88,6 @@ impl From<Invalid> for SimulationError {
 }
 
 /// Results of a state.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution {

@@ -55,8 +55,6 @@ pub(super) struct TimeStepping {
 }
 
 /// Snapshot of a motion: state, energies and counts. [`Simulation::return_to`](crate::Simulation::return_to) returns to it.
-///
-/// See [`Motion`](crate::Motion) for an example.
 #[derive(Clone, Debug)]
 pub struct Moment {
     state: State,

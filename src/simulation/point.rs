@@ -11,8 +11,6 @@ use crate::scene::Material;
 use crate::stress::{Local, NodalStress, PlaneTensor, visit_points};
 
 /// Source of the deformation at a material point.
-///
-/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointValues {
     /// Recovered at the nodes and interpolated.
@@ -23,8 +21,6 @@ pub enum PointValues {
 
 /// Displacement, deformation and stress at a material point, all of one deformation: F = R S, ε = S − I, and σ follows
 /// from ε by the material law. In linear theory ε = sym F − I, R = I and S = I + ε.
-///
-/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {

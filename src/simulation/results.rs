@@ -10,8 +10,6 @@ use crate::state::State;
 use crate::stress::{ErrorEstimate, NodalStress, PlaneTensor, Singularity};
 
 /// Result at a probe.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProbeResult {
@@ -24,8 +22,6 @@ pub struct ProbeResult {
 }
 
 /// Energies, J.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Energy {
@@ -40,8 +36,6 @@ pub struct Energy {
 }
 
 /// Reaction of one support on the body.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct SupportReaction {
@@ -56,8 +50,6 @@ pub struct SupportReaction {
 }
 
 /// Measures of the deformation of a state.
-///
-/// See [`Simulation::solution`](crate::Simulation::solution) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Deformation {

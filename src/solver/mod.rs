@@ -20,8 +20,6 @@ use crate::sentence::{Sentence, sentence};
 pub(crate) mod lanczos;
 
 /// Reason why a matrix could not be factorized.
-///
-/// See [`SimulationError`](crate::SimulationError) for an example.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[error("{}", Sentence::from(self))]
 pub enum SolverError {

@@ -28,8 +28,6 @@ pub use singularity::Singularity;
 pub(crate) use warning::{inversion_warning, strain_warning};
 
 /// Symmetric second-order tensor without shear out of the plane: stress (Pa) or strain.
-///
-/// See [`Simulation::point_state`](crate::Simulation::point_state) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlaneTensor {
     /// Components in the plane.
@@ -162,8 +160,6 @@ pub fn visit_points(problem: &Problem, state: &State, visit: &mut dyn FnMut(usiz
 }
 
 /// Stress and strain of a state at the nodes of its mesh, recovered by patches (Zienkiewicz and Zhu 1992).
-///
-/// See [`Simulation::nodal_stress`](crate::Simulation::nodal_stress) for an example.
 ///
 /// The components of ε and of R are recovered, because they are smooth wherever the body is; the stresses are computed
 /// from the recovered ε and R. So all values at a node belong to one deformation.

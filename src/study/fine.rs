@@ -23,8 +23,6 @@ use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
 /// Cost allowed for a reference solution.
-///
-/// See [`Reference::find`](crate::Reference::find) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
     /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves on them: a second or two.
@@ -61,8 +59,6 @@ impl Effort {
 }
 
 /// Point of a scene that is not at a node of the mesh.
-///
-/// See [`Reference::find`](crate::Reference::find) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MovedPoint {

@@ -8,8 +8,6 @@ use crate::sentence::{Sentence, sentence};
 use crate::simulation::SimulationError;
 
 /// Reason why a scene cannot be studied.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
@@ -99,8 +97,6 @@ impl StudyError {
 }
 
 /// Extent of a study.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
     /// Coarser meshes only.

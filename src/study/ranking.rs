@@ -4,8 +4,6 @@
 use crate::sentence::Sentence;
 
 /// Requirements for a solve; `None` for no requirement.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Largest error, percent of the exact displacement.
@@ -50,8 +48,6 @@ pub trait Ranked: Copy {
 }
 
 /// Measurements of a study, ranked by time and error.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Ranking<'a, M> {
     /// Measurements.

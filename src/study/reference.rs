@@ -21,8 +21,6 @@ use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
 
 /// Origin of a reference solution.
-///
-/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum ReferenceSource {
@@ -57,8 +55,6 @@ impl From<&ReferenceSource> for Sentence {
 }
 
 /// Reference displacement of a probe.
-///
-/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct ProbeReference {
@@ -107,8 +103,6 @@ impl From<&ProbeReference> for Sentence {
 }
 
 /// Reference solution of a scene.
-///
-/// See [`Reference::of`](crate::Reference::of) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Reference {

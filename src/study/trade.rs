@@ -23,8 +23,6 @@ use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
 /// Parameters varied in the study.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Setting {
     /// Element.
@@ -82,8 +80,6 @@ pub(super) fn mesh_text(element: ElementKind, cells: Option<[u32; 2]>) -> Senten
 
 /// Error of a result and its parts, percent of the reference's displacement. The parts are lengths of displacements:
 /// their sum is an upper bound of the total.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ErrorSplit {
     /// Distance from the reference solution.
@@ -106,8 +102,6 @@ impl ErrorSplit {
 }
 
 /// Measured time and error of a setting.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Measurement {
     /// Setting.
@@ -175,8 +169,6 @@ impl Ranked for Measurement {
 }
 
 /// Speed–accuracy study of a scene.
-///
-/// See [`Study::new`](crate::Study::new) for an example.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Study {
     /// Name of the scene.

@@ -1,10 +1,8 @@
-//! Tests that read the source text: layers, the public face and its documentation, the language of the comments. `cargo
+//! Tests that read the source text: layers, the public face, size. `cargo
 //! test --test style TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod architecture;
-mod comments;
-mod examples;
 #[path = "../common/files.rs"]
 mod files;
 mod public_api;

@@ -30,8 +30,6 @@ pub struct AutoReport {
 }
 
 /// Kind of solution that `auto` chose.
-///
-/// See [`AutoReport`](crate::AutoReport) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Decision {
