@@ -23,74 +23,15 @@ fn every_scene_file_is_in_the_registry() {
     assert_eq!(files, registry::BUILT_IN.len());
 }
 
+/// The keys are compared with `docs/reference/results.md` in `docs.rs`.
 #[test]
-fn json_has_every_field_of_the_contract() {
+fn json_of_a_body_at_rest_is_complete() {
     for id in ids_of(Analysis::Static) {
         let json = solve_json(&[id]);
-        let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
-        let contract = [
-            "scene",
-            "element",
-            "method",
-            "dofs",
-            "status",
-            "reason",
-            "stable",
-            "jumped",
-            "jumped_at",
-            "buckles_at",
-            "critical_at",
-            "iterations",
-            "load_steps",
-            "load_fraction",
-            "on_path_from_rest",
-            "residual",
-            "residual_floor",
-            "fixed_point_rho",
-            "max_rotation_deg",
-            "max_strain",
-            "inverted_elements",
-            "max_von_mises",
-            "mesh_error_percent",
-            "mesh_error_of",
-            "claims",
-            "warnings",
-            "probes",
-            "sections",
-            "energy",
-            "reaction",
-            "supports",
-            "time_us",
-        ];
-        assert_eq!(keys, contract, "{id}");
         assert_eq!(json["status"], "converged", "{id}");
         assert!(json["residual"].as_f64().unwrap() <= 1e-8);
         // A body at rest has no kinetic energy and no dissipation: absent values are null.
         assert!(json["energy"]["kinetic"].is_null() && json["energy"]["dissipated"].is_null());
-        for (object, keys) in [
-            ("energy", &["elastic", "external", "kinetic", "dissipated"][..]),
-            ("reaction", &["force", "moment"]),
-            (
-                "time_us",
-                &[
-                    "total",
-                    "wall",
-                    "rotate",
-                    "assemble",
-                    "factorize",
-                    "solve",
-                    "certify",
-                    "set_up",
-                    "stress",
-                    "reference",
-                    "other",
-                ],
-            ),
-        ] {
-            for key in keys {
-                assert!(json[object].get(key).is_some(), "{id}: {object}.{key}");
-            }
-        }
         // The solve time is the sum of its stages, and the reported times sum to the total.
         let time = |key: &str| json["time_us"][key].as_f64().unwrap();
         let solve: f64 = ["rotate", "assemble", "factorize", "solve"].map(time).iter().sum();
@@ -403,7 +344,7 @@ fn long_commands_show_a_progress_bar_on_a_terminal() {
     assert!(text.contains(" of 60 s, ") && text.contains(" s per second") && text.contains(" left"), "{text}");
 }
 
-const GOOD: &str = r#"name = "Bar"
+pub const GOOD: &str = r#"name = "Bar"
 [beam]
 length = 2.0
 height = 1.0
@@ -772,6 +713,14 @@ fn extremes_writes_the_stability_atlas() {
     assert!(rows.len() >= 72 && rows.iter().all(|row| row.len() == 13));
     for row in &rows {
         assert!(row[2..6].iter().chain(&row[7..]).all(|v| v.parse::<f64>().unwrap().is_finite()), "{row:?}");
+        // Implicit integrators run to the end, and no integrator gains energy; far above its critical step the explicit
+        // one explodes.
+        let is_explicit = row[1] == "symplectic-euler";
+        match row[6] {
+            "finished" | "inverted" => assert_eq!(row[7], "100", "{row:?}"),
+            outcome => assert!(is_explicit && outcome == "exploded", "{row:?}"),
+        }
+        assert!(!is_explicit || row[3].parse::<f64>().unwrap() < 1e6 || row[6] == "exploded", "{row:?}");
     }
     let exploded = rows.iter().filter(|r| (r[0], r[1], r[6]) == ("t6", "symplectic-euler", "exploded")).count();
     let line = summary.lines().find(|line| line.starts_with("t6      symplectic-euler")).unwrap();

@@ -799,9 +799,6 @@ fn the_reference_of_results_has_every_column_of_csv() {
     let is_name = |c: char| c.is_ascii_lowercase() || c == '_';
     let mut columns = BTreeSet::new();
     for file in rust_files(Path::new("src")) {
-        if file.starts_with("src/bin") {
-            continue;
-        }
         let code = std::fs::read_to_string(&file).unwrap();
         for literal in code.split('"').filter(|literal| literal.ends_with("\\n") || literal.starts_with("node,")) {
             let names: Vec<_> = literal.trim_end_matches("\\n").split(',').filter(|name| !name.is_empty()).collect();
@@ -854,44 +851,5 @@ fn the_reference_of_results_has_the_columns_that_solve_writes() {
         let documented = first_cells(&text, section);
         let missing: Vec<_> = columns.difference(&documented).collect();
         assert!(missing.is_empty(), "{section}: {missing:?}");
-    }
-}
-
-// Messages.
-
-/// Returns the messages of the program, with their files: texts of errors, and of sentences that the library composes.
-fn messages() -> Vec<(PathBuf, String)> {
-    let mut messages = Vec::new();
-    for file in rust_files(Path::new("src")) {
-        let code = std::fs::read_to_string(&file).unwrap();
-        let code = code.split("#[cfg(test)]").next().unwrap_or_default();
-        for opener in ["#[error(", "sentence!("] {
-            for part in code.split(opener).skip(1) {
-                let Some(literal) = part.trim_start().strip_prefix('"') else { continue };
-                let mut end = 0;
-                while !literal[end..].starts_with('"') {
-                    let escaped = literal[end..].starts_with('\\');
-                    end += literal[end..].chars().take(1 + usize::from(escaped)).map(char::len_utf8).sum::<usize>();
-                }
-                let lines: Vec<_> = literal[..end].split("\\\n").collect();
-                let text = lines.iter().enumerate().map(|(i, line)| if i == 0 { line } else { line.trim_start() });
-                messages.push((file.clone(), text.collect::<String>().replace("\\\"", "\"")));
-            }
-        }
-    }
-    messages
-}
-
-/// `cargo test --test commands docs::messages -- --nocapture` prints every message, to be read from end to end.
-#[test]
-fn messages_are_plain() {
-    const ODD: [&str; 6] = ["somebody", "nobody", "errand", "anew", "thereof", "something"];
-    let messages = messages();
-    assert!(messages.len() > 150, "{}", messages.len());
-    for (file, text) in &messages {
-        println!("{}: {text}", file.strip_prefix("src").unwrap().display());
-        assert!(!text.ends_with('.') && !text.contains('!'), "{text}: a message is a part of a line");
-        assert!(!ODD.iter().any(|odd| text.to_lowercase().contains(odd)), "{text}");
-        assert!(!text.starts_with(char::is_uppercase) || text.starts_with("PATH"), "{text}");
     }
 }

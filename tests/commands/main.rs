@@ -16,5 +16,7 @@ mod record;
 mod section;
 #[cfg(target_os = "linux")]
 mod statements;
+#[cfg(feature = "app")]
+mod texts;
 #[cfg(target_os = "linux")]
 mod usage;

@@ -172,29 +172,6 @@ fn an_unstable_motion_is_recorded_and_reported() {
     assert!((1..51).contains(&frames), "{frames}");
 }
 
-#[test]
-fn wrong_usage_is_refused_before_anything_is_drawn() {
-    let folder = tempfile::tempdir().unwrap();
-    let cases: &[(&[&str], &str)] = &[
-        (&["swing", "-o", "a.mp4"], "ending in .gif, or the name of a folder for numbered pictures"),
-        (&["swing", "-o", "a.png"], "a.png: expected a file name ending in .gif, or the name of a folder"),
-        (&["swing", "-o", "no/such/a.gif"], "no/such: no such folder"),
-        (&["article", "-o", "a.gif", "--seconds", "2"], "this scene is static"),
-        (&["swing", "-o", "a.gif", "--seconds", "-1"], "expected"),
-        (&["swing", "-o", "a.gif", "--speed", "0"], "expected"),
-        (&["swing", "-o", "a.gif", "--fps", "0"], "1..=100"),
-        (&["swing", "-o", "a.gif", "--size", "9000x10"], "64 to 8192"),
-        (&["swing"], "--output"),
-        (&["swung", "-o", "a.gif"], "built-in scenes"),
-    ];
-    for (args, message) in cases {
-        let output = warpbeam_in(folder.path(), &[&["record"], *args].concat());
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {}", stderr(&output));
-        assert!(stderr(&output).contains(message), "{args:?}: {}", stderr(&output));
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
 /// Ctrl-C leaves a shorter recording that every viewer can open.
 #[cfg(target_os = "linux")]
 #[test]

@@ -33,25 +33,6 @@ fn a_built_in_mesh_in_place_of_a_missing_file_is_said() {
     assert!(!stderr(&warpbeam(&["solve", "bracket", "--reference", "none"])).contains("does not exist"));
 }
 
-#[test]
-fn a_pulse_outside_the_motion_gives_a_note() {
-    for (start, is_outside) in [("5", true), ("-1", true), ("0.1", false)] {
-        let pulse = format!("load.0.pulse={{start={start},duration=0.05}}");
-        let set = ["swing", "--set", &pulse, "--set", "dynamics.duration=0.3"];
-        let said = solve(&set).1;
-        assert_eq!(said.contains("is outside the motion, which lasts 300 ms"), is_outside, "{start}: {said}");
-    }
-}
-
-/// `clip` under 2 N passes through itself, as the window says.
-#[test]
-fn a_body_that_passes_through_itself_gives_a_note() {
-    const NOTE: &str = "the body passes through itself: contact is not modelled";
-    assert!(warnings(&solve_object(&["clip", "--reference", "none"]).1).contains(&NOTE));
-    let half = ["clip", "--set", "load.0.force=[0, -1]", "--reference", "none"];
-    assert!(!warnings(&solve_object(&half).1).contains(&NOTE));
-}
-
 fn warnings(json: &serde_json::Value) -> Vec<&str> {
     json["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap()).collect()
 }
@@ -72,26 +53,6 @@ fn inverted_elements_give_a_warning() {
     }
     let (_, json) = solve_object(&["article"]);
     assert!(!warnings(&json).iter().any(|said| said.contains("inverted")), "{json}");
-}
-
-/// The last state of a diverging iteration has no strain, and no note about it.
-#[test]
-fn a_diverging_iteration_has_no_strain() {
-    let (code, json) = solve_object(&["cantilever", "--set", "load.0.force=[0,-9000]"]);
-    assert_eq!((code, json["status"].as_str(), json["max_strain"].is_null()), (Some(1), Some("diverged"), true));
-    assert!(!warnings(&json).iter().any(|said| said.contains("strains reach")), "{json}");
-}
-
-/// An integrator that loses more than a tenth of the energy put in, and a pulse of few time steps, are noted.
-#[test]
-fn lost_energy_and_short_pulses_are_noted() {
-    let text = |args: &[&str]| stdout(&warpbeam(&[&["solve"][..], args].concat()));
-    let lossy = text(&["swing", "--set", "dynamics.integrator=implicit-euler"]);
-    assert!(lossy.contains("note: the integrator lost ") && lossy.contains("of the energy put in"), "{lossy}");
-    let usual = text(&["swing"]);
-    assert!(!usual.contains("note: the integrator"), "{usual}");
-    let coarse = text(&["flick", "--set", "dynamics.time_step=0.04"]);
-    assert!(coarse.contains("lasts 100 ms, only 2.5 time steps"), "{coarse}");
 }
 
 /// A support whose motion needs no force has no limit load: its reaction is only rounding error.
@@ -127,20 +88,6 @@ fn gained_energy_is_reported_and_ends_with_exit_code_1() {
     }
 }
 
-/// A step that is cut short by the end of the motion is reported with the length it had.
-#[test]
-fn the_steps_of_a_motion_have_the_lengths_that_were_taken() {
-    for (duration, step, words) in [
-        ("2", "5", "finished at 2 s after 1 step of 2 s and "),
-        ("2", "1", "finished at 2 s after 2 steps of 1 s and "),
-        ("2", ".8", "finished at 2 s after 3 steps of 800 ms, the last of 400 ms, and "),
-    ] {
-        let set = [format!("dynamics.duration={duration}"), format!("dynamics.time_step={step}")];
-        let (_, text) = solve(&["jelly", "--set", &set[0], "--set", &set[1]]);
-        assert!(text.contains(words), "{words}: {text}");
-    }
-}
-
 /// The rotation of a probe has the definition of the largest rotation in every theory.
 #[test]
 fn a_probe_rotates_in_linear_theory_too() {
@@ -155,15 +102,6 @@ fn a_probe_rotates_in_linear_theory_too() {
         let (largest, own) = (&json["max_rotation_deg"], &json["probes"][0]["rotation_deg"]);
         assert!(own.as_f64().unwrap().abs() <= largest.as_f64().unwrap(), "{method}: {own}° of {largest}°");
     }
-}
-
-/// A body without stress has no stress that grows as the mesh is refined.
-#[test]
-fn an_unloaded_body_has_no_singular_stress() {
-    let args = ["article", "--set", "load.0.force=[0,0]"];
-    let (_, json) = solve_object(&args);
-    assert!(!warnings(&json).iter().any(|said| said.contains("grows without limit")), "{json}");
-    assert!(solve_object(&["article"]).1.to_string().contains("grows without limit"));
 }
 
 /// Built-in meshes are in metres by definition; only files may be in another unit.
@@ -183,17 +121,6 @@ fn a_built_in_scene_has_no_warning_of_its_unit() {
     fs::write(folder.path().join("square.msh"), large).unwrap();
     let solved = warpbeam_in(folder.path(), &["solve", "square.toml"]);
     assert!(stderr(&solved).contains("m across; if it is in millimetres"), "{}", stderr(&solved));
-}
-
-#[test]
-fn one_unknown_is_singular() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = "name = \"Bar\"\n[beam]\nlength = 1.0\nheight = 1.0\ncells = [1, 1]\nelement = \"t3\"\n[material]\nyoung = 1e6\npoisson = 0.3\n\
-        [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[support]]\nedge = \"right\"\nfix = [\"y\"]\n[[support]]\nat = [1.0, -0.5]\nfix = [\"x\"]\n\
-        [[load]]\nkind = \"force\"\nat = [1.0, 0.5]\nforce = [1.0, 0.0]\n";
-    fs::write(folder.path().join("bar.toml"), scene).unwrap();
-    let text = stdout(&warpbeam_in(folder.path(), &["solve", "bar.toml", "--reference", "none"]));
-    assert!(text.lines().next().unwrap().ends_with(", 1 unknown"), "{text}");
 }
 
 /// Values that are rounding errors beside others of their kind are 0 in the text, and numbers in JSON.
@@ -217,39 +144,6 @@ fn rounding_errors_are_zero_in_text() {
     let (_, text) = solve(&turned);
     assert!(text.contains("largest strain 0 %") && text.contains("elastic energy 0 J"), "{text}");
     assert!(!text.contains("grows without limit"), "{text}");
-}
-
-/// An explicit motion beyond its critical step ends with the cause.
-#[test]
-fn an_explosion_names_the_time_step() {
-    for id in ["swing", "flick", "jelly"] {
-        for step in ["1/60 s", "1e-2", "3e-3"] {
-            let step = if step == "1/60 s" {
-                "dynamics.time_step=0.016".to_owned()
-            } else {
-                format!("dynamics.time_step={step}")
-            };
-            let (code, json) = solve_object(&[id, "--set", "dynamics.integrator=symplectic-euler", "--set", &step]);
-            if json["status"] == "stopped" {
-                let reason = json["reason"].as_str().unwrap();
-                assert!(code == Some(1) && reason.contains("is too long"), "{id} {step}: {reason}");
-            }
-        }
-    }
-}
-
-/// The estimate of `auto` is named as that of the method, and an error above the one asked for is reported.
-#[test]
-fn auto_says_which_error_it_estimates_and_which_is_too_large() {
-    let auto = ["--set", "solver.method=auto"];
-    let (_, text) = solve(&[&["article"], &auto[..]].concat());
-    assert!(text.contains("estimated error of the method ") && !text.contains("estimated error 0"), "{text}");
-    let note = "above the 1 % of solver.max_error_percent, which limits the error of the method only";
-    assert!(text.lines().any(|line| line.starts_with("note: the error ") && line.contains(note)), "{text}");
-    let (_, json) = solve_object(&[&["article"], &auto[..]].concat());
-    assert!(warnings(&json).iter().any(|said| said.contains(note)), "{json}");
-    let (_, json) = solve_object(&[&["cantilever", "--set", "beam.element=t6"], &auto[..]].concat());
-    assert!(!warnings(&json).iter().any(|said| said.contains(note)), "{json}");
 }
 
 /// Sentences of the study of a scene whose mesh is too coarse for small errors.

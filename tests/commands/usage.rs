@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::process::{on_a_terminal, start, wait_for};
-use crate::common::{solve_json, stderr, stdout, warpbeam, warpbeam_in};
+use crate::common::{stderr, stdout, warpbeam, warpbeam_in};
 use nix::sys::signal::Signal;
 
 /// Interrupts a command as soon as it handles signals; returns its exit code, standard output and standard error.
@@ -17,6 +17,10 @@ fn interrupted(folder: &Path, args: &[&str], signal: Signal) -> (Option<i32>, St
 
 /// Arguments for a body that takes long to solve, with a reference solution that takes longer.
 const LARGE: [&str; 5] = ["cantilever", "--set", "beam.cells=[400,40]", "--set", "solver.method=newton"];
+
+/// Supports of a beam that is held at two points, the first of them beyond the cut.
+const HELD: &str =
+    "support=[{at=[2.13,0],acts_on=\"point\",fix=[\"x\",\"y\"]},{at=[5.57,0],acts_on=\"point\",fix=[\"y\"]}]";
 
 /// A result that exists is printed, whatever was being computed when the signal came.
 #[test]
@@ -78,24 +82,16 @@ fn a_folder_of_pictures_is_not_written_over() {
 fn a_scene_is_read_from_a_pipe() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("pipe");
-    for (toml, code) in [
-        (
-            "name = \"Bar\"\n[beam]\nlength = 2.0\nheight = 1.0\ncells = [4, 2]\n[material]\nyoung = 1e6\npoisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n",
-            0,
-        ),
-        (
-            "name = \"Bar\"\n[beam]\nlength = 2.0\nheight = 1.0\ncells = [4, 2]\n[material]\nyoung = 1e6\npoisson = 0.3\n[[support]]\nedge = \"lift\"\nfix = [\"x\", \"y\"]\n",
-            2,
-        ),
-    ] {
+    for (edge, code) in [("left", 0), ("lift", 2)] {
+        let toml = crate::cli::GOOD.replace("left", edge);
         nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
-        let (writer, at) = (toml.to_owned(), pipe.clone());
-        let writing = std::thread::spawn(move || fs::write(at, writer));
+        let at = pipe.clone();
+        let writing = std::thread::spawn(move || fs::write(at, toml));
         let output = warpbeam(&["solve", pipe.to_str().unwrap()]);
         writing.join().unwrap().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
         if code == 2 {
-            assert!(stderr(&output).contains("pipe:10: support.0.edge: expected one of"), "{}", stderr(&output));
+            assert!(stderr(&output).contains("pipe:12: support.0.edge: expected one of"), "{}", stderr(&output));
         }
         fs::remove_file(&pipe).unwrap();
     }
@@ -126,63 +122,12 @@ fn names_of_probes_are_fields_and_differ() {
     assert!(stderr(&refused).contains("probe.1.name: expected a unique name"), "{}", stderr(&refused));
 }
 
-/// Results report their limitations, in the text output and in JSON.
+/// A cut of a part without loads carries nothing.
 #[test]
-fn results_name_their_limits() {
-    for (args, expected) in [
-        (&["cook"][..], "errors refer to the polygon of the file's straight sides"),
-        (&["article"], "the largest stress is at the end of a support, where it grows without limit"),
-        (&["jump"], "the largest stress is at a point force, where it grows without limit"),
-        (&["article", "--set", "load.0={kind='force',at=[3.4,0.2],force=[0,-10]}"], "acts on the nearest node, "),
-    ] {
-        let text = stdout(&warpbeam(&[&["solve"][..], args].concat()));
-        assert!(text.contains(expected), "{args:?}: {text}");
-        let warnings = solve_json(args)["warnings"].to_string();
-        assert!(warnings.contains(expected), "{args:?}: {warnings}");
-    }
-    // Bending without a side force has no corner with infinite stress at ν = 0, and its ends are nodes.
-    let bent = solve_json(&["roll-up"])["warnings"].clone();
-    assert_eq!(bent, serde_json::json!([]));
-}
-
-/// Held points in one element say that their reactions depend on the mesh, and a point held twice that it has none. Of
-/// others nothing is said, also of the stress of bending across the height from them, and a cut of a part without loads
-/// carries nothing.
-#[test]
-fn held_points_say_when_their_reactions_mean_little() {
-    let folder = tempfile::tempdir().unwrap();
-    let beam = |at: &[f64]| {
-        let supports: String = at
-            .iter()
-            .enumerate()
-            .map(|(i, x)| {
-                let fix = if i == 0 { "[\"x\", \"y\"]" } else { "[\"y\"]" };
-                format!("[[support]]\nat = [{x}, 0.0]\nacts_on = \"point\"\nfix = {fix}\n")
-            })
-            .collect();
-        let body = "name = \"held\"\n[beam]\nlength = 2.0\nheight = 0.2\ncells = [40, 2]\nelement = \"q4\"\n[material]\n\
-                    young = 2.1e11\npoisson = 0.3\ndensity = 7850.0\nthickness = 0.01\n[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -12e3]\n\
-                    [[probe]]\nname = \"tip\"\nedge = \"right\"\n";
-        fs::write(folder.path().join("held.toml"), format!("{body}{supports}")).unwrap();
-        let output = warpbeam_in(folder.path(), &["solve", "held.toml", "--json"]);
-        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()["warnings"].clone()
-    };
-    assert_eq!(beam(&[0.13, 1.57]), serde_json::json!([]));
-    let cut = stdout(&warpbeam_in(folder.path(), &["section", "held.toml", "--at", "0.1"]));
-    assert!(cut.contains("normal force N             0 N") && cut.contains("bending moment M         0 N m"), "{cut}");
-    let close = beam(&[0.13, 0.14, 1.57]).to_string();
-    for (support, is_named) in [("support.0", true), ("support.1", true), ("support.2", false)] {
-        let note = format!("{support} holds a point of an element that another support holds: its reaction depends");
-        assert_eq!(close.contains(&note), is_named, "{close}");
-    }
-    let twice = beam(&[0.13, 1.57, 1.57]).to_string();
-    assert!(twice.contains("support.2 holds a point that other supports hold: it has no reaction"), "{twice}");
-}
-
-/// Above a certain size, certificates are computed on request only.
-#[test]
-fn large_scenes_are_certified_on_request() {
-    let args = ["solve", "cantilever", "--set", "beam.cells=[320,160]", "--reference", "none"];
-    let text = stdout(&warpbeam(&args));
-    assert!(text.contains("not certified: ") && !text.contains("ρ = "), "{text}");
+fn a_part_without_loads_carries_nothing() {
+    let text = stdout(&warpbeam(&["section", "cantilever", "--at", "1", "--set", HELD]));
+    assert!(
+        text.contains("normal force N             0 N") && text.contains("bending moment M         0 N m"),
+        "{text}"
+    );
 }

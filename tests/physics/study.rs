@@ -10,7 +10,6 @@ use nalgebra::Vector2;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::Scene;
-use warpbeam::study::extremes::motion::{MotionOutcome, cases};
 use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, MotionReference};
 use warpbeam::study::{Demand, Extent, Measurement, MotionStudy, Study, StudyError, Tuning};
 use warpbeam::{ElementKind, IntegratorKind, MethodKind, Simulation};
@@ -320,54 +319,6 @@ fn study_of_a_motion_writes_its_files() {
     let refused = warpbeam(&["tune", "swing"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("expected a scene with analysis = \"static\""), "{}", stderr(&refused));
-}
-
-/// For any stiffness, step and weight, a motion ends with a message and finite numbers. Implicit integrators run to the
-/// end, and no integrator gains energy.
-#[test]
-fn motions_at_the_extremes_end_with_a_stated_reason() {
-    let cases = cases(Extent::Quick);
-    assert!(cases.len() >= 72);
-    for case in cases {
-        let entry = case.run().unwrap();
-        let numbers = [entry.drift, entry.tip[0], entry.tip[1]];
-        assert!(numbers.iter().all(|v| v.is_finite()), "{entry:?}");
-        let explicit = case.integrator.entry().is_explicit();
-        match entry.outcome {
-            MotionOutcome::Finished | MotionOutcome::Inverted => assert_eq!(entry.steps, 100, "{entry:?}"),
-            MotionOutcome::Exploded => assert!(explicit && entry.steps < 100, "{entry:?}"),
-            MotionOutcome::GainedEnergy | MotionOutcome::Stopped => unreachable!("{entry:?}"),
-        }
-        // Far above its critical step, the explicit integrator explodes and is reported.
-        if explicit && case.young >= 1e6 {
-            assert_eq!(entry.outcome, MotionOutcome::Exploded, "{entry:?}");
-        }
-    }
-}
-
-/// The time of an iteration against the number of unknowns, for every element from coarse to fine,
-/// as table, picture and text.
-#[test]
-fn scaling_is_measured() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let done = warpbeam(&["study", "cantilever", "--scaling", "--quick", "--out", out]);
-    assert!(done.status.success(), "{}", stderr(&done));
-    let table = fs::read_to_string(folder.path().join("scaling.csv")).unwrap();
-    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    for element in ElementKind::all() {
-        let own: Vec<_> = rows.iter().filter(|row| row[0] == element.id()).collect();
-        let dofs: Vec<u32> = own.iter().map(|row| row[3].parse().unwrap()).collect();
-        assert!(dofs.len() >= 5 && dofs.is_sorted() && dofs[0] < 200 && *dofs.last().unwrap() > 1000, "{dofs:?}");
-        assert!(own.iter().all(|row| row[4].parse::<f64>().unwrap() > 0.0), "{table}");
-        let text = stdout(&done);
-        assert!(text.contains(&format!("{}: time ∝ unknowns^", element.id())), "{text}");
-    }
-    let picture = fs::read_to_string(folder.path().join("scaling.svg")).unwrap();
-    assert_eq!(picture.matches("<polyline").count(), ElementKind::all().count());
-    assert!(folder.path().join("scaling.png").is_file());
-    let moving = warpbeam(&["study", "swing", "--scaling", "--quick", "--out", out]);
-    assert!(moving.status.code() == Some(2) && stderr(&moving).contains("static"), "{}", stderr(&moving));
 }
 
 /// A motion is studied over its duration, or over periods of its lowest natural frequency, however slow it is: linear
