@@ -2,7 +2,7 @@
 //! `completions` and `man`; without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator,
-//! 2 bad input or usage, or a result that could not be written, 3 no graphics adapter.
+//! 2 bad input or usage, a result that could not be written, or a defect of the program, 3 no graphics adapter.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -113,9 +113,29 @@ fn with_hint(mut error: clap::Error) -> clap::Error {
     error
 }
 
+/// Runs a command. A defect of the program ends it as an error with a sentence, without a backtrace.
+fn guarded(run: impl FnOnce() -> ExitCode) -> ExitCode {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|defect| {
+        let place = defect.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
+        let message = defect.payload_as_str().unwrap_or("no message");
+        eprintln!(
+            "warpbeam: a defect of the program ended the command{place}: {message}; please report it with the command and \
+             the scene"
+        );
+    }));
+    let code = std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).unwrap_or(ExitCode::from(BAD_INPUT));
+    std::panic::set_hook(hook);
+    code
+}
+
 /// Runs the command given by the process arguments.
 #[must_use]
 pub fn main() -> ExitCode {
+    guarded(run)
+}
+
+fn run() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
     let command = Cli::try_parse().unwrap_or_else(|error| with_hint(error).exit()).command;
     #[cfg(feature = "app")]
@@ -261,4 +281,16 @@ fn warn_of_built_in_mesh(source: &scene::Source, scene: &Scene) {
 
 fn exit_code(status: &Status) -> ExitCode {
     if status.is_success() { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_defect_is_an_error_with_its_own_exit_code() {
+        let code = |run: fn() -> ExitCode| format!("{:?}", guarded(run));
+        assert_eq!(code(|| std::panic::panic_any("meant")), format!("{:?}", ExitCode::from(BAD_INPUT)));
+        assert_eq!(code(|| ExitCode::SUCCESS), format!("{:?}", ExitCode::SUCCESS));
+    }
 }

@@ -40,6 +40,14 @@ impl<'a> StaticEquations<'a> {
 }
 
 impl StaticEquations<'_> {
+    /// Moves the supports to their positions at a load factor.
+    fn put(&self, state: &mut State, factor: f64) {
+        let supports = self.problem.supports();
+        if supports.move_the_body() {
+            supports.put(self.problem.system().mesh(), factor, Kinematics::Corotated, &mut state.displacement);
+        }
+    }
+
     /// Writes ∂(f_ext − f_int)/∂λ at constant free unknowns into `rate`.
     fn load_rate(&mut self, state: &State, factor: f64, rate: &mut [f64]) {
         /// Step of the central differences: largest motion of a support relative to the height of the strip, and
@@ -82,11 +90,8 @@ impl PathEquations for StaticEquations<'_> {
     }
 
     fn advance(&self, state: &mut State, direction: &[f64], length: f64, factor: f64) {
-        let system = self.problem.system();
-        system.pattern().advance(direction, length, &mut state.displacement);
-        if self.problem.supports().move_the_body() {
-            self.problem.supports().put(system.mesh(), factor, Kinematics::Corotated, &mut state.displacement);
-        }
+        self.problem.system().pattern().advance(direction, length, &mut state.displacement);
+        self.put(state, factor);
     }
 
     fn complete(&self, state: &mut State) {
@@ -529,7 +534,7 @@ impl PathFollower {
     /// Descends the energy at the goal's load from the limit point.
     fn descend(&mut self, equations: &mut StaticEquations<'_>, goal: f64, solves: u32) -> PathProgress {
         let mut state = self.last.state.clone();
-        equations.advance(&mut state, &[], 0.0, goal);
+        equations.put(&mut state, goal);
         for _ in 0..MAX_DESCENT {
             // The state at the end takes one more linearization.
             if self.linearizations() + 1 >= solves {

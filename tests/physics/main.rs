@@ -23,6 +23,8 @@ mod load_path;
 mod meshes;
 mod moments;
 #[cfg(target_os = "linux")]
+mod moved_supports;
+#[cfg(target_os = "linux")]
 mod path_from_rest;
 mod point_forces;
 mod point_values;
