@@ -275,11 +275,13 @@ impl PathEquations for Shooting<'_> {
 }
 
 /// Returns the distance of a displacement from the reference, relative to the reference's length, percent; `None` if
-/// the reference is zero.
+/// the reference is zero, or only rounding error beside the distance.
 #[must_use]
 pub fn error_percent(u: Vector2<f64>, reference: Vector2<f64>) -> Option<f64> {
-    let length = reference.norm();
-    (length > 0.0).then(|| 100.0 * (u - reference).norm() / length)
+    /// Length of a reference, relative to the distance, that is rounding error.
+    const ROUNDING: f64 = 1e-9;
+    let (length, distance) = (reference.norm(), (u - reference).norm());
+    (length > ROUNDING * distance).then(|| 100.0 * distance / length)
 }
 
 /// Reference solution for scenes whose right edge has a known displacement.

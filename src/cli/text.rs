@@ -140,10 +140,13 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
                 let _ = writeln!(text, "  stress (Cauchy) {x}, {y}, shear {xy}; von Mises {von_mises}");
             }
         }
-        let known = references.get(i).and_then(Option::as_ref);
-        if let Some((reference, error)) = known.and_then(|r| Some((r, r.error_percent(probe)?))) {
+        if let Some(reference) = references.get(i).and_then(Option::as_ref) {
             let (u, own) = (moved_by(reference.displacement), reference.own_error());
-            let _ = writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source);
+            let distance = engineering((probe.u - reference.displacement).norm(), "m");
+            let _ = match reference.error_percent(probe) {
+                Some(error) => writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source),
+                None => writeln!(text, "  {}: {u}, {distance} from the result", reference.source),
+            };
         }
     }
     for claim in claims.iter().filter(|claim| matches!(claim, Claim::BeamTheory { .. })) {
