@@ -20,8 +20,9 @@ pub(crate) trait PathEquations {
     /// Returns the number of unknowns.
     fn unknowns(&self) -> usize;
 
-    /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components to load factor λ.
-    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, factor: f64);
+    /// Moves a state by `length` times `direction` over the unknowns, and its prescribed components from the first load
+    /// factor λ to the second.
+    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, factors: [f64; 2]);
 
     /// Sets the parts of a state that follow from its unknowns, such as the rotations of elements; a state of unknowns
     /// alone has none.
@@ -73,6 +74,8 @@ pub(crate) struct ContinuationPoint<S> {
 pub(crate) enum Critical {
     /// λ has an extreme value there: a limit point.
     Limit,
+    /// λ has an extreme value there, but no mode loses its stability: a branch ends in another path.
+    Tip,
     /// Another path crosses this one; the numbers of negative eigenvalues before and after it.
     Bifurcation([usize; 2]),
 }
@@ -162,12 +165,14 @@ pub(crate) struct Continuation<S> {
     weight: f64,
     /// Number of linearizations so far.
     pub(crate) linearizations: u32,
+    /// Number of these that only locate bifurcations beyond the first.
+    pub(crate) located: u32,
     /// Largest number of linearizations.
     max_linearizations: u32,
     /// Largest change of λ in a step.
     max_by_factor: f64,
     /// `true` if bifurcations beyond the first one, where the path is unstable already, are located too.
-    locates_all: bool,
+    pub(crate) locates_all: bool,
     scratch: [Vec<f64>; 2],
 }
 
@@ -245,6 +250,7 @@ impl<S: Clone> Continuation<S> {
             curvature: None,
             weight,
             linearizations: 1,
+            located: 0,
             max_linearizations,
             max_by_factor: f64::INFINITY,
             locates_all: false,
@@ -329,11 +335,12 @@ impl<S: Clone> Continuation<S> {
             let (curvature, derivatives) = derivatives([&self.before, &self.point], step, last.as_ref());
             self.curvature = Some((curvature, step));
             self.point.derivatives = derivatives;
-            if !consistent {
+            if !consistent && !turns {
                 let modes = [self.before.modes, self.point.modes];
                 return Ok(Some((Critical::Bifurcation(modes), self.crossing(equations, step, crossed))));
             }
-            return Ok(turns.then(|| (Critical::Limit, self.limit(equations, step))));
+            let kind = if consistent { Critical::Limit } else { Critical::Tip };
+            return Ok(turns.then(|| (kind, self.limit(equations, step))));
         }
     }
 
@@ -373,12 +380,13 @@ impl<S: Clone> Continuation<S> {
         }
         if from.modes > 0 {
             // Beyond the first bifurcation, the critical mode at `from` may be the one of the bifurcation before.
-            let (mut low, mut high) = (0.0, step);
+            let (mut low, mut high, before) = (0.0, step, self.linearizations);
             for _ in 0..if self.locates_all { MAX_BISECTIONS } else { 0 } {
                 let middle = 0.5 * (low + high);
                 let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
                 if point.modes == from.modes { (low, best) = (middle, point) } else { high = middle }
             }
+            self.located += self.linearizations - before;
             return best;
         }
         if self.count().is_none() {
@@ -492,7 +500,7 @@ impl<S: Clone> Continuation<S> {
         }
         // Next to a bifurcation the corrections are rounding errors, and the prediction is more accurate.
         let mut state = from.state.clone();
-        equations.advance(&mut state, &from.tangent, way(from), goal);
+        equations.advance(&mut state, &from.tangent, way(from), [from.factor, goal]);
         equations.complete(&mut state);
         (from.modes != to.modes).then(|| ContinuationPoint {
             state,
@@ -512,7 +520,7 @@ impl<S: Clone> Continuation<S> {
     ) -> Option<ContinuationPoint<S>> {
         let mut state = near.state.clone();
         let distance = (goal - near.factor) / near.slope;
-        equations.advance(&mut state, &near.tangent, distance, goal);
+        equations.advance(&mut state, &near.tangent, distance, [near.factor, goal]);
         let mut last: Option<f64> = None;
         for _ in 0..MAX_CORRECTIONS {
             self.count()?;
@@ -524,7 +532,7 @@ impl<S: Clone> Continuation<S> {
             if size.is_nan() || size > allowed.max(ROUNDING) {
                 return None;
             }
-            equations.advance(&mut state, correction, 1.0, goal);
+            equations.advance(&mut state, correction, 1.0, [goal; 2]);
             last = Some(size);
             if size <= (CONVERGED * distance.abs()).max(1e-4 * RESIDUE) {
                 equations.complete(&mut state);
@@ -545,7 +553,8 @@ impl<S: Clone> Continuation<S> {
         step: f64,
     ) -> Option<(ContinuationPoint<S>, f64, f64)> {
         let mut state = from.state.clone();
-        let mut factor = from.factor + step * from.slope;
+        // Load factors of the prediction, and of the state.
+        let (mut factor, mut at) = (from.factor + step * from.slope, from.factor);
         // Higher orders of the prediction keep slender bodies from a spurious stretch, under which they are stiff.
         for (by, part) in from.derivatives.iter().zip([0.5 * step * step, step.powi(3) / 6.0]) {
             let (by_factor, by_x) = by.split_last()?;
@@ -554,9 +563,10 @@ impl<S: Clone> Continuation<S> {
                 break;
             }
             factor += part * by_factor;
-            equations.advance(&mut state, by_x, part, factor);
+            equations.advance(&mut state, by_x, part, [at, factor]);
+            at = factor;
         }
-        equations.advance(&mut state, &from.tangent, step, factor);
+        equations.advance(&mut state, &from.tangent, step, [at, factor]);
         let (mut last, mut contraction): (Option<f64>, f64) = (None, 1e-3);
         for _ in 0..MAX_CORRECTIONS {
             self.count()?;
@@ -573,8 +583,8 @@ impl<S: Clone> Continuation<S> {
             if size.is_nan() || size > allowed.max(ROUNDING) {
                 return None;
             }
+            equations.advance(&mut state, correction, 1.0, [factor, factor + by]);
             factor += by;
-            equations.advance(&mut state, correction, 1.0, factor);
             // The prediction stretches a slender body, and a stretched body has another tangent: one small correction does
             // not prove convergence.
             let is_corrected = last.is_some();

@@ -204,7 +204,7 @@ impl ClampedBeam {
             match passed {
                 None => {}
                 Some((Critical::Bifurcation(_), crossing)) => return goals.peek().map(|_| crossing.factor),
-                Some((Critical::Limit, _)) => return None,
+                Some((Critical::Limit | Critical::Tip, _)) => return None,
             }
         }
         None
@@ -242,7 +242,7 @@ impl PathEquations for Shooting<'_> {
         2 * SEGMENTS
     }
 
-    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, _: f64) {
+    fn advance(&self, state: &mut Self::Configuration, direction: &[f64], length: f64, _: [f64; 2]) {
         state.iter_mut().zip(direction).for_each(|(x, d)| *x += length * d);
     }
 

@@ -59,14 +59,17 @@ impl NodalSupport {
         let angle = factor * self.rotation;
         let rotated = match kinematics {
             Kinematics::Linear => Vector2::new(-arm.y, arm.x) * angle,
-            Kinematics::Corotated => {
-                // cos − 1 = −2 sin² of half the angle keeps the digits of small angles.
-                let (s, versine) = (angle.sin(), -2.0 * (0.5 * angle).sin().powi(2));
-                Vector2::new(versine * arm.x - s * arm.y, s * arm.x + versine * arm.y)
-            }
+            Kinematics::Corotated => rotated_by(arm, angle),
         };
         rotated + self.displacement * factor
     }
+}
+
+/// Returns (R − I) times an arm, R the rotation by an angle, rad.
+fn rotated_by(arm: Vector2<f64>, angle: f64) -> Vector2<f64> {
+    // cos − 1 = −2 sin² of half the angle keeps the digits of small angles.
+    let (s, versine) = (angle.sin(), -2.0 * (0.5 * angle).sin().powi(2));
+    Vector2::new(versine * arm.x - s * arm.y, s * arm.x + versine * arm.y)
 }
 
 /// Supports of a scene on the nodes of its mesh.
@@ -76,6 +79,8 @@ pub struct Supports {
     /// Equations of supports at points between nodes.
     held: HeldPoints,
     moves: bool,
+    /// `true` if the supports' frame turns with the line through them; `false` if it turns with the mean of their rotations.
+    keeps_its_shape: bool,
     largest_load_step: f64,
     /// Diagonal of the stiffness at rest over the free unknowns, N/m, if supports move.
     diagonal: Vec<f64>,
@@ -87,6 +92,21 @@ struct RigidMotion {
     from: Vector2<f64>,
     to: Vector2<f64>,
     angle: f64,
+}
+
+impl RigidMotion {
+    /// Moves a body.
+    fn apply(&self, mesh: &Mesh, state: &mut State) {
+        for (node, x) in mesh.nodes().iter().enumerate() {
+            let by = rotated_by(x + state.displacement[node] - self.from, self.angle) + (self.to - self.from);
+            (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis]));
+        }
+        let rotation = Rotation::from_angle(self.angle);
+        for r in &mut state.rotations {
+            *r = Rotation { c: rotation.c * r.c - rotation.s * r.s, s: rotation.s * r.c + rotation.c * r.s };
+        }
+        state.edge_angles.iter_mut().for_each(|t| *t += self.angle);
+    }
 }
 
 /// Largest angle by which a support may rotate relative to the others in a load step, rad: the adjacent elements rotate
@@ -137,10 +157,10 @@ impl Supports {
         }
         let moves = all.iter().any(NodalSupport::moves);
         let held = system.held_points().clone();
-        let mut result = Self { all, held, moves, largest_load_step: 1.0, diagonal: Vec::new() };
+        let mut result = Self { all, held, moves, keeps_its_shape: true, largest_load_step: 1.0, diagonal: Vec::new() };
         result.check_redundant(system)?;
         if moves {
-            result.largest_load_step = result.load_step_within(mesh, LARGEST_TURN);
+            result.set_frame(mesh);
             result.set_stiffness(material, system);
         }
         Ok(result)
@@ -300,8 +320,9 @@ impl Supports {
     }
 
     /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement to
-    /// their positions at a load factor (least squares; the angle in closed form, as that of a polar factor).
-    fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: &[Vector2<f64>]) -> RigidMotion {
+    /// their positions at a load factor (least squares; the angle in closed form, as that of a polar factor), and how well
+    /// it does: 1 for a rigid motion, 0 if the angle is not determined.
+    fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: &[Vector2<f64>]) -> (RigidMotion, f64) {
         let mut increments: BTreeMap<u32, [Vector2<f64>; 2]> = BTreeMap::new();
         for (node, axis, target) in self.targets(mesh, factor, Kinematics::Corotated) {
             let now = mesh.node(node) + u[node as usize];
@@ -316,12 +337,27 @@ impl Supports {
         let count = increments.len().max(1) as f64;
         let [from, to] =
             [0, 1].map(|end| increments.iter().map(|increment| increment[end]).sum::<Vector2<f64>>() / count);
-        let (c, s) = increments.iter().fold((0.0, 0.0), |(c, s), increment| {
+        let (c, s, size) = increments.iter().fold((0.0, 0.0, 0.0), |(c, s, size), increment| {
             let (a, b) = (increment[0] - from, increment[1] - to);
-            (c + a.dot(&b), s + a.perp(&b))
+            (c + a.dot(&b), s + a.perp(&b), size + a.norm_squared())
         });
-        let angle = f64::atan2(s, c);
-        RigidMotion { from, to, angle: if angle.is_finite() { angle } else { 0.0 } }
+        let (angle, quality) = (f64::atan2(s, c), f64::hypot(s, c) / size);
+        let quality = if quality.is_finite() { quality } else { 0.0 };
+        (RigidMotion { from, to, angle: if angle.is_finite() { angle } else { 0.0 } }, quality)
+    }
+
+    /// Returns the rigid motion from rest of the supports' frame at a load factor; `rest` is the displacement at rest.
+    fn frame(&self, mesh: &Mesh, factor: f64, rest: &[Vector2<f64>]) -> RigidMotion {
+        let motion = self.rigid_motion(mesh, factor, rest).0;
+        RigidMotion { angle: if self.keeps_its_shape { motion.angle } else { factor * self.mean_rotation() }, ..motion }
+    }
+
+    /// Returns the rigid motion of the supports' frame from one load factor to another.
+    fn frame_motion(&self, mesh: &Mesh, factors: [f64; 2], rest: &[Vector2<f64>]) -> RigidMotion {
+        let [before, after] = factors.map(|factor| self.frame(mesh, factor, rest));
+        let angle = after.angle - before.angle;
+        let angle = angle + TAU * (((factors[1] - factors[0]) * self.mean_rotation() - angle) / TAU).round();
+        RigidMotion { from: before.to, to: after.to, angle }
     }
 
     /// Iterates over the prescribed rotations of edges that are fixed in both directions, rad.
@@ -334,14 +370,37 @@ impl Supports {
         self.rotations().sum::<f64>() / self.rotations().count().max(1) as f64
     }
 
-    /// Returns the largest fraction of the motion from rest in which no support rotates by more than `angle` relative
-    /// to the body as a whole.
-    fn load_step_within(&self, mesh: &Mesh, angle: f64) -> f64 {
+    /// Chooses the rotation of the frame, and the largest step in which no support rotates by more than [`LARGEST_TURN`]
+    /// relative to it.
+    fn set_frame(&mut self, mesh: &Mesh) {
+        /// Number of parts of the motion.
+        const PARTS: u32 = 64;
+        /// Number of them that are looked at: one and a half of the motion.
+        const COUNT: u32 = 96;
+        /// Ratio of the distances between supports, after and before, below which the line through them may turn suddenly.
+        const CLOSE: f64 = 0.1;
         let rest = vec![Vector2::zeros(); mesh.nodes().len()];
-        let whole = self.rigid_motion(mesh, 1.0, &rest).angle;
-        let whole = whole + TAU * ((self.mean_rotation() - whole) / TAU).round();
-        let largest = self.rotations().map(|rotation| (rotation - whole).abs()).fold(0.0, f64::max);
-        if largest > angle { angle / largest } else { 1.0 }
+        let factor = |part: u32| f64::from(part) / f64::from(PARTS);
+        self.keeps_its_shape = (0..=COUNT).all(|part| self.rigid_motion(mesh, factor(part), &rest).1 > CLOSE);
+        let turns = |part: u32| {
+            let frame = self.frame_motion(mesh, [factor(part), factor(part + 1)], &rest).angle * f64::from(PARTS);
+            self.rotations().map(|rotation| (rotation - frame).abs()).fold(0.0, f64::max)
+        };
+        self.largest_load_step = (LARGEST_TURN / (0..COUNT).map(turns).fold(0.0, f64::max)).min(1.0);
+    }
+
+    /// Moves the body with the supports' frame from one load factor to another. Only the rest of the supports' motion
+    /// deforms it.
+    pub(crate) fn carry_with_frame(&self, mesh: &Mesh, factors: [f64; 2], state: &mut State) {
+        if factors[0] != factors[1] {
+            let rest = vec![Vector2::zeros(); mesh.nodes().len()];
+            self.frame_motion(mesh, factors, &rest).apply(mesh, state);
+        }
+    }
+
+    /// Returns the rotation of the supports' frame at a load factor.
+    pub(crate) fn frame_rotation(&self, mesh: &Mesh, factor: f64) -> Rotation {
+        Rotation::from_angle(self.frame(mesh, factor, &vec![Vector2::zeros(); mesh.nodes().len()]).angle)
     }
 
     /// Moves the body by the rigid motion that best approximates the supports' motion to a load factor; the supports
@@ -350,23 +409,16 @@ impl Supports {
         /// Smallest angle, rad; smaller rotations are left to the solution of the equations.
         const SMALL: f64 = 1e-2;
         let at_rest = self.are_at_rest(&state.displacement);
-        let RigidMotion { from, to, mut angle } = self.rigid_motion(mesh, factor, &state.displacement);
+        let mut motion = self.rigid_motion(mesh, factor, &state.displacement).0;
         if at_rest {
             // From rest the supports may make several full rotations; later steps are small.
-            angle += TAU * ((factor * self.mean_rotation() - angle) / TAU).round();
+            motion.angle += TAU * ((factor * self.mean_rotation() - motion.angle) / TAU).round();
         }
-        if angle.abs() < SMALL {
-            return false;
+        let turns = motion.angle.abs() >= SMALL;
+        if turns {
+            motion.apply(mesh, state);
         }
-        let rotation = Rotation::from_angle(angle);
-        for (u, x) in state.displacement.overwrite().iter_mut().zip(mesh.nodes()) {
-            *u = rotation.apply(x + *u - from) + to - x;
-        }
-        for r in &mut state.rotations {
-            *r = Rotation { c: rotation.c * r.c - rotation.s * r.s, s: rotation.s * r.c + rotation.c * r.s };
-        }
-        state.edge_angles.iter_mut().for_each(|t| *t += angle);
-        true
+        turns
     }
 }
 

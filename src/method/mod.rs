@@ -25,7 +25,7 @@ pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_text, support
 pub(crate) use iteration::measure;
 pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
 pub use path::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
-pub(crate) use path::{PathFollower, PathProgress, StaticEquations};
+pub(crate) use path::{PathFollower, PathPart, PathProgress, StaticEquations};
 pub(crate) use status::is_useful_start;
 pub use status::{Reason, floor_text};
 

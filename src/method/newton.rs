@@ -1,20 +1,20 @@
 //! Newton's method with the exact tangent A + G.
 //!
-//! From rest, the whole load is applied at once, with full steps. The first one is the linear solution, which is far
-//! too long, and the second one corrects it: a line search on the energy would reject both and slow the method down.
-//! The result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
+//! From rest, if no support moves, the whole load is applied at once, with full steps. The first one is the linear
+//! solution, which is far too long, and the second one corrects it: a line search on the energy would reject both and
+//! slow the method down. The result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
 //!
 //! - the body does not soften to first order in the load ([`softening`]),
 //! - every tangent is positive definite, as the factorization shows at no extra cost,
 //! - the displacement is not larger than that of linear theory.
 //!
-//! Otherwise [`PathFollower`] follows the path from rest.
+//! Otherwise, and where supports move, [`PathFollower`] follows the path from rest.
 //!
 //! From another state, for example while a load is dragged, full steps lead to the equilibrium nearby; if they fail,
 //! the path is followed from rest.
 //!
-//! The motion of supports is applied with the load: the body is rotated as a whole with them, and the rest of their
-//! motion enters the first step as a force.
+//! The motion of supports is applied with the load: beside the path, the body is rotated as a whole with them, and the
+//! rest of their motion enters the first step as a force.
 
 use nalgebra::Vector2;
 
@@ -268,13 +268,14 @@ impl Newton {
         let mut equations = StaticEquations::new(problem, forces, workspace, timings);
         let before = follower.as_ref().map_or(0, |follower| follower.linearizations());
         if follower.is_none() {
-            *follower = PathFollower::start(&mut equations).map(Box::new);
+            *follower = PathFollower::start(&mut equations, 1.0).map(Box::new);
         }
         let Some(follower) = follower else {
             self.end = Some(Reason::NoEquilibrium(0.0));
             return;
         };
-        let progress = follower.advance(&mut equations, 1.0, before + *solves_left);
+        let progress = follower.advance(&mut equations, before + *solves_left);
+        drop(follower.take_parts());
         workspace.tangent = None;
         self.solves = (follower.linearizations() - before).max(1);
         self.load_steps = follower.steps;
@@ -284,7 +285,9 @@ impl Newton {
         };
         state.copy_from(&shown.state);
         self.load_factor = shown.factor;
-        let is_too_long = follower.linearizations() > self.max_path_solves;
+        // Nothing but the path leads to its end where supports move, or once the body has jumped.
+        let has_shortcut = !problem.supports().move_the_body() && !follower.has_jumped();
+        let is_too_long = has_shortcut && follower.linearizations() > self.max_path_solves;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
             PathProgress::Continue if !is_too_long => {}
@@ -395,9 +398,8 @@ impl Method for Newton {
         }
         self.steps += 1;
         if self.steps == 1 && matches!(self.phase, NewtonPhase::Direct) {
-            let supports = it.problem.supports();
             self.from_rest = it.is_at_rest();
-            if self.from_rest && supports.largest_load_step() < 1.0 {
+            if self.from_rest && it.problem.supports().move_the_body() {
                 self.begin_path();
                 self.step_on_path(it);
                 return Ok(());
@@ -412,7 +414,9 @@ impl Method for Newton {
         if let NewtonPhase::Path(_) = self.phase {
             return self.end.take().map_or(Verdict::Continue, Verdict::Stop);
         }
-        if self.steps == 0 && matches!(self.phase, NewtonPhase::LoadSteps(_)) {
+        // A step takes the rounding errors of the supports' motion along the path out of the strains.
+        let is_carried = matches!(self.phase, NewtonPhase::Finish(_)) && it.problem.supports().move_the_body();
+        if self.steps == 0 && (is_carried || matches!(self.phase, NewtonPhase::LoadSteps(_))) {
             return Verdict::Continue;
         }
         if self.steps == 0 && matches!(self.phase, NewtonPhase::Direct) {

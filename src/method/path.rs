@@ -5,6 +5,12 @@
 //! jumps, and the answer is the first stable state beyond: the first one on the same path if that returns to the load,
 //! else the one that a descent of the energy leads to. Where another path crosses (a bifurcation, as of a perfect
 //! column), the path goes on, unstable.
+//!
+//! Where supports move, the unknowns are those in the frame of the supports, which moves with them as a rigid body
+//! ([`crate::assembly::Supports`]): a rigid motion is no deformation, and the load that grows along the path deforms the
+//! body in its own symmetry, so that it is orthogonal to a mode that breaks the symmetry.
+
+use std::borrow::Cow;
 
 use nalgebra::Vector2;
 
@@ -14,7 +20,9 @@ use crate::assembly::{Forces, Kinematics, Problem};
 use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure};
 use crate::element::Tangent;
 use crate::format::engineering;
+use crate::rotation::Rotation;
 use crate::sentence::{Sentence, displayed, sentence};
+use crate::solver::Factor;
 use crate::state::{State, largest_distance};
 use crate::timings::{Timings, timed};
 
@@ -39,21 +47,30 @@ impl<'a> StaticEquations<'a> {
     }
 }
 
-impl StaticEquations<'_> {
-    /// Moves the supports to their positions at a load factor.
-    fn put(&self, state: &mut State, factor: f64) {
-        let supports = self.problem.supports();
-        if supports.move_the_body() {
-            supports.put(self.problem.system().mesh(), factor, Kinematics::Corotated, &mut state.displacement);
-        }
+/// Moves a body with the frame of its supports from one load factor to another, and the supports to their positions there.
+fn put(problem: &Problem, state: &mut State, factors: [f64; 2]) {
+    let (supports, mesh) = (problem.supports(), problem.system().mesh());
+    if supports.move_the_body() {
+        supports.carry_with_frame(mesh, factors, state);
+        supports.put(mesh, factors[1], Kinematics::Corotated, &mut state.displacement);
     }
+}
 
+/// Rotates a vector over the free unknowns at the nodes with two of them.
+fn rotate(problem: &Problem, rotation: Rotation, free: &mut [f64]) {
+    for &(_, first) in problem.system().pattern().free_nodes() {
+        let pair = &mut free[first as usize..][..2];
+        pair.copy_from_slice(rotation.apply(Vector2::new(pair[0], pair[1])).as_slice());
+    }
+}
+
+impl StaticEquations<'_> {
     /// Writes ∂(f_ext − f_int)/∂λ at constant free unknowns into `rate`.
     fn load_rate(&mut self, state: &State, factor: f64, rate: &mut [f64]) {
-        /// Step of the central differences: largest motion of a support relative to the height of the strip, and
-        /// largest rotation, rad. Their relative error is about the square of the step plus the unit roundoff over the
-        /// step.
-        const STEP: f64 = 1e-4;
+        /// Step of the differences of fourth order: largest motion of a support relative to the height of the strip, and
+        /// largest rotation, rad. Their relative error is about the fourth power of the step plus the unit roundoff over
+        /// the step.
+        const STEP: f64 = 5e-4;
         let Self { problem, forces, workspace, .. } = self;
         let system = problem.system();
         let pattern = system.pattern();
@@ -71,13 +88,14 @@ impl StaticEquations<'_> {
         let step = STEP / largest.fold(0.0, f64::max);
         rate.fill(0.0);
         let Workspace { trial, free, .. } = &mut **workspace;
-        for h in [step, -step] {
+        for (steps, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
+            let at = factor + steps * step;
             trial.copy_from(state);
-            problem.supports().put(system.mesh(), factor + h, Kinematics::Corotated, &mut trial.displacement);
+            put(problem, trial, [factor, at]);
             problem.update_and_linearize(trial, Kinematics::Corotated, forces, None);
-            problem.balance(trial, Kinematics::Corotated, factor + h, forces);
+            problem.balance(trial, Kinematics::Corotated, at, forces);
             pattern.restrict(forces.residual(), free);
-            rate.iter_mut().zip(&*free).for_each(|(rate, f)| *rate += f / (2.0 * h));
+            rate.iter_mut().zip(&*free).for_each(|(rate, f)| *rate += f * weight / (12.0 * step));
         }
     }
 }
@@ -89,9 +107,15 @@ impl PathEquations for StaticEquations<'_> {
         self.problem.system().dofs()
     }
 
-    fn advance(&self, state: &mut State, direction: &[f64], length: f64, factor: f64) {
-        self.problem.system().pattern().advance(direction, length, &mut state.displacement);
-        self.put(state, factor);
+    fn advance(&self, state: &mut State, direction: &[f64], length: f64, factors: [f64; 2]) {
+        let (supports, system) = (self.problem.supports(), self.problem.system());
+        let mut direction = Cow::Borrowed(direction);
+        if supports.move_the_body() {
+            put(self.problem, state, factors);
+            let frame = supports.frame_rotation(system.mesh(), factors[1]);
+            rotate(self.problem, frame, direction.to_mut());
+        }
+        system.pattern().advance(&direction, length, &mut state.displacement);
     }
 
     fn complete(&self, state: &mut State) {
@@ -114,35 +138,60 @@ impl PathEquations for StaticEquations<'_> {
         self.load_rate(state, factor, rate);
         self.last_rate.clear();
         self.last_rate.extend_from_slice(rate);
-        let Self { workspace, timings, .. } = self;
+        let Self { problem, workspace, timings, .. } = self;
         let cholesky = &mut workspace.factor;
         timed(&mut timings.solve, || {
             cholesky.solve_in_place(correction);
             cholesky.solve_in_place(rate);
         });
+        if problem.supports().move_the_body() {
+            let Rotation { c, s } = problem.supports().frame_rotation(problem.system().mesh(), factor);
+            [&mut *correction, &mut *rate].map(|free| rotate(problem, Rotation { c, s: -s }, free));
+        }
         let is_finite = correction.iter().chain(&*rate).all(|v| v.is_finite());
         is_finite.then(|| cholesky.negative_eigenvalues())
     }
 
     fn critical_mode(&mut self) -> Option<CriticalMode> {
-        /// Number of inverse iterations; the critical eigenvalue is far smaller than all others.
-        const INVERSE_ITERATIONS: u32 = 16;
-        let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let cholesky = &mut self.workspace.factor;
-        // A vector that is orthogonal to no mode.
-        let mut mode: Vec<f64> = (0..self.last_rate.len()).map(|i| (i as f64 * 0.754_877_666).fract() - 0.3).collect();
-        let mut stiffness = 0.0;
-        for _ in 0..INVERSE_ITERATIONS {
-            let length = norm(&mode);
-            mode.iter_mut().for_each(|v| *v /= length);
-            let before = mode.clone();
-            cholesky.solve_in_place(&mut mode);
-            stiffness = 1.0 / dot(&before, &mode);
-        }
+        /// Cosine that is the rounding error of differences.
+        const ROUNDING: f64 = 1e-8;
+        let (mode, stiffness) = softest_mode(&mut self.workspace.factor, self.last_rate.len(), &[]);
         let cosine = dot(&mode, &self.last_rate).abs() / (norm(&mode) * norm(&self.last_rate));
+        let is_rounding = self.problem.supports().move_the_body() && cosine < ROUNDING;
+        let cosine = if is_rounding { 0.0 } else { cosine };
         (stiffness.is_finite() && cosine.is_finite()).then_some(CriticalMode { stiffness, cosine })
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// Returns the mode of a factorized matrix with the eigenvalue closest to 0, and this eigenvalue, by inverse iteration;
+/// the unit vectors `others` are modes that are known already.
+fn softest_mode(cholesky: &mut Factor, unknowns: usize, others: &[Vec<f64>]) -> (Vec<f64>, f64) {
+    /// Number of inverse iterations; a critical eigenvalue is far smaller than all others.
+    const INVERSE_ITERATIONS: u32 = 16;
+    // A vector that is orthogonal to no mode.
+    let part = |i: usize| ((i + 7 * others.len()) as f64 * 0.754_877_666).fract() - 0.3;
+    let mut mode: Vec<f64> = (0..unknowns).map(part).collect();
+    let mut stiffness = 0.0;
+    for _ in 0..INVERSE_ITERATIONS {
+        for other in others {
+            let along = dot(other, &mode);
+            mode.iter_mut().zip(other).for_each(|(v, other)| *v -= along * other);
+        }
+        let length = norm(&mode);
+        mode.iter_mut().for_each(|v| *v /= length);
+        let before = mode.clone();
+        cholesky.solve_in_place(&mut mode);
+        stiffness = 1.0 / dot(&before, &mode);
+    }
+    (mode, stiffness)
 }
 
 /// Quantities that grow along a path from rest.
@@ -220,6 +269,11 @@ impl Jump {
     ) -> Self {
         let distance = to.map(|to| largest_distance(&limit.state.displacement, &to.displacement));
         Self { factor: limit.factor, distance, is_on_path, drive: Drive::of(problem) }
+    }
+
+    /// Returns `true` if the body does not come to rest where it has left its path.
+    fn is_far(&self, problem: &Problem) -> bool {
+        self.distance.is_some_and(|distance| distance > SAME_STATE * problem.system().size())
     }
 }
 
@@ -303,25 +357,27 @@ pub enum PathEndReason {
     Interrupted,
 }
 
-/// Piece of a path between two of its points.
+/// Part of a path that a step has added.
 #[derive(Clone, Debug)]
-struct PathPiece {
-    from: ContinuationPoint<State>,
-    to: ContinuationPoint<State>,
+pub(crate) enum PathPart {
+    /// The equilibria between two points, in the order of the load.
+    Between(ContinuationPoint<State>, ContinuationPoint<State>),
+    /// The last point is critical, or the end of the path.
+    Mark,
+    /// The state at which a jump or a descent ends.
+    Landing(ContinuationPoint<State>),
 }
 
-/// Follower of the path from rest.
+/// Follower of the path from rest to a load factor.
 #[derive(Clone, Debug)]
 pub(crate) struct PathFollower {
     path: Continuation<State>,
-    /// Pieces of the last step that are not yet searched for the goal.
-    pieces: Vec<PathPiece>,
+    /// Load factor at the end.
+    end: f64,
+    /// Parts of the path since they were last taken.
+    parts: Vec<PathPart>,
     /// Limit point from which the body has jumped, until the path is stable again at the load of that point.
     limit: Option<ContinuationPoint<State>>,
-    /// First stable state beyond the first limit point, at the load of that point.
-    landing: Option<ContinuationPoint<State>>,
-    /// Last point before the last bifurcation.
-    crossing: Option<ContinuationPoint<State>>,
     /// Number of unstable modes that the path has gained at bifurcations.
     unstable_modes: usize,
     /// Number of linearizations since the limit point.
@@ -330,7 +386,7 @@ pub(crate) struct PathFollower {
     last: ContinuationPoint<State>,
     /// `true` during the descent of the energy from the limit point.
     descends: bool,
-    /// Number of linearizations of the descent and of paths before it.
+    /// Number of linearizations of descents and of paths before them.
     descent_steps: u32,
     /// Critical points so far.
     events: PathEvents,
@@ -338,43 +394,48 @@ pub(crate) struct PathFollower {
     pub steps: u32,
 }
 
-/// Progress of a path toward a load factor.
+/// Progress of a path.
 #[derive(Debug)]
 pub(crate) enum PathProgress {
-    /// The goal is not reached yet.
+    /// The end is not reached yet.
     Continue,
-    /// [`PathFollower::last`] is the equilibrium at the goal, to the accuracy of the path.
+    /// [`PathFollower::last`] is the equilibrium at the end, to the accuracy of the path.
     Reached,
-    /// The path ended before the goal.
+    /// The path ended before.
     Ended(PathEndReason),
 }
 
-/// Load factor below which a path that turned back does not lead to the goal.
+/// Load factor below which a path that turned back does not return.
 const LOWEST_FACTOR: f64 = -2.0;
-/// Number of linearizations after a limit point within which the path must return to the goal.
+/// Number of linearizations after a limit point within which the path must return to its load.
 const MAX_RETURN: u32 = 200;
 /// Largest number of steps of a descent.
 const MAX_DESCENT: u32 = 150;
+/// Load factor beyond a limit point at which a descent begins.
+const BEYOND: f64 = 1e-3;
+/// Distance, relative to the size of the body, within which a descent leads back to the path that it left.
+const SAME_STATE: f64 = 1e-3;
 
 impl PathFollower {
-    /// Starts at rest; `None` if the tangent at rest is singular.
-    pub fn start(equations: &mut StaticEquations<'_>) -> Option<Self> {
+    /// Starts at rest, toward the load factor `end`; `None` if the tangent at rest is singular.
+    pub fn start(equations: &mut StaticEquations<'_>, end: f64) -> Option<Self> {
         let state = equations.problem.system().at_rest();
-        Self::start_at(equations, state, 0.0)
+        Self::start_at(equations, state, 0.0, end)
     }
 
-    fn start_at(equations: &mut StaticEquations<'_>, state: State, factor: f64) -> Option<Self> {
-        let unit = unit(equations.problem);
+    fn start_at(equations: &mut StaticEquations<'_>, state: State, factor: f64, end: f64) -> Option<Self> {
+        // A root mean square displacement of a tenth of the body's size, at which slender bodies deform nonlinearly, counts
+        // as much as the whole load in the norm of the path.
+        let unit = 0.1 * equations.problem.system().size();
         let mut path = Continuation::start(equations, state, factor, unit, u32::MAX)?;
         path.limit_factor(equations.problem.supports().largest_load_step());
         let last = path.point().clone();
         let unstable_modes = last.modes;
         Some(Self {
             path,
-            pieces: Vec::new(),
+            end,
+            parts: Vec::new(),
             limit: None,
-            landing: None,
-            crossing: None,
             unstable_modes,
             since_limit: 0,
             last,
@@ -401,42 +462,36 @@ impl PathFollower {
         self.path.point()
     }
 
-    /// Returns the last point before the last bifurcation.
-    pub fn crossing(&self) -> Option<&ContinuationPoint<State>> {
-        self.crossing.as_ref()
-    }
-
     /// Returns the limit point that the path is beyond, if it has not yet returned to its load.
     pub fn limit(&self) -> Option<&ContinuationPoint<State>> {
         self.limit.as_ref()
     }
 
-    /// Returns the first stable state beyond the first limit point, at its load, if it is on the path.
-    pub fn landing(&self) -> Option<&ContinuationPoint<State>> {
-        self.landing.as_ref()
+    /// Returns `true` if the body has jumped.
+    pub fn has_jumped(&self) -> bool {
+        self.events.jump.is_some()
     }
 
-    /// Returns the critical points so far.
-    pub fn events(&self) -> &PathEvents {
-        &self.events
+    /// Takes the parts of the path since the last call.
+    pub fn take_parts(&mut self) -> Vec<PathPart> {
+        std::mem::take(&mut self.parts)
     }
 
-    /// Takes the critical points up to the full load, which the last step may have passed.
+    /// Takes the critical points up to the end, which the last step may have passed.
     pub fn take_events(&mut self) -> PathEvents {
-        self.events.bifurcations.retain(|bifurcation| bifurcation.factor <= 1.0);
+        self.events.bifurcations.retain(|bifurcation| bifurcation.factor <= self.end);
         std::mem::take(&mut self.events)
     }
 
-    /// Returns the point at load factor `goal` between two points of a path; `None` if none is found.
+    /// Returns the point at a load factor between two points of the path, which does not change; `None` if none is found.
     pub fn between(
+        &self,
         equations: &mut StaticEquations<'_>,
         from: &ContinuationPoint<State>,
         to: &ContinuationPoint<State>,
-        goal: f64,
+        factor: f64,
     ) -> Option<ContinuationPoint<State>> {
-        let mut path =
-            Continuation::start(equations, from.state.clone(), from.factor, unit(equations.problem), u32::MAX)?;
-        path.between(equations, from, to, goal)
+        self.path.clone().between(equations, from, to, factor)
     }
 
     /// Returns the last equilibrium without unstable modes but those of bifurcations.
@@ -444,85 +499,112 @@ impl PathFollower {
         &self.last
     }
 
-    /// Goes on toward load factor `goal` by at most one step, with at most `solves` linearizations.
-    pub fn advance(&mut self, equations: &mut StaticEquations<'_>, goal: f64, solves: u32) -> PathProgress {
-        self.path.limit_linearizations(solves);
+    /// Goes on toward the end by at most one step, with at most `solves` linearizations in all.
+    pub fn advance(&mut self, equations: &mut StaticEquations<'_>, solves: u32) -> PathProgress {
+        self.path.limit_linearizations(solves.saturating_sub(self.descent_steps));
         if self.descends {
-            return self.descend(equations, goal, solves);
+            return self.descend(equations, solves);
         }
-        while let Some(piece) = self.pieces.first() {
-            if self.search(equations, &piece.clone(), goal) {
-                return PathProgress::Reached;
-            }
-            let searched = self.pieces.remove(0).to;
-            if searched.modes == self.unstable_modes && searched.slope >= 0.0 && self.limit.is_none() {
-                self.last = searched;
-            }
-        }
-        let before = self.path.linearizations;
+        let on_path = |path: &Continuation<State>| path.linearizations - path.located;
+        let before = on_path(&self.path);
         let stepped = self.path.step(equations);
         self.steps += 1;
-        self.since_limit += self.path.linearizations - before;
+        self.since_limit += on_path(&self.path) - before;
         let (from, to) = (self.path.before().clone(), self.path.point().clone());
-        match stepped {
-            Err(PathFailure::Limit) => return PathProgress::Ended(PathEndReason::Solves(solves)),
-            Err(PathFailure::Stuck) if self.limit.is_some() => return self.start_descent(),
-            Err(PathFailure::Stuck) => return PathProgress::Ended(PathEndReason::NoEquilibrium),
-            Ok(None) => self.pieces.push(PathPiece { from, to }),
+        let is_beyond = self.limit.is_some();
+        let progress = match stepped {
+            Err(PathFailure::Limit) => PathProgress::Ended(PathEndReason::Solves(solves)),
+            Err(PathFailure::Stuck) if is_beyond => self.start_descent(),
+            Err(PathFailure::Stuck) => PathProgress::Ended(PathEndReason::NoEquilibrium),
+            Ok(None) => self.add(equations, from, to, None),
             Ok(Some((Critical::Bifurcation(modes), crossing))) => {
-                if self.limit.is_none() {
+                if !is_beyond {
                     // Smallest number above the load factor of the crossing.
-                    let factor = crossing.factor.next_up();
-                    self.crossing = Some(crossing);
-                    let drive = Drive::of(equations.problem);
+                    let (factor, drive) = (crossing.factor.next_up(), Drive::of(equations.problem));
                     self.events.bifurcations.push(Bifurcation { factor, unstable_modes: modes, drive });
                 }
                 let change = modes[1] as isize - modes[0] as isize;
                 self.unstable_modes = self.unstable_modes.saturating_add_signed(change);
-                self.pieces.push(PathPiece { from, to });
+                self.add(equations, from, to, Some(crossing))
             }
-            Ok(Some((Critical::Limit, limit))) => {
-                if self.limit.is_none() && from.slope > 0.0 {
-                    self.since_limit = 0;
-                    self.limit = Some(limit.clone());
-                    self.last = limit.clone();
+            Ok(Some((kind, limit))) if !is_beyond && from.slope > 0.0 => {
+                match self.add(equations, from, limit.clone(), None) {
+                    PathProgress::Continue if !self.descends => {
+                        self.parts.push(PathPart::Mark);
+                        self.since_limit = 0;
+                        self.limit = Some(limit.clone());
+                        self.last = limit;
+                        // The frame of moved supports turns on while the path leads back: the body is let go at once.
+                        let leads_nowhere = kind == Critical::Tip || equations.problem.supports().move_the_body();
+                        if leads_nowhere { self.start_descent() } else { PathProgress::Continue }
+                    }
+                    progress => progress,
                 }
-                self.pieces.push(PathPiece { from, to: limit.clone() });
-                self.pieces.push(PathPiece { from: limit, to });
             }
-        }
-        let leaves = self.path.point().factor < LOWEST_FACTOR * goal.max(1e-3) || self.since_limit > MAX_RETURN;
-        if self.limit.is_some() && leaves {
+            Ok(Some((_, limit))) => match self.add(equations, from, limit.clone(), None) {
+                PathProgress::Continue if !self.descends => self.add(equations, limit, to, None),
+                progress => progress,
+            },
+        };
+        let leaves = self.path.point().factor < LOWEST_FACTOR || self.since_limit > MAX_RETURN;
+        if self.limit.is_some() && leaves && matches!(progress, PathProgress::Continue) {
             return self.start_descent();
         }
-        PathProgress::Continue
+        progress
     }
 
-    /// Searches a piece of the path for the state at `goal`, and for the state in which a jump ends; returns `true` if
-    /// the former is found.
-    fn search(&mut self, equations: &mut StaticEquations<'_>, piece: &PathPiece, goal: f64) -> bool {
-        let rises = piece.from.factor < piece.to.factor;
-        let stable = |p: &ContinuationPoint<State>| p.modes == self.unstable_modes;
-        if !rises || !(stable(&piece.from) || stable(&piece.to)) {
-            return false;
+    /// Adds a piece of the path to the parts that the body follows, from where it lands if it has jumped, up to the end;
+    /// `crossing` is a bifurcation on it.
+    fn add(
+        &mut self,
+        equations: &mut StaticEquations<'_>,
+        from: ContinuationPoint<State>,
+        to: ContinuationPoint<State>,
+        crossing: Option<ContinuationPoint<State>>,
+    ) -> PathProgress {
+        let is_followed = |p: &ContinuationPoint<State>| p.modes == self.unstable_modes;
+        if from.factor >= to.factor || !(is_followed(&from) || is_followed(&to)) {
+            return PathProgress::Continue;
         }
-        if let Some(limit) = self.limit.clone().filter(|limit| piece.to.factor >= limit.factor) {
-            let is_start = piece.to.factor == limit.factor;
-            if !is_start && let Some(landing) = self.path.between(equations, &piece.from, &piece.to, limit.factor) {
-                let jump = Jump::from(&limit, Some(&landing.state), true, equations.problem);
-                self.events.jump.get_or_insert(jump);
-                self.limit = None;
-                self.landing.get_or_insert(landing.clone());
-                self.last = landing;
+        let mut start = from.clone();
+        if let Some(limit) = self.limit.clone() {
+            if to.factor < limit.factor {
+                return PathProgress::Continue;
             }
+            let landing = self.path.between(equations, &from, &to, limit.factor);
+            let jump =
+                landing.as_ref().map(|landing| Jump::from(&limit, Some(&landing.state), true, equations.problem));
+            let Some((landing, jump)) = landing.zip(jump.filter(|jump| jump.is_far(equations.problem))) else {
+                // A path that returns to its limit point is a loop.
+                return self.start_descent();
+            };
+            self.events.jump.get_or_insert(jump);
+            self.limit = None;
+            self.last = landing.clone();
+            self.parts.push(PathPart::Landing(landing.clone()));
+            start = landing;
         }
-        if !(piece.from.factor..=piece.to.factor).contains(&goal) {
-            return false;
+        if let Some(crossing) = crossing.filter(|crossing| crossing.factor > start.factor && crossing.factor < self.end)
+        {
+            self.parts.extend([PathPart::Between(start, crossing.clone()), PathPart::Mark]);
+            start = crossing;
         }
-        let found = self.path.between(equations, &piece.from, &piece.to, goal);
-        let is_found = found.is_some();
-        self.last = found.unwrap_or_else(|| self.last.clone());
-        is_found
+        if to.factor < self.end {
+            self.parts.push(PathPart::Between(start, to.clone()));
+            if to.modes == self.unstable_modes && to.slope >= 0.0 {
+                self.last = to;
+            }
+            return PathProgress::Continue;
+        }
+        let Some(end) = self.path.between(equations, &from, &to, self.end) else {
+            // The step has passed a place that shorter ones do not pass: the path ends there.
+            self.limit = Some(from.clone());
+            self.last = from;
+            return self.start_descent();
+        };
+        self.parts.extend([PathPart::Between(start, end.clone()), PathPart::Mark]);
+        self.last = end;
+        PathProgress::Reached
     }
 
     /// Begins to descend from the limit point.
@@ -531,46 +613,49 @@ impl PathFollower {
         PathProgress::Continue
     }
 
-    /// Descends the energy at the goal's load from the limit point.
-    fn descend(&mut self, equations: &mut StaticEquations<'_>, goal: f64, solves: u32) -> PathProgress {
-        let mut state = self.last.state.clone();
-        equations.put(&mut state, goal);
+    /// Descends the energy from the limit point, a little beyond its load, and goes on from there.
+    fn descend(&mut self, equations: &mut StaticEquations<'_>, solves: u32) -> PathProgress {
+        let limit = self.limit.take().unwrap_or_else(|| self.last.clone());
+        let end = if limit.factor < 1.0 { 1.0 } else { self.end };
+        let factor = (limit.factor + BEYOND).min(end);
+        let mut start = limit.clone();
+        put(equations.problem, &mut start.state, [limit.factor, factor]);
+        let mut state = start.state.clone();
         for _ in 0..MAX_DESCENT {
             // The state at the end takes one more linearization.
             if self.linearizations() + 1 >= solves {
+                self.limit = Some(limit);
                 return PathProgress::Ended(PathEndReason::Solves(solves));
             }
             self.descent_steps += 1;
-            match descend(equations, &mut state, goal) {
+            match descend(equations, &mut state, factor) {
                 Descent::Lower => {}
                 Descent::Stable => {
-                    let Some(next) = Self::start_at(equations, state, goal) else { break };
-                    if let Some(limit) = &self.limit {
-                        let jump = Jump::from(limit, Some(&next.last.state), false, equations.problem);
+                    let Some(mut next) = Self::start_at(equations, state, factor, self.end) else { break };
+                    let jump = Jump::from(&start, Some(&next.last.state), false, equations.problem);
+                    if jump.is_far(equations.problem) {
                         self.events.jump.get_or_insert(jump);
                     }
+                    if self.path.locates_all {
+                        next = next.locating_all();
+                    }
+                    self.parts.push(PathPart::Landing(next.last.clone()));
                     *self = Self {
+                        parts: std::mem::take(&mut self.parts),
                         events: std::mem::take(&mut self.events),
                         steps: self.steps + 1,
                         descent_steps: self.linearizations(),
                         ..next
                     };
-                    return PathProgress::Reached;
+                    return if factor < self.end { PathProgress::Continue } else { PathProgress::Reached };
                 }
                 Descent::Stuck => break,
             }
         }
-        if let Some(limit) = &self.limit {
-            self.events.jump.get_or_insert(Jump::from(limit, None, false, equations.problem));
-        }
+        self.events.jump.get_or_insert(Jump::from(&limit, None, false, equations.problem));
+        self.limit = Some(limit);
         PathProgress::Ended(PathEndReason::NoEquilibrium)
     }
-}
-
-/// Returns the root mean square displacement that counts as much as the whole load in the norm of a path: a tenth of
-/// the body's size, at which slender bodies deform nonlinearly.
-fn unit(problem: &Problem) -> f64 {
-    0.1 * problem.system().size()
 }
 
 /// Result of a step of a descent.
@@ -583,8 +668,8 @@ enum Descent {
     Stuck,
 }
 
-/// Performs a step that lowers the energy at a load factor: Newton's with the exact tangent where it is positive
-/// definite, else with A + max(G, 0), halved until the energy falls (Armijo's rule).
+/// Performs a step that lowers the energy at a load factor: Newton's with the exact tangent, turned round in its unstable
+/// modes; if these are too many, with A + max(G, 0). It is halved until the energy falls (Armijo's rule).
 fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) -> Descent {
     /// Relative residual of an equilibrium.
     const BALANCED: f64 = 1e-6;
@@ -592,23 +677,32 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     const SUFFICIENT: f64 = 1e-4;
     /// Largest number of halvings of a step.
     const MAX_HALVINGS: u32 = 40;
+    /// Largest component of a step relative to the size of the body: the rotations of longer ones are not known.
+    const LONGEST: f64 = 0.1;
     let StaticEquations { problem, forces, workspace, timings, .. } = equations;
     let wanted = (Some(Tangent::EXACT), factor);
     let residual = measure(problem, state, (Kinematics::Corotated, true), wanted, forces, workspace, timings);
     let definite = workspace.factor.factorize(workspace.matrix.values()).is_ok();
-    if !definite {
+    if definite && residual <= BALANCED {
+        return Descent::Stable;
+    }
+    let pattern = problem.system().pattern();
+    pattern.restrict(forces.residual(), &mut workspace.free);
+    if definite {
+        workspace.factor.solve_in_place(&mut workspace.free);
+    } else if !solve_downhill(workspace) {
         assemble(problem, state, forces, workspace, Tangent::DEFINITE, factor);
         problem.balance(state, Kinematics::Corotated, factor, forces);
         if workspace.factor.factorize(workspace.matrix.values()).is_err() {
             return Descent::Stuck;
         }
-    } else if residual <= BALANCED {
-        return Descent::Stable;
+        pattern.restrict(forces.residual(), &mut workspace.free);
+        workspace.factor.solve_in_place(&mut workspace.free);
     }
-    let pattern = problem.system().pattern();
-    let Workspace { factor: cholesky, free, trial, .. } = &mut **workspace;
-    pattern.restrict(forces.residual(), free);
-    cholesky.solve_in_place(free);
+    let Workspace { free, trial, .. } = &mut **workspace;
+    let longest = free.iter().fold(0.0, |longest: f64, v| longest.max(v.abs()));
+    let scale = (LONGEST * problem.system().size() / longest).min(1.0);
+    free.iter_mut().for_each(|v| *v *= scale);
     let promised = pattern.dot(forces.residual(), free);
     let before = problem.energy(state, factor);
     // Differences of energies below this are rounding errors.
@@ -626,4 +720,32 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
         fraction *= 0.5;
     }
     Descent::Stuck
+}
+
+/// Replaces the force r in the workspace by |K|⁻¹ r: Newton's step with the matrix K, with the opposite sign in the modes with
+/// negative stiffness. Returns `false` if these are too many or not found, or if the step does not follow the force.
+fn solve_downhill(workspace: &mut Workspace) -> bool {
+    /// Largest number of modes with negative stiffness.
+    const MAX_MODES: usize = 6;
+    let Workspace { factor: cholesky, matrix, free, .. } = workspace;
+    cholesky.factorize_symmetric(matrix.values());
+    let negative = cholesky.negative_eigenvalues();
+    if !(1..=MAX_MODES).contains(&negative) {
+        return false;
+    }
+    let force = free.clone();
+    cholesky.solve_in_place(free);
+    let (mut found, mut modes): (usize, Vec<Vec<f64>>) = (0, Vec::new());
+    while found < negative && modes.len() < MAX_MODES + negative {
+        let (mut mode, stiffness) = softest_mode(cholesky, free.len(), &modes);
+        let length = norm(&mode);
+        mode.iter_mut().for_each(|v| *v /= length);
+        if stiffness < 0.0 {
+            found += 1;
+            let along = dot(&mode, free);
+            free.iter_mut().zip(&mode).for_each(|(v, mode)| *v -= 2.0 * along * mode);
+        }
+        modes.push(mode);
+    }
+    free.iter().all(|v| v.is_finite()) && dot(&force, free) > 0.0
 }

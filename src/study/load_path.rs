@@ -9,7 +9,8 @@ use crate::assembly::{Forces, Kinematics, Problem};
 use crate::continuation::ContinuationPoint;
 use crate::format::engineering;
 use crate::method::{
-    Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathProgress, StaticEquations, Workspace, support_stiffness,
+    Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathPart, PathProgress, StaticEquations, Workspace,
+    support_stiffness,
 };
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
@@ -167,9 +168,11 @@ impl PathFromRest {
     pub fn to(&self, result: &[Vector2<f64>]) -> PathSummary {
         let Some(end) = &self.end else { return self.summary };
         let distance = largest_distance(end, result);
-        let is_elsewhere = distance > SAME * largest(end).max(largest(result));
-        let elsewhere = is_elsewhere.then_some(Elsewhere { distance, buckling: self.summary.buckling });
-        PathSummary { elsewhere, critical: self.summary.critical.filter(|_| !is_elsewhere), ..self.summary }
+        if distance <= SAME * largest(end).max(largest(result)) {
+            return self.summary;
+        }
+        let elsewhere = Some(Elsewhere { distance, buckling: self.summary.buckling });
+        PathSummary { elsewhere, critical: None, supports_work: None, ..self.summary }
     }
 }
 
@@ -195,10 +198,8 @@ pub struct LoadPath {
     pub end: Option<PathEnd>,
 }
 
-/// Number of states of a path that is drawn.
-const DRAWN: u32 = 60;
-/// Number of states of a path along which the work of supports is integrated by the trapezoidal rule.
-const INTEGRATED: u32 = 60;
+/// Number of rows of a path: they are drawn, and the work of supports is integrated over them by the trapezoidal rule.
+const ROWS: u32 = 60;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
@@ -220,7 +221,7 @@ impl LoadPath {
     #[must_use]
     pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
-        Tracer::new(&simulation)?.trace(DRAWN, observe)
+        Some(Tracer::new(&simulation)?.trace(1.0, observe)?.0)
     }
 
     /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion or a
@@ -235,6 +236,9 @@ impl LoadPath {
         if simulation.is_linear() {
             return is_small.then(|| PathSummary::of_linear(simulation, observe));
         }
+        if is_small && simulation.problem().supports().move_the_body() {
+            return Some(Self::traced(simulation, observe)?.to(simulation.displacement()));
+        }
         let mut summary = match search.path_events() {
             Some(events) => PathSummary::of(events.jump, &events.bifurcations),
             None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
@@ -243,11 +247,22 @@ impl LoadPath {
         if is_small && summary.elsewhere.is_none() {
             summary.critical = summary.critical_load(simulation, observe);
         }
-        if is_small && summary.elsewhere.is_none() && simulation.problem().supports().move_the_body() {
-            let path = Tracer::new(simulation).and_then(|tracer| tracer.trace(INTEGRATED, observe));
-            summary.supports_work = path.filter(|path| path.end.is_none()).map(|path| path.supports_work);
-        }
         Some(summary)
+    }
+
+    /// Follows the path of a scene with moving supports, with the work of these, to the critical load next to the full one;
+    /// `None` if the path cannot be followed to the full load, or is cancelled.
+    fn traced(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
+        let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
+        let within = |most: f64| {
+            let below: Vec<Bifurcation> = path.bifurcations.iter().filter(|b| b.factor <= most).copied().collect();
+            PathSummary::of(path.jump.filter(|jump| jump.factor <= most), &below)
+        };
+        let (summary, drive) = (within(1.0), Drive::of(simulation.problem()));
+        let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
+        let critical = critical.map(|factor| CriticalLoad { factor, drive });
+        let summary = PathSummary { critical, supports_work: Some(path.supports_work), ..summary };
+        Some(PathFromRest { summary, end: Some(end?) })
     }
 
     /// Follows the load path of a simulation's scene on its mesh, to `part` of the load; returns its critical points and
@@ -281,6 +296,9 @@ impl LoadPath {
             let summary = || PathSummary::of_linear(&simulation, observe);
             return is_small.then(|| PathFromRest { summary: summary(), end: None });
         }
+        if is_small && simulation.problem().supports().move_the_body() {
+            return Self::traced(&simulation, observe);
+        }
         let mut path = is_small.then(|| Self::end_of(&simulation, 1.0, observe))??;
         path.summary.critical = path.summary.critical_load(&simulation, observe);
         Some(path)
@@ -297,6 +315,13 @@ impl LoadPath {
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.bifurcations.is_empty() && self.jump.is_none() && self.end.is_none()
+    }
+
+    /// Returns the first state, before the body becomes unstable, beyond which it is unstable under force control.
+    #[must_use]
+    pub(super) fn limit_under_force(&self) -> Option<&PathState> {
+        let stable = self.states.windows(2).take_while(|pair| pair[1].unstable_modes == 0);
+        stable.filter(|pair| [pair[0].stable, pair[1].stable] == [Some(true), Some(false)]).map(|pair| &pair[0]).next()
     }
 
     /// Returns `true` if the moving support only rotates.
@@ -331,6 +356,8 @@ struct Tracer {
     forces: Forces,
     timings: Timings,
     path: Vec<PathState>,
+    /// Number of the next row.
+    row: u32,
     /// Derivative of the work of moving supports with respect to the load factor at the last state, J.
     power: f64,
     /// Load factor up to which the work is integrated.
@@ -338,6 +365,8 @@ struct Tracer {
     work: f64,
     /// Last equilibrium, and its stability under force control.
     last: Option<(ContinuationPoint<State>, Option<bool>)>,
+    /// Displacement under the full load, m.
+    end: Option<Vec<Vector2<f64>>>,
 }
 
 impl Tracer {
@@ -352,73 +381,50 @@ impl Tracer {
             timings: Timings::default(),
             problem,
             path: Vec::new(),
+            row: 1,
             power: 0.0,
             reached: 0.0,
             work: 0.0,
             last: None,
+            end: None,
         })
     }
 
-    fn trace(mut self, count: u32, observe: Observer<'_>) -> Option<LoadPath> {
+    /// Follows the path to the load factor `to`, and records its rows and critical points up to the full load. Returns the
+    /// path and the displacement under the full load, m, if it is reached.
+    fn trace(mut self, to: f64, observe: Observer<'_>) -> Option<(LoadPath, Option<Vec<Vector2<f64>>>)> {
         let now = sentence!("following the load path");
-        let mut follower = PathFollower::start(&mut self.equations())?.locating_all();
-        self.record(follower.last().clone(), true);
-        let (mut end, mut states_before_jump, mut bifurcations) = (None, None, 0);
-        // Critical point of the last step: the goals before it are found after the step.
-        let mut critical: Option<ContinuationPoint<State>> = None;
-        let mut goals = (1..=count).map(|i| f64::from(i) / f64::from(count));
-        let mut goal = goals.next();
-        while let Some(to) = goal {
-            if observe(Progress { fraction: follower.last().factor, now: Some(&now) }).is_break() {
-                end = Some(PathEndReason::Interrupted);
-                break;
+        let mut follower = PathFollower::start(&mut self.equations(), to)?.locating_all();
+        let rest = follower.last().clone();
+        self.record(&follower, &rest);
+        let mut states_before_jump = None;
+        let end = loop {
+            if observe(Progress { fraction: follower.last().factor / to, now: Some(&now) }).is_break() {
+                break Some(PathEndReason::Interrupted);
             }
-            let had_jumped = follower.limit().is_some();
-            let progress = follower.advance(&mut self.equations(), to, MAX_SOLVES);
-            let is_before = matches!(progress, PathProgress::Reached)
-                && critical.as_ref().is_some_and(|critical| follower.last().factor < critical.factor);
-            if let Some(critical) = critical.take_if(|_| !is_before) {
-                self.record(critical, true);
-            }
-            let found = follower.events().bifurcations.len();
-            if found > bifurcations {
-                bifurcations = found;
-                critical = follower.crossing().cloned();
-            }
-            if !had_jumped {
-                critical = follower.limit().cloned().or(critical);
-            }
-            if states_before_jump.is_none() && follower.events().jump.is_some_and(|jump| jump.distance.is_some()) {
-                states_before_jump = Some(self.path.len());
-                // No support moves in a jump.
-                if let Some(landing) = follower.landing() {
-                    self.record(landing.clone(), false);
+            let progress = follower.advance(&mut self.equations(), MAX_SOLVES);
+            for part in follower.take_parts() {
+                match part {
+                    PathPart::Between(from, to) => self.follow(&follower, &from, &to),
+                    PathPart::Mark => self.mark(),
+                    PathPart::Landing(landing) => {
+                        if follower.has_jumped() && landing.factor <= 1.0 {
+                            states_before_jump.get_or_insert(self.path.len());
+                        }
+                        self.last = None;
+                        self.record(&follower, &landing);
+                    }
                 }
             }
             match progress {
-                PathProgress::Continue => {
-                    // The end of the piece of the path that was searched last.
-                    let last = follower.last();
-                    if self.driven.is_some() && follower.limit().is_none() && last.factor > self.reached {
-                        self.visit(&last.clone(), true);
-                    }
-                }
-                PathProgress::Reached => {
-                    self.record(follower.last().clone(), true);
-                    goal = goals.next();
-                }
-                PathProgress::Ended(reason) => {
-                    end = Some(reason);
-                    break;
-                }
+                PathProgress::Continue => {}
+                PathProgress::Reached => break None,
+                PathProgress::Ended(reason) => break Some(reason),
             }
-        }
-        let events = follower.take_events();
-        let factor = follower.last().factor;
-        if end.is_some() && self.path.last().is_some_and(|state| state.factor < factor) {
-            self.record(follower.last().clone(), true);
-        }
-        Some(LoadPath {
+        };
+        let (events, factor) = (follower.take_events(), follower.last().factor);
+        self.mark();
+        let path = LoadPath {
             scene: self.name,
             states: self.path,
             jump: events.jump,
@@ -427,57 +433,82 @@ impl Tracer {
             driven: self.driven,
             supports_work: self.work,
             end: end.map(|reason| PathEnd { factor, reason, drive: Drive::of(&self.problem) }),
-        })
+        };
+        Some((path, self.end))
     }
 
     fn equations(&mut self) -> StaticEquations<'_> {
         StaticEquations::new(&self.problem, &mut self.forces, &mut self.workspace, &mut self.timings)
     }
 
-    /// Records an equilibrium. If the body loses or regains its stability under force control since the last one, the
-    /// state between them at which this happens is recorded first. `works` is `true` if the supports do work between
-    /// the two.
-    fn record(&mut self, point: ContinuationPoint<State>, works: bool) {
-        self.visit(&point, works);
-        self.push(&point);
+    /// Records the rows between two points of the path, and visits the second one.
+    fn follow(&mut self, follower: &PathFollower, from: &ContinuationPoint<State>, to: &ContinuationPoint<State>) {
+        let factor = |row: u32| f64::from(row) / f64::from(ROWS);
+        while self.row <= ROWS && factor(self.row) < to.factor {
+            let at = factor(self.row);
+            self.row += 1;
+            if at > from.factor
+                && let Some(row) = follower.between(&mut self.equations(), from, to, at)
+            {
+                self.record(follower, &row);
+            }
+        }
+        self.visit(follower, to);
+        if factor(self.row) == to.factor {
+            self.mark();
+        }
     }
 
-    /// Integrates the work of moving supports to an equilibrium, and records the change of stability under force
-    /// control on the way to it.
-    fn visit(&mut self, point: &ContinuationPoint<State>, works: bool) {
+    /// Records an equilibrium.
+    fn record(&mut self, follower: &PathFollower, point: &ContinuationPoint<State>) {
+        self.visit(follower, point);
+        self.mark();
+    }
+
+    /// Integrates the work of moving supports to an equilibrium. If the body loses or regains its stability under force
+    /// control since the last one, the state between them at which this happens is recorded.
+    fn visit(&mut self, follower: &PathFollower, point: &ContinuationPoint<State>) {
+        if point.factor > 1.0 {
+            return;
+        }
         let stable = self.is_stable(point);
         if let Some((last, Some(before))) = self.last.take()
-            && works
             && [point.modes, last.modes] == [0; 2]
             && stable.is_some_and(|stable| stable != before)
-            && let Some(limit) = self.limit_under_force(&last, before, point)
+            && let Some(limit) = self.limit_under_force(follower, &last, before, point)
         {
-            self.integrate(&limit, works);
-            self.last = Some((limit.clone(), Some(true)));
-            self.push(&limit);
+            self.integrate(&limit);
+            self.last = Some((limit, Some(true)));
+            self.mark();
         }
-        self.integrate(point, works);
+        self.integrate(point);
         self.last = Some((point.clone(), stable));
     }
 
     /// Integrates the work of moving supports to a state beyond the last one.
-    fn integrate(&mut self, point: &ContinuationPoint<State>, works: bool) {
+    fn integrate(&mut self, point: &ContinuationPoint<State>) {
         if self.driven.is_none() {
             return;
         }
         let reactions = self.reactions(point);
         let power = supports_power(&self.problem, &reactions);
-        if works {
-            self.work += 0.5 * (point.factor - self.reached) * (self.power + power);
-        }
+        self.work += 0.5 * (point.factor - self.reached) * (self.power + power);
         (self.power, self.reached) = (power, point.factor);
     }
 
-    fn push(&mut self, point: &ContinuationPoint<State>) {
-        let reactions = self.reactions(point);
+    /// Records the last equilibrium, unless it is recorded already.
+    fn mark(&mut self) {
+        let Some((point, stable)) = self.last.take() else { return };
+        let reactions = self.reactions(&point);
         let probes = self.problem.probes().iter().map(|p| p.mean(&point.state.displacement)).collect();
-        let stable = self.last.as_ref().and_then(|(_, stable)| *stable);
-        self.path.push(PathState { factor: point.factor, probes, reactions, stable, unstable_modes: point.modes });
+        let state = PathState { factor: point.factor, probes, reactions, stable, unstable_modes: point.modes };
+        if self.path.last() != Some(&state) {
+            self.path.push(state);
+        }
+        if point.factor == 1.0 {
+            self.end = Some(point.state.displacement.to_vec());
+        }
+        self.last = Some((point, stable));
     }
 
     /// Returns `true` if a state is stable under force control.
@@ -492,6 +523,7 @@ impl Tracer {
     /// Returns the last or first state, between two others, that is stable under force control, by bisection.
     fn limit_under_force(
         &mut self,
+        follower: &PathFollower,
         from: &ContinuationPoint<State>,
         stable: bool,
         to: &ContinuationPoint<State>,
@@ -501,7 +533,7 @@ impl Tracer {
         let (mut low, mut high) = (from.clone(), to.clone());
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low.factor + high.factor);
-            let point = PathFollower::between(&mut self.equations(), &low, &high, middle)?;
+            let point = follower.between(&mut self.equations(), &low, &high, middle)?;
             let side = if self.is_stable(&point)? == stable { &mut low } else { &mut high };
             *side = point;
         }

@@ -340,7 +340,8 @@ impl Method for Auto {
                 return Ok(());
             }
         }
-        if it.supports_rotate_in_steps() {
+        let leaves_rest = self.from_rest && self.steps == 1 && it.problem.supports().move_the_body();
+        if leaves_rest || it.supports_rotate_in_steps() {
             self.start_load_steps(it.state);
             it.workspace.tangent = None;
             return self.iterate(it);
