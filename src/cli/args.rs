@@ -67,10 +67,10 @@ pub(super) enum Command {
     /// Compute the equilibrium of a static scene, or the motion of a dynamic one to the end of its duration.
     #[command(after_help = format!("{SOLVE_FILES}\n{EXIT_CODES}"))]
     Solve(SolveArgs),
-    /// Print the load path of a scene: its equilibria as loads and prescribed displacements grow, where they lose their
-    /// stability under force control, and where the body jumps. For a cantilever also: linear theory, the exact beam,
-    /// every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent. The picture
-    /// shows the load path, over the displacement of the moving support or over the load; unstable states are dashed.
+    /// Print the load path of a scene: its equilibria as loads and prescribed displacements grow, the largest reaction of a
+    /// moving support, where they lose their stability, and where the body jumps. For a cantilever also: linear theory, the
+    /// exact beam, every method, and the loads at which linear theory differs from the exact beam by 3, 5 and 10 percent. The
+    /// picture shows the load path, over the displacement of the moving support or over the load; unstable states are dashed.
     Curve(CurveArgs),
     /// Compute the forces in a cut through the body: normal force N, shear force V and bending moment M, which the part
     /// in front of the cut exerts on the part behind, and the stress along the cut beside that of beam theory. With

@@ -74,7 +74,7 @@ pub enum Claim {
     Elsewhere(Elsewhere),
     /// The path from rest was not followed to the full load.
     Ends(PathEnd),
-    /// The force of a moving support has an extreme value.
+    /// The reaction of a moving support has its first largest value: the limit load of a force in place of the motion.
     LimitLoad {
         /// Motion of the support: m, or rad if it only rotates.
         motion: f64,
@@ -82,8 +82,6 @@ pub enum Claim {
         reaction: f64,
         /// `true` if the support only rotates.
         rotates: bool,
-        /// `true` if the path becomes stable under force control there, `false` if it becomes unstable.
-        is_regained: bool,
     },
     /// The displacement of a probe differs from the reference solution.
     Error {
@@ -193,13 +191,11 @@ impl From<&Claim> for Sentence {
             Claim::Critical(critical) => critical.into(),
             Claim::Elsewhere(elsewhere) => elsewhere.into(),
             Claim::Ends(end) => end.to_string().into(),
-            Claim::LimitLoad { motion, reaction, rotates, is_regained } => {
+            Claim::LimitLoad { motion, reaction, rotates } => {
                 let [motion, reaction] = driven_texts([*motion, *reaction], *rotates);
-                let what = match is_regained {
-                    true => "stable under force control again",
-                    false => "the limit load: beyond it, the path is unstable under force control",
-                };
-                format!("{motion}, {reaction}: {what}").into()
+                let force = if *rotates { "moment" } else { "force" };
+                format!("{motion}, {reaction}: the limit load, where a {force} in place of the motion would jump")
+                    .into()
             }
             Claim::Error { probe, percent, reference } => {
                 format!("error of {probe} {percent:.3} %, against {reference}").into()
@@ -349,23 +345,20 @@ impl Claim {
         Self::Disturbance { rho, has_converged: method == MethodKind::Warped && *status == Status::Converged }
     }
 
-    /// Returns the claims of a load path: extreme forces of its moving support, bifurcations, the jump, and its end.
+    /// Returns the claims of a load path in its order: the largest reaction of its moving support, bifurcations, the jump,
+    /// and its end.
     #[must_use]
     pub fn of_path(scene: &Scene, path: &LoadPath) -> Vec<Self> {
-        let rotates = path.rotates(scene);
-        let limits = path.states.windows(2).filter_map(|pair| {
-            let held = pair.iter().all(|state| state.unstable_modes == 0);
-            let (at, is_regained) = match [pair[0].stable, pair[1].stable] {
-                [Some(true), Some(false)] if held => (&pair[0], false),
-                [Some(false), Some(true)] if held => (&pair[1], true),
-                _ => return None,
-            };
-            let [motion, reaction] = path.driven_pair(scene, at)?;
-            Some(Self::LimitLoad { motion, reaction, rotates, is_regained })
+        let limit = path.limit_under_force().and_then(|state| {
+            let ([motion, reaction], rotates) = (path.driven_pair(scene, state)?, path.rotates(scene));
+            Some((state.factor, Self::LimitLoad { motion, reaction, rotates }))
         });
-        let bifurcations = path.bifurcations.iter().copied().map(Self::Buckles);
-        let (jump, end) = (path.jump.map(Self::Jumps), path.end.map(Self::Ends));
-        limits.chain(bifurcations).chain(jump).chain(end).collect()
+        let bifurcations =
+            path.bifurcations.iter().map(|bifurcation| (bifurcation.factor, Self::Buckles(*bifurcation)));
+        let jump = path.jump.map(|jump| (jump.factor, Self::Jumps(jump)));
+        let mut events: Vec<(f64, Self)> = limit.into_iter().chain(bifurcations).chain(jump).collect();
+        events.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        events.into_iter().map(|(_, claim)| claim).chain(path.end.map(Self::Ends)).collect()
     }
 
     /// Returns the claims of a load–deflection curve: where linear theory fails, and where the exact beam ends.

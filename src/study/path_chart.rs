@@ -72,7 +72,7 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
     };
     let points: Vec<FigurePoint> = path.states.iter().map(point).collect();
     let mut series: Vec<FigureSeries> =
-        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(path, points, render)).collect();
+        pieces(path, &points).into_iter().map(|(points, piece)| piece.series(points, render)).collect();
     series.extend(bifurcations(path, &points, render));
     let last = points.last().map(|point| FigurePoint { is_present: true, ..point.clone() });
     series.push(FigureSeries {
@@ -139,19 +139,19 @@ impl Abscissa {
 /// Kind of a line of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PathLine {
-    /// Equilibria that are stable under force control too.
+    /// Equilibria that are stable with the supports held.
     Stable,
-    /// Equilibria that are unstable, or stable only while the supports are held.
+    /// Equilibria that are unstable.
     Unstable,
     /// No equilibria: from where the body jumps to where it comes to rest.
     Jump,
 }
 
 impl PathLine {
-    fn series(self, path: &LoadPath, points: Vec<FigurePoint>, render: Render<'_>) -> FigureSeries {
+    fn series(self, points: Vec<FigurePoint>, render: Render<'_>) -> FigureSeries {
         let (name, ink, mark) = match self {
             Self::Stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
-            Self::Unstable => (unstable_text(path), Ink::Unstable, Mark::Dashes),
+            Self::Unstable => ("unstable", Ink::Unstable, Mark::Dashes),
             Self::Jump => ("it jumps", Ink::Unstable, Mark::Dots),
         };
         FigureSeries { name: render(&name.into()), ink, mark, may_leave: false, points }
@@ -160,7 +160,7 @@ impl PathLine {
 
 /// Returns the lines of a path, each of one kind.
 fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, PathLine)> {
-    let stable: Vec<bool> = path.states.iter().map(|s| s.stable != Some(false)).collect();
+    let stable: Vec<bool> = path.states.iter().map(|s| s.unstable_modes == 0).collect();
     let Some(cut) = path.states_before_jump.filter(|cut| (1..points.len()).contains(cut)) else {
         return branches(points, &stable);
     };
@@ -207,19 +207,8 @@ fn bifurcations<'a>(
     })
 }
 
-/// Returns the name of the unstable part of a path. "Under force control" is added if a support moves and the body is
-/// stable while the supports are held.
-pub(crate) fn unstable_text(path: &LoadPath) -> &'static str {
-    let is_held = path.states.iter().all(|state| state.unstable_modes == 0);
-    if path.driven.is_some() && is_held { "unstable under force control" } else { "unstable" }
-}
-
 /// Returns the name of a state of a path for tables; empty if it is stable.
 #[must_use]
 pub fn stability_text(state: &PathState) -> &'static str {
-    match state.stable {
-        Some(false) if state.unstable_modes == 0 => "unstable under force control",
-        Some(false) => "unstable",
-        _ => "",
-    }
+    if state.unstable_modes == 0 { "" } else { "unstable" }
 }

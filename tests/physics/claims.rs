@@ -296,7 +296,7 @@ fn claims_near_critical_loads_are_true() {
                 let moved = arch.clone().support(crown, &[Axis::Y]).moved([0.0, -2.0 * rise], 0.0);
                 let path = LoadPath::of(&moved).unwrap();
                 let limit = Claim::of_path(&moved, &path).into_iter().find_map(|claim| match claim {
-                    Claim::LimitLoad { motion, reaction, is_regained: false, .. } => Some([motion, reaction]),
+                    Claim::LimitLoad { motion, reaction, .. } => Some([motion, reaction]),
                     _ => None,
                 });
                 // A buckling arch leaves this path.
