@@ -100,13 +100,11 @@ pub struct Compensated<'a> {
 
 impl<'a> Compensated<'a> {
     /// Returns the rounded sums.
-    #[must_use]
     pub fn rounded(&self) -> &'a [Vector2<f64>] {
         self.rounded
     }
 
     /// Returns the rounding errors of [`Self::rounded`].
-    #[must_use]
     pub fn remainder(&self) -> &'a [Vector2<f64>] {
         self.remainder
     }

@@ -144,14 +144,12 @@ impl ClampedBeam {
     ///
     /// The path is followed in its own length ([`crate::continuation`]). It ends where it loses its stability: where the
     /// load stops growing along it, or another path crosses.
-    #[must_use]
     pub fn path(&self, largest: f64, points: u32) -> Vec<PathPoint> {
         self.path_to_critical(largest, points).0
     }
 
     /// Returns [`Self::path`] and the load factor at which it loses its stability by bifurcation (buckling); `None` for
     /// the load factor if the path stays stable or turns back.
-    #[must_use]
     pub fn path_to_critical(&self, largest: f64, points: u32) -> (Vec<PathPoint>, Option<f64>) {
         let mut path = Vec::new();
         let critical = self.visit_path(largest, points, &mut |factor, unknowns| {
@@ -163,7 +161,6 @@ impl ClampedBeam {
     }
 
     /// Returns the axis under the full load, from the clamp to the tip; `None` if the equilibrium cannot be followed.
-    #[must_use]
     pub fn axis(&self) -> Option<Vec<Tip>> {
         let mut axis = None;
         self.visit_path(1.0, 1, &mut |factor, unknowns| axis = Some(self.stations(unknowns, factor)));
@@ -211,14 +208,12 @@ impl ClampedBeam {
     }
 
     /// Returns the tip of the equilibrium on the path from the straight beam; `None` if the path cannot be followed.
-    #[must_use]
     pub fn tip(&self) -> Option<Tip> {
         self.path(1.0, 1).pop().map(|p| p.tip)
     }
 
     /// Returns the tip's displacement in linear beam theory: P L³/3EI, q L⁴/8EI, M L²/2EI across, F L/EA and q L²/2EA
     /// along, and the shear's P L/GA and q L²/2GA.
-    #[must_use]
     pub fn linear_tip_displacement(&self) -> Vector2<f64> {
         let (l, f, q) = (self.length, self.tip_force, self.weight);
         let bending = (f.y * l.powi(3) / 3.0 + q.y * l.powi(4) / 8.0 + self.tip_moment * l * l / 2.0) / self.bending;
@@ -276,7 +271,6 @@ impl PathEquations for Shooting<'_> {
 
 /// Returns the distance of a displacement from the reference, relative to the reference's length, percent; `None` if
 /// the reference is zero, or only rounding error beside the distance.
-#[must_use]
 pub fn error_percent(u: Vector2<f64>, reference: Vector2<f64>) -> Option<f64> {
     /// Length of a reference, relative to the distance, that is rounding error.
     const ROUNDING: f64 = 1e-9;
@@ -301,7 +295,6 @@ impl ExactBeam {
     ///
     /// The exact beam exists for a rectangle clamped on its left edge whose loads are gravity and forces and moments on the right
     /// edge; and for a rectangle fixed there in x only (and in one point in y) that is pulled along its axis.
-    #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         const SHEAR_AREA: f64 = 5.0 / 6.0;
         if scene.analysis != Analysis::Static || scene.supports.iter().any(Support::moves) {
@@ -349,7 +342,6 @@ impl ExactBeam {
     }
 
     /// Returns the displacement of the right edge's middle, m; `None` if the equilibrium cannot be followed.
-    #[must_use]
     pub fn tip_displacement(&self) -> Option<Vector2<f64>> {
         match self {
             Self::Cantilever(beam) => beam.tip().map(|tip| tip.x - Vector2::new(beam.length, 0.0)),
@@ -360,7 +352,6 @@ impl ExactBeam {
     /// Returns the outline of a beam of this height, m, around its computed axis, closed and counter-clockwise, at rest
     /// and under the load, point by point; `None` for the bar, whose sides contract, and if the equilibrium cannot be
     /// followed.
-    #[must_use]
     pub fn outline(&self, height: f64) -> Option<[Vec<Vector2<f64>>; 2]> {
         let Self::Cantilever(beam) = self else { return None };
         let axis = beam.axis()?;

@@ -7,7 +7,6 @@
 /// use warpbeam::format::number;
 /// assert_eq!((number(0.25), number(1e9)), ("0.25".to_owned(), "1e9".to_owned()));
 /// ```
-#[must_use]
 pub fn number(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&magnitude) {
@@ -18,7 +17,6 @@ pub fn number(value: f64) -> String {
 }
 
 /// Formats a count with its noun: `1 iteration`, `2 iterations`.
-#[must_use]
 pub fn count(n: impl Into<u64>, what: &str) -> String {
     let n = n.into();
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
@@ -30,7 +28,6 @@ pub fn count(n: impl Into<u64>, what: &str) -> String {
 /// use warpbeam::format::grouped;
 /// assert_eq!([0, 999, 1000, 1234567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
 /// ```
-#[must_use]
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
@@ -62,7 +59,6 @@ fn takes_no_prefix(unit: &str) -> bool {
 /// use warpbeam::format::prefix;
 /// assert_eq!((prefix(&[0.5, -0.002], "m"), prefix(&[5e4], "kg m/s")), ((-3, "m"), (0, "")));
 /// ```
-#[must_use]
 pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
     let largest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |m, v| m.max(v.abs()));
     if largest == 0.0 || takes_no_prefix(unit) {
@@ -81,7 +77,6 @@ pub fn prefix(values: &[f64], unit: &str) -> (i32, &'static str) {
 /// use warpbeam::format::engineering;
 /// assert_eq!((engineering(-5.12e-6, "m"), engineering(3e4, "N")), ("-5.12 µm".to_owned(), "30 kN".to_owned()));
 /// ```
-#[must_use]
 pub fn engineering(value: f64, unit: &str) -> String {
     engineering_digits(value, unit, DIGITS)
 }
@@ -103,7 +98,6 @@ fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
 /// use warpbeam::format::tick;
 /// assert_eq!([0.0, 500.0].map(|value| tick(value, [0.0, 1200.0], "N")), ["0 kN", "0.5 kN"]);
 /// ```
-#[must_use]
 pub fn tick(value: f64, ends: [f64; 2], unit: &str) -> String {
     let (power, symbol) = prefix(&ends, unit);
     with_unit(&in_power(value, power), symbol, unit)
@@ -119,7 +113,6 @@ pub fn tick(value: f64, ends: [f64; 2], unit: &str) -> String {
 ///     ["210 GPa", "1.23456 N", "16.67 ms"]
 /// );
 /// ```
-#[must_use]
 pub fn editable(value: f64, unit: &str) -> String {
     const TYPED: usize = 6;
     /// Relative rounding error that a change of units may add to a typed value.
@@ -137,7 +130,6 @@ pub fn editable(value: f64, unit: &str) -> String {
 ///     ["44 %".to_owned(), "0.051 %".to_owned(), "exact".to_owned()]
 /// );
 /// ```
-#[must_use]
 pub fn percent(value: f64) -> String {
     /// Smallest difference that is not rounding error, percent.
     const ROUNDING: f64 = 1e-7;
@@ -156,7 +148,6 @@ pub fn percent(value: f64) -> String {
 /// use warpbeam::format::bound_percent;
 /// assert_eq!([1.04, 1.0, 0.0512].map(bound_percent), ["1.1 %", "1 %", "0.052 %"]);
 /// ```
-#[must_use]
 pub fn bound_percent(value: f64) -> String {
     /// Relative difference that is rounding error.
     const ROUNDING: f64 = 1e-9;
@@ -169,13 +160,11 @@ pub fn bound_percent(value: f64) -> String {
 }
 
 /// Rounds to three significant digits, the precision of sliders, pointer positions and clocks.
-#[must_use]
 pub fn three_digits(value: f64) -> f64 {
     rounded(value, 3)
 }
 
 /// Rounds to two significant digits, the precision of measured times and residuals.
-#[must_use]
 pub fn two_digits(value: f64) -> f64 {
     rounded(value, 2)
 }
@@ -194,7 +183,6 @@ fn rounded(value: f64, digits: usize) -> f64 {
 }
 
 /// Returns the largest number of the form 1, 2 or 5 · 10ⁿ that is not above `length`.
-#[must_use]
 pub fn round_down(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     [5.0, 2.0].into_iter().map(|m| m * power).find(|&l| l <= length * (1.0 + 1e-12)).unwrap_or(power)
@@ -207,7 +195,6 @@ pub fn round_down(length: f64) -> f64 {
 /// use warpbeam::format::ticks;
 /// assert_eq!(ticks(-0.3, 4.1, 5), [0.0, 1.0, 2.0, 3.0, 4.0]);
 /// ```
-#[must_use]
 pub fn ticks(low: f64, high: f64, most: u32) -> Vec<f64> {
     let span = high - low;
     if !(span.is_finite() && span > 0.0) || most == 0 {
@@ -247,33 +234,28 @@ impl Context {
     pub const MAX_INEXACT: f64 = 1e-6;
 
     /// Returns the context of all results of a kind; values that are not finite are ignored.
-    #[must_use]
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         Self::of_inexact(values, 0.0)
     }
 
     /// Returns the context of results whose error, relative to the largest one, is `error`, or that of rounding if this
     /// is larger.
-    #[must_use]
     pub fn of_inexact(values: impl IntoIterator<Item = f64>, error: f64) -> Self {
         let largest = values.into_iter().filter(|v| v.is_finite()).fold(0.0_f64, |m, v| m.max(v.abs()));
         Self { rounding: error.max(ROUNDING) * largest }
     }
 
     /// Returns the value, or 0 if it is rounding error.
-    #[must_use]
     pub fn rounded(self, value: f64) -> f64 {
         if value.abs() < self.rounding { 0.0 } else { value }
     }
 
     /// Formats a result like [`engineering`].
-    #[must_use]
     pub fn engineering(self, value: f64, unit: &str) -> String {
         engineering(self.rounded(value), unit)
     }
 
     /// Formats the components of a vector like [`engineering_pair`].
-    #[must_use]
     pub fn pair(self, values: [f64; 2], unit: &str) -> String {
         engineering_pair(values.map(|v| self.rounded(v)), unit)
     }
@@ -285,7 +267,6 @@ impl Context {
 /// use warpbeam::format::in_power;
 /// assert_eq!([in_power(1234.5678, 3), in_power(-0.5, -3)], ["1.235", "-500"]);
 /// ```
-#[must_use]
 pub fn in_power(value: f64, power: i32) -> String {
     significant(scaled(value, power), DIGITS)
 }
@@ -297,13 +278,11 @@ pub fn in_power(value: f64, power: i32) -> String {
 /// use warpbeam::format::engineering_pair;
 /// assert_eq!(engineering_pair([1e-19, -0.0025], "m"), "(0, -2.5) mm");
 /// ```
-#[must_use]
 pub fn engineering_pair(values: [f64; 2], unit: &str) -> String {
     engineering_pair_among(values, &values, unit)
 }
 
 /// Formats like [`engineering_pair`], with the prefix that suits all of the values in a column.
-#[must_use]
 pub(crate) fn engineering_pair_among(values: [f64; 2], column: &[f64], unit: &str) -> String {
     let (power, symbol) = prefix(column, unit);
     let largest = values[0].abs().max(values[1].abs());

@@ -32,18 +32,12 @@ pub struct Picture {
 
 impl Picture {
     /// Writes a PNG file.
-    ///
-    /// # Errors
-    /// [`PictureError`].
     pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
         let failed = |error: std::io::Error| PictureError::Write { path: path.to_owned(), reason: error.to_string() };
         std::fs::write(path, self.png()?).map_err(failed)
     }
 
     /// Returns the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// [`PictureError::Encode`].
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         let failed = |error: png::EncodingError| PictureError::Encode(error.to_string());
         let mut bytes = Vec::new();

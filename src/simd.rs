@@ -40,41 +40,35 @@ impl Numbers {
 }
 
 /// Copies `own` into the lanes; unused lanes repeat the last value.
-#[must_use]
 pub(crate) fn filled<T: Copy>(own: &[T]) -> [T; LANES] {
     Numbers { first: 0, count: own.len() }.all().map(|lane| own[lane])
 }
 
 /// Packs one vector per lane.
-#[must_use]
 #[inline(always)]
 pub(crate) fn side_by_side([a, b, c, d]: [Vector2<f64>; LANES]) -> Vector2<Lanes> {
     Vector2::new([a.x, b.x, c.x, d.x].into(), [a.y, b.y, c.y, d.y].into())
 }
 
 /// Returns the matrix in one lane.
-#[must_use]
 #[inline(always)]
 pub(crate) fn matrix_lane(m: &Matrix2<Lanes>, lane: usize) -> Matrix2<f64> {
     Matrix2::new(m.m11.extract(lane), m.m12.extract(lane), m.m21.extract(lane), m.m22.extract(lane))
 }
 
 /// Packs the vectors of these nodes, one per lane.
-#[must_use]
 #[inline(always)]
 pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector2<Lanes> {
     side_by_side([all[a as usize], all[b as usize], all[c as usize], all[d as usize]])
 }
 
 /// Returns the sum over the first `count` lanes.
-#[must_use]
 #[inline(always)]
 pub(crate) fn sum_of_lanes(values: Lanes, count: usize) -> f64 {
     values.into_arr().into_iter().take(count).sum()
 }
 
 /// Returns the vector in one lane.
-#[must_use]
 #[inline(always)]
 pub(crate) fn lane<T: Number>(v: &Vector2<T>, lane: usize) -> Vector2<f64> {
     Vector2::new(v.x.extract(lane), v.y.extract(lane))

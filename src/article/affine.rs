@@ -39,9 +39,6 @@ impl Affine2 {
     ///
     /// P is block diagonal, so the six unknowns follow from the edge vectors by one 2×2 inverse. The deformed corners
     /// may be collinear (the article's example 3); the map is then singular.
-    ///
-    /// # Errors
-    /// [`AffineError::CollinearCorners`] for a rest triangle without area, [`AffineError::NotFinite`].
     pub fn from_triangle(rest: [Vector2<f64>; 3], deformed: [Vector2<f64>; 3]) -> Result<Self, AffineError> {
         if !rest.iter().chain(&deformed).all(|p| p.iter().all(|v| v.is_finite())) {
             return Err(AffineError::NotFinite);

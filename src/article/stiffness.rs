@@ -16,7 +16,6 @@ pub struct ElementStiffness {
 impl ElementStiffness {
     /// Computes Ke = ∫ Bᵀ C B t dA (eqs. 1, 3), summed over quadrature points; the moduli are times the thickness t,
     /// N/m.
-    #[must_use]
     pub fn new<const N: usize>(points: &[QuadraturePoint<N>], moduli: Lame) -> Self {
         let mut ke = DMatrix::zeros(2 * N, 2 * N);
         for (point, a, b) in points.iter().flat_map(|p| (0..N).flat_map(move |a| (0..N).map(move |b| (p, a, b)))) {
@@ -35,13 +34,11 @@ impl ElementStiffness {
     }
 
     /// Returns R Ke, the article's m_cMatRK.
-    #[must_use]
     pub fn rk(&self, r: Rotation) -> DMatrix<f64> {
         self.turn(r) * &self.ke
     }
 
     /// Returns R Ke Rᵀ, the article's m_cMatRKRT.
-    #[must_use]
     pub fn rkrt(&self, r: Rotation) -> DMatrix<f64> {
         self.rk(r) * self.turn(r).transpose()
     }

@@ -130,7 +130,6 @@ fn guarded(run: impl FnOnce() -> ExitCode) -> ExitCode {
 }
 
 /// Runs the command given by the process arguments.
-#[must_use]
 pub fn main() -> ExitCode {
     guarded(run)
 }

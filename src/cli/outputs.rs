@@ -20,27 +20,18 @@ pub(super) struct OutputArgs {
 
 impl OutputArgs {
     /// Refuses names with another ending, so that nothing is computed in vain.
-    ///
-    /// # Errors
-    /// [`CliError::Suffix`].
     pub fn check(&self) -> Result<(), CliError> {
         self.picture.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".svg"], ".svg"))?;
         self.table.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".csv"], ".csv"))
     }
 
     /// Writes the table, if one is wanted.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn write_table(&self, table: impl FnOnce() -> String) -> Result<(), CliError> {
         let Some(path) = &self.table else { return Ok(()) };
         Ok(export::write_text(path, &table())?)
     }
 
     /// Writes the picture, if one is wanted.
-    ///
-    /// # Errors
-    /// That of the drawing, or the file cannot be written.
     pub fn write_picture(&self, drawing: impl FnOnce() -> Result<Drawing, CliError>) -> Result<(), CliError> {
         let Some(path) = &self.picture else { return Ok(()) };
         Ok(export::write_text(path, &drawing()?.svg())?)

@@ -21,7 +21,6 @@ struct Panel {
 
 /// Draws the atlas: for every element and method, load against slenderness; from rest, from the other starts,
 /// with distorted cells, and on mesh files. A cell's bar is divided by how its cases ended.
-#[must_use]
 pub fn atlas(entries: &[Entry]) -> Drawing {
     let columns = alphas(entries);
     let mut rows: Vec<(String, [f64; 2])> = entries.iter().map(|e| row(&e.case)).collect();
@@ -56,7 +55,6 @@ pub fn atlas(entries: &[Entry]) -> Drawing {
 
 /// Draws the atlas in time: for every element and integrator, time step against stiffness. A cell's bar is
 /// divided by how its cases, of several weights, ended.
-#[must_use]
 pub fn motion_atlas(entries: &[MotionEntry]) -> Drawing {
     let sorted = |value: fn(&MotionEntry) -> f64| {
         let mut values: Vec<f64> = entries.iter().map(value).collect();

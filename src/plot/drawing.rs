@@ -124,7 +124,6 @@ impl Drawing {
     }
 
     /// Returns drawings one below the other.
-    #[must_use]
     pub fn stacked(drawings: impl IntoIterator<Item = Self>) -> Self {
         let mut stack = Self { size: [0.0; 2], items: Vec::new() };
         for mut drawing in drawings {
@@ -160,7 +159,6 @@ impl Drawing {
     }
 
     /// Returns the drawing as an SVG document.
-    #[must_use]
     pub fn svg(&self) -> String {
         let [width, height] = self.size;
         let mut svg = format!(

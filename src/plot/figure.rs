@@ -12,7 +12,6 @@ const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
 
 /// Draws a figure with the table beside it.
-#[must_use]
 pub fn figure(figure: &Figure) -> Drawing {
     let ends = [MARGINS.across(), MARGINS.up()];
     let corners = shaped_corners(figure, [ends[0][1] - ends[0][0], ends[1][0] - ends[1][1]]);

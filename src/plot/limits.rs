@@ -27,7 +27,6 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
 }
 
 /// Draws the limits of a scene over the load.
-#[must_use]
 pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing {
     let loads = load_axis(scene);
     let axis = scale.axis(limits.range, loads.full, ACROSS);

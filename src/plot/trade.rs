@@ -22,7 +22,6 @@ fn drawn_error<M: Ranked>(ranking: Ranking<'_, M>, m: &M) -> f64 {
 }
 
 /// Draws the study.
-#[must_use]
 pub fn study(study: &Study) -> Drawing {
     let point = |m: &Measurement| Point {
         time: m.milliseconds(),
@@ -46,7 +45,6 @@ pub fn study(study: &Study) -> Drawing {
 }
 
 /// Draws the study of a motion.
-#[must_use]
 pub fn motion_study(study: &MotionStudy) -> Drawing {
     let points = study.measurements.iter().filter(|m| m.error.is_some()).map(|m| Point {
         time: m.milliseconds,

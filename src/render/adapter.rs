@@ -105,9 +105,6 @@ where
     /// Returns the result of `open` for the first adapter for which it does not fail. Adapters of hardware are tried
     /// before those in software, and the system's native graphics API before OpenGL, whose search takes time and may
     /// print warnings. `WGPU_BACKEND` restricts the backends.
-    ///
-    /// # Errors
-    /// [`RenderError::NoAdapter`] with the failure of every adapter.
     pub(crate) async fn first_usable<T>(
         &self,
         mut open: impl AsyncFnMut(Candidate) -> Result<T, String>,
@@ -230,7 +227,6 @@ pub(crate) fn offscreen(
 /// Returns the adapters of this machine in the order in which they are tried for an image without a window. Each of
 /// them draws a small frame. `name` is a part of the name of the adapter to be used; `None` stands for
 /// `WGPU_ADAPTER_NAME`. Not for web pages, which cannot wait for a device.
-#[must_use]
 pub fn adapters(name: Option<&str>) -> Vec<AdapterReport> {
     let search = offscreen(name);
     pollster::block_on(async {
@@ -289,9 +285,6 @@ pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
 
 impl Gpu {
     /// Creates a device on this adapter, and draws a small frame with it.
-    ///
-    /// # Errors
-    /// Reason for which the adapter is not usable.
     pub(crate) async fn usable(adapter: wgpu::Adapter) -> Result<Self, String> {
         let limits = Self::limits(&adapter);
         let gpu = Self::connect(adapter, limits).await?;

@@ -241,7 +241,6 @@ pub struct BodyRenderer {
 
 impl BodyRenderer {
     /// Creates the pipelines for targets of this format.
-    #[must_use]
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

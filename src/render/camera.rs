@@ -30,7 +30,6 @@ impl Camera {
 
     /// Returns the camera that fits the box from `low` to `high`, m, into a view of size `view`, points, inside the
     /// margins. In a small view the margins shrink.
-    #[must_use]
     pub fn fit(low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2], margins: Margins) -> Self {
         /// Largest fraction of a view that margins may take.
         const LARGEST: f64 = 0.7;
@@ -48,14 +47,12 @@ impl Camera {
     }
 
     /// Returns the view position of a point of the plane, in points to the right of and below the middle of the view.
-    #[must_use]
     pub fn to_view(&self, p: Vector2<f64>) -> [f64; 2] {
         let d = (p - self.center) * self.scale;
         [d.x, -d.y]
     }
 
     /// Returns the point of the plane at a view position, in points to the right of and below the middle of the view.
-    #[must_use]
     pub fn to_world(&self, at: [f64; 2]) -> Vector2<f64> {
         self.center + Vector2::new(at[0], -at[1]) / self.scale
     }

@@ -25,7 +25,6 @@ impl ColorMap {
         [Self::SequentialOnDark, Self::SequentialOnLight, Self::DivergingOnDark, Self::DivergingOnLight];
 
     /// Returns the colour of `t` in [0, 1]; values outside get the colour of the nearer end.
-    #[must_use]
     pub fn color(self, t: f64) -> [u8; 3] {
         let t = if t.is_nan() { 0.5 } else { t.clamp(0.0, 1.0) };
         let table = &TABLES[self as usize];
@@ -60,7 +59,6 @@ static TABLES: LazyLock<[[[u8; 3]; TABLE]; 4]> =
     LazyLock::new(|| ColorMap::ALL.map(|map| std::array::from_fn(|i| map.evaluate(i as f64 / (TABLE - 1) as f64))));
 
 /// Returns the position of `value` in `range`, in [0, 1]; 0.5 if the range is empty.
-#[must_use]
 pub fn position(value: f64, range: [f64; 2]) -> f64 {
     let [low, high] = range;
     // Halved so that the difference of two large numbers does not overflow.

@@ -67,7 +67,6 @@ pub enum RenderError {
 
 impl RenderError {
     /// Returns `true` if the machine has no usable graphics adapter, or its devices do not last.
-    #[must_use]
     pub fn is_missing_adapter(&self) -> bool {
         matches!(self, Self::NoAdapter { .. } | Self::Lost { .. })
     }
@@ -105,18 +104,12 @@ impl Gpu {
 
     /// Creates a device without a window, on the best adapter that draws. Not for web pages, which cannot wait for a
     /// device.
-    ///
-    /// # Errors
-    /// [`RenderError::NoAdapter`].
     pub fn headless() -> Result<Self, RenderError> {
         Self::headless_on(None)
     }
 
     /// Creates a device without a window, on the best adapter that draws and whose name contains `name`; `None` stands
     /// for `WGPU_ADAPTER_NAME`. Not for web pages, which cannot wait for a device.
-    ///
-    /// # Errors
-    /// [`RenderError::NoAdapter`].
     pub fn headless_on(name: Option<&str>) -> Result<Self, RenderError> {
         let search = adapter::offscreen(name);
         pollster::block_on(search.first_usable(async |candidate| Self::usable(candidate.adapter).await))
@@ -124,26 +117,22 @@ impl Gpu {
 
     /// Returns the first error of the device, or the reason of its loss. A device with a failure draws nothing, and
     /// waiting for it panics.
-    #[must_use]
     pub fn failure(&self) -> Option<String> {
         self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Returns the largest width or height of a texture that the GPU supports, pixels.
-    #[must_use]
     pub fn max_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
     /// Returns the number of samples per pixel of the body's pass. Every WebGPU adapter supports four. Software
     /// rendering uses one: with four a frame takes three times as long, and the body's outline is smooth without them.
-    #[must_use]
     pub fn samples(&self) -> u32 {
         if self.adapter.get_info().device_type == wgpu::DeviceType::Cpu { 1 } else { 4 }
     }
 
     /// Returns a description of the adapter, which marks software rendering.
-    #[must_use]
     pub fn describe(&self) -> String {
         adapter::describe(&self.adapter.get_info())
     }

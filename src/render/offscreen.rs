@@ -4,9 +4,6 @@ use super::{Gpu, RenderError};
 use crate::image::Picture;
 
 /// Waits for all submitted work, and copies a texture of four bytes a pixel, RGBA or BGRA, to memory.
-///
-/// # Errors
-/// [`RenderError::ReadBack`].
 pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, RenderError> {
     const PIXEL: u32 = 4;
     let failed = |reason: String| RenderError::ReadBack(reason);

@@ -127,9 +127,6 @@ impl Symbolic {
     /// columns with sorted rows: `column_starts` holds the start of each column and the end of the last, `row_indices` the
     /// row of every entry. The factor is simplicial up to 14 entries per unknown (`SPARSE`), supernodal beyond; faer's own
     /// choice is up to 2.6 times slower on these meshes.
-    ///
-    /// # Errors
-    /// [`SolverError::TooLarge`].
     pub fn new(column_starts: &[usize], row_indices: &[usize]) -> Result<Self, SolverError> {
         let n = column_starts.len().saturating_sub(1);
         let structure = SymbolicSparseColMat::new_checked(n, n, column_starts.to_vec(), None, row_indices.to_vec());
@@ -148,7 +145,6 @@ impl Symbolic {
     }
 
     /// Returns the number of rows of the matrix.
-    #[must_use]
     pub fn size(&self) -> usize {
         self.0.structure.ncols()
     }
@@ -230,9 +226,6 @@ impl std::fmt::Debug for Factor {
 
 impl Factor {
     /// Allocates memory for factors.
-    ///
-    /// # Errors
-    /// [`SolverError::TooLarge`].
     pub fn new(symbolic: &Symbolic) -> Result<Self, SolverError> {
         let n = symbolic.size();
         let [definite, indefinite] =
@@ -261,15 +254,12 @@ impl Factor {
     }
 
     /// Returns the approximate cost of a factorization in back substitutions; the same on every machine.
-    #[must_use]
     pub fn price(&self) -> f64 {
         self.symbolic.0.price
     }
 
-    /// Factorizes the positive definite matrix with these lower-triangle values, in the pattern's order.
-    ///
-    /// # Errors
-    /// [`SolverError::NotPositiveDefinite`]; the factor is then invalid until the next success.
+    /// Factorizes the positive definite matrix with these lower-triangle values, in the pattern's order. After a failure
+    /// the factor is invalid until the next success.
     pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), SolverError> {
         let analysis = &*self.symbolic.0;
         let (structure, matrix, side) = match &analysis.upper {
@@ -323,7 +313,6 @@ impl Factor {
 
     /// Returns the number of negative eigenvalues of the matrix of the last factor (Sylvester's law of inertia: those
     /// of B in L B Lᵀ).
-    #[must_use]
     pub fn negative_eigenvalues(&self) -> usize {
         let symbolic = self.symbolic.0.symbolic(self.kind);
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { return 0 };

@@ -50,9 +50,6 @@ enum Diagonal {
 
 /// Returns the two affine maps of a quadrilateral, one for each triangle (eqs. 21–22). They depend on the diagonal
 /// unless the deformation is affine.
-///
-/// # Errors
-/// The errors of [`Affine2::from_triangle`], for either triangle.
 fn quadrilateral_maps(
     rest: [Vector2<f64>; 4],
     deformed: [Vector2<f64>; 4],
@@ -78,9 +75,6 @@ struct Affine3 {
 impl Affine3 {
     /// Returns the map that takes the corners `rest` of a tetrahedron to `deformed`. It solves eq. (24) with one
     /// 3×3 inverse of the edge vectors instead of a 12×12 solve.
-    ///
-    /// # Errors
-    /// [`Affine3Error::CoplanarCorners`] for a rest tetrahedron without volume, [`Affine3Error::NotFinite`].
     fn from_tetrahedron(rest: [Vector3<f64>; 4], deformed: [Vector3<f64>; 4]) -> Result<Self, Affine3Error> {
         if !rest.iter().chain(&deformed).all(|p| p.iter().all(|v| v.is_finite())) {
             return Err(Affine3Error::NotFinite);
