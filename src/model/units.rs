@@ -102,8 +102,15 @@ pub enum UnitError {
         /// Expected quantity.
         expected: Quantity,
     },
-    /// A comma or a space in the number does not separate thousands and could mean a decimal point.
+    /// A comma in the number separates thousands, or is the decimal sign.
     Ambiguous {
+        /// Text as typed.
+        text: String,
+        /// The number with thousands, and the one with decimals.
+        readings: [String; 2],
+    },
+    /// A comma, a space or a second decimal point in the number is neither the decimal sign nor separates thousands.
+    Malformed {
         /// Text as typed.
         text: String,
     },
@@ -133,8 +140,14 @@ impl From<&UnitError> for Sentence {
             UnitError::NoNumber { text, expected } => {
                 sentence!("`%{text}` is not a number; expected %{expected}", text, expected)
             }
-            UnitError::Ambiguous { text } => sentence!(
-                "`%{text}` can be read in two ways: write a decimal point, or groups of three digits as in 30,000",
+            UnitError::Ambiguous { text, readings: [thousands, decimals] } => sentence!(
+                "`%{text}` can be read in two ways: write %{thousands} or %{decimals}",
+                text,
+                thousands,
+                decimals
+            ),
+            UnitError::Malformed { text } => sentence!(
+                "`%{text}` is not a number: numbers look like 1500000, 1 500 000 and 1.5e6, with a point before decimals",
                 text
             ),
             UnitError::UnknownUnit { text, unit, expected } => {
@@ -206,9 +219,17 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     let text = text.trim();
     let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
     let expected = || Quantity::in_unit(unit);
-    let plain = without_groups(text).ok_or_else(|| UnitError::Ambiguous { text: shown(text) })?;
+    let malformed = || UnitError::Malformed { text: shown(text) };
+    let Grouped { number: plain, commas } = without_groups(text).ok_or_else(malformed)?;
     let (number, rest) =
         split(&plain).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
+    if rest.starts_with('.') {
+        return Err(malformed());
+    }
+    if commas == 1 && !plain.strip_suffix(rest).is_some_and(|number| number.contains('.')) {
+        let readings = [shown(&plain), shown(&text.replacen(',', ".", 1))];
+        return Err(UnitError::Ambiguous { text: shown(text), readings });
+    }
     let rest = rest.trim();
     if rest.is_empty() {
         return Ok(number);
@@ -225,9 +246,16 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
 }
 
-/// Removes thousands separators (`30,000` and `30 000` become `30000`) and replaces a typographic minus by `-`; `None`
-/// if a comma or a space separates anything but groups of three digits.
-fn without_groups(text: &str) -> Option<Cow<'_, str>> {
+/// Text of a number without thousands separators and with `-` for a typographic minus.
+struct Grouped<'a> {
+    number: Cow<'a, str>,
+    /// Number of commas that separated thousands.
+    commas: usize,
+}
+
+/// Removes thousands separators (`1,234,567` and `30 000` become `1234567` and `30000`); `None` if a comma or a space
+/// separates anything but groups of three digits.
+fn without_groups(text: &str) -> Option<Grouped<'_>> {
     let text = text.trim();
     let sign = text.chars().next().filter(|c| "+-\u{2212}".contains(*c));
     let unsigned = text.get(sign.map_or(0, char::len_utf8)..)?;
@@ -253,11 +281,12 @@ fn without_groups(text: &str) -> Option<Cow<'_, str>> {
         return None;
     }
     if separator.is_none() && sign != Some('\u{2212}') {
-        return Some(Cow::Borrowed(text));
+        return Some(Grouped { number: Cow::Borrowed(text), commas: 0 });
     }
     let digits = whole.chars().filter(char::is_ascii_digit);
     let sign = sign.map(|sign| if sign == '\u{2212}' { '-' } else { sign });
-    Some(Cow::Owned(sign.into_iter().chain(digits).chain(rest.chars()).collect()))
+    let number = sign.into_iter().chain(digits).chain(rest.chars()).collect();
+    Some(Grouped { number: Cow::Owned(number), commas: whole.matches(',').count() })
 }
 
 /// Splits a text into the number at its start and the rest.

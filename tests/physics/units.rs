@@ -204,14 +204,15 @@ fn plain_numbers_are_si() {
     }
 }
 
-/// Groups of three digits may be separated by commas or spaces. A possible decimal comma is
-/// refused, with the correct notation.
+/// Groups of three digits may be separated by spaces, and by commas if these cannot be decimal signs. Another comma is
+/// refused, with both readings if there are two.
 #[test]
 fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
     for (text, value) in [
-        ("30,000", 3e4),
         ("30 000", 3e4),
         ("30\u{a0}000 N", 3e4),
+        ("1,000,000", 1e6),
+        ("1,234.5 N", 1234.5),
         ("-1,234,567.5 N", -1_234_567.5),
         ("\u{2212}2.5", -2.5),
         ("1 200 kN", 1.2e6),
@@ -221,10 +222,35 @@ fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
     ] {
         assert_eq!(parse(text, "N"), Ok(value), "{text}");
     }
-    for text in
-        ["0,5", "-0,5", "1,5 kN", "30,00", "30 00", "1,234 567", "30.000,5", "0,500", "1,,000", ",5", "1234,567"]
-    {
+    for (text, readings) in [
+        ("1,000 kN", "write 1000 kN or 1.000 kN"),
+        ("30,000", "write 30000 or 30.000"),
+        ("-1,234", "write -1234 or -1.234"),
+        ("1,000e3", "write 1000e3 or 1.000e3"),
+    ] {
         let refused = parse(text, "N").unwrap_err().to_string();
-        assert!(refused.contains("two ways") && refused.contains("decimal point"), "{text}: {refused}");
+        assert_eq!(refused, format!("`{text}` can be read in two ways: {readings}"));
+    }
+    for text in [
+        "0,5",
+        "-0,5",
+        "1,5 kN",
+        "30,00",
+        "30 00",
+        "1,234 567",
+        "30.000,5",
+        "0,500",
+        "1,,000",
+        ",5",
+        "1234,567",
+        "1.000.000",
+        "1.000.000 N",
+        "1..5",
+    ] {
+        let refused = parse(text, "N").unwrap_err().to_string();
+        assert!(
+            refused.contains("is not a number: numbers look like 1500000, 1 500 000 and 1.5e6"),
+            "{text}: {refused}"
+        );
     }
 }

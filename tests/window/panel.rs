@@ -126,7 +126,8 @@ fn values_out_of_range_are_refused_with_a_message() {
     let cases = [
         ("Force", "-5", "expected 0 to 1e15 N, got -5"),
         ("Force", "lots", "got \u{201c}lots\u{201d}"),
-        ("Force", "0,5", "can be read in two ways"),
+        ("Force", "0,5", "is not a number: numbers look like"),
+        ("Force", "30,000", "can be read in two ways: write 30000 or 30.000"),
         ("Force", "12 Pa", "is a pressure (Pa); expected a force (N)"),
         ("Direction", "400", "expected -360 to 360 °, got 400"),
         ("Gravity", "1e9", "m/s², got 1e9"),
