@@ -2,6 +2,7 @@
 //! ParaView). `warpbeam solve --out` also writes the course of a motion.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -236,12 +237,33 @@ pub(crate) fn csv_field(text: &str) -> Cow<'_, str> {
     }
 }
 
+/// Returns the columns `NAME_PART` of probes and supports, which are given by name, number and parts. A column that would
+/// stand twice has the number, too: `NAME.NUMBER_PART`.
+pub(crate) fn columns(of: &[(String, usize, &[&str])]) -> Vec<String> {
+    let parts = of.iter().flat_map(|(name, number, parts)| parts.iter().map(move |part| (name.clone(), number, part)));
+    let mut parts: Vec<_> = parts.collect();
+    loop {
+        let columns: Vec<String> = parts.iter().map(|(name, _, part)| format!("{name}_{part}")).collect();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        columns.iter().for_each(|column| *counts.entry(column).or_default() += 1);
+        if counts.len() == columns.len() {
+            return columns;
+        }
+        for ((name, number, _), column) in parts.iter_mut().zip(&columns) {
+            if counts.get(column.as_str()).is_some_and(|count| *count > 1) {
+                let _ = write!(name, ".{number}");
+            }
+        }
+    }
+}
+
 fn table_header(simulation: &Simulation) -> String {
     let mut text = String::from("t");
-    for probe in simulation.problem().probes() {
-        for column in ["x", "y", "u_x", "u_y", "v_x", "v_y"] {
-            let _ = write!(text, ",{}", csv_field(&format!("{}_{column}", probe.name)));
-        }
+    let parts: &[&str] = &["x", "y", "u_x", "u_y", "v_x", "v_y"];
+    let probes = simulation.problem().probes().iter().enumerate();
+    let probes: Vec<_> = probes.map(|(i, probe)| (probe.name.clone(), i, parts)).collect();
+    for column in columns(&probes) {
+        let _ = write!(text, ",{}", csv_field(&column));
     }
     text.push_str(",kinetic,elastic,potential,dissipated,integrator,pulses,mouse_spring\n");
     text

@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::contexts::Contexts;
 use super::solved::SolvedScene;
-use crate::export::csv_field;
+use crate::export::{columns, csv_field};
 use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 #[cfg(feature = "app")]
 use crate::render::AdapterReport;
@@ -400,17 +400,12 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
 /// Formats a load path as CSV.
 pub(super) fn path_table(scene: &Scene, path: &LoadPath) -> String {
     let mut text = String::from("load_factor");
-    let mut add = |name: &str, columns: &[&str]| {
-        for column in columns {
-            let _ = write!(text, ",{}", csv_field(&format!("{name}_{column}")));
-        }
-    };
-    for probe in &scene.probes {
-        add(&probe.name, &["u_x", "u_y"]);
-    }
-    for i in 0..scene.supports.len() {
-        let columns = ["displacement_x", "displacement_y", "turn", "force_x", "force_y", "moment"];
-        add(&support_name(scene, i), &columns);
+    let of_probe: &[&str] = &["u_x", "u_y"];
+    let of_support: &[&str] = &["displacement_x", "displacement_y", "turn", "force_x", "force_y", "moment"];
+    let probes = scene.probes.iter().enumerate().map(|(i, probe)| (probe.name.clone(), i, of_probe));
+    let supports = (0..scene.supports.len()).map(|i| (support_name(scene, i), i, of_support));
+    for column in columns(&probes.chain(supports).collect::<Vec<_>>()) {
+        let _ = write!(text, ",{}", csv_field(&column));
     }
     text.push_str(",stable_under_force\n");
     for state in &path.states {
