@@ -116,9 +116,9 @@ const LARGE_ERROR: f64 = 5.0;
 /// Ratio of the reference's own error to a large error above which both are stated.
 const COARSE: f64 = 0.25;
 
-/// Returns sentences about points that act on a node, and about held points too close to others, with the numbers of loads
-/// and supports in the panel.
-fn notes_on_points(simulation: &Simulation) -> Vec<Sentence> {
+/// Returns sentences about cuts through the mesh, about points that act on a node, and about held points too close to
+/// others, with the numbers of loads and supports in the panel.
+fn notes_on_mesh(simulation: &Simulation) -> Vec<Sentence> {
     let named = |key: &str| match key.split_once('.').and_then(|(kind, i)| Some((kind, i.parse::<usize>().ok()?))) {
         Some(("support", i)) => fill!("Support %{n}", n = i + 1),
         Some(("load", i)) => fill!("Load %{n}", n = i + 1),
@@ -127,7 +127,7 @@ fn notes_on_points(simulation: &Simulation) -> Vec<Sentence> {
     let moved = moved_points(simulation.scene(), simulation.mesh());
     let moved = moved.into_iter().map(|point| Sentence::from(&MovedPoint { key: named(&point.key), ..point }));
     let crowded = simulation.system().crowded_supports(|i| named(&format!("support.{i}")));
-    moved.chain(crowded).collect()
+    simulation.system().seams().iter().cloned().chain(moved).chain(crowded).collect()
 }
 
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
@@ -254,7 +254,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
     }
-    notes_on_points(simulation).iter().for_each(|note| add(said(note)));
+    notes_on_mesh(simulation).iter().for_each(|note| add(said(note)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         let is_new = |text: &String| remedy.is_none_or(|remedy| remedy.text != sentence(text));
         path.claims().map(|claim| said(&claim)).filter(is_new).for_each(&mut add);
@@ -358,7 +358,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         });
         return lines;
     }
-    lines.extend(notes_on_points(simulation).iter().map(|note| sentence(&said(note))));
+    lines.extend(notes_on_mesh(simulation).iter().map(|note| sentence(&said(note))));
     if *simulation.status() == Status::Accepted {
         let residual = number(two_digits(simulation.residual()));
         let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));

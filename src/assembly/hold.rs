@@ -73,9 +73,10 @@ pub(super) fn check_held(hold: Hold, mesh: &Mesh, analysis: Analysis) -> Result<
     }
     if hold.parts > 1 {
         let Hold { parts, loose, .. } = hold;
-        let message = format!(
+        let mut message = format!(
             "expected one connected body, got {parts} parts that share no nodes; supports leave {loose} of them free to move"
         );
+        mesh.seams().iter().for_each(|seam| message += &format!("; {seam}"));
         return Err(Invalid::new("mesh", message));
     }
     let message = sentence!(

@@ -65,6 +65,7 @@ struct MeshData {
     /// Computed on first use.
     recovery: OnceLock<Recovery>,
     strip: OnceLock<[f64; 2]>,
+    seams: OnceLock<Vec<Sentence>>,
     size: f64,
 }
 
@@ -89,6 +90,7 @@ impl MeshData {
             valence: valences.into_iter().max().unwrap_or(0),
             recovery: OnceLock::new(),
             strip: OnceLock::new(),
+            seams: OnceLock::new(),
             size: (high - low).norm(),
             mesh,
         }
@@ -250,6 +252,13 @@ impl System {
     /// Returns the equations of supports at points between nodes.
     pub(super) fn held_points(&self) -> &HeldPoints {
         &self.held
+    }
+
+    /// Returns sentences about places where the elements of a mesh that is not a beam's meet without sharing nodes.
+    #[cfg(feature = "cli")]
+    pub(crate) fn seams(&self) -> &[Sentence] {
+        let find = || if self.beam().is_some() { Vec::new() } else { self.mesh().seams() };
+        self.body.seams.get_or_init(find)
     }
 
     /// Returns sentences about held points whose reaction is 0 or depends on the mesh; `name` is the name of a support.

@@ -160,6 +160,7 @@ fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &Stress
     if simulation.passes_through_itself() {
         limits.push("the body passes through itself: contact is not modelled".to_owned());
     }
+    limits.extend(simulation.system().seams().iter().map(ToString::to_string));
     limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
     limits.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(ToString::to_string));
     let crowded = simulation.system().crowded_supports(|i| format!("support.{i}"));

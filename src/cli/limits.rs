@@ -21,7 +21,9 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     outputs.check()?;
     let (scene, system) = validated(&source)?;
-    let moved: Vec<String> = moved_points(&scene, system.mesh()).iter().map(ToString::to_string).collect();
+    let moved = moved_points(&scene, system.mesh());
+    let seams = system.seams().iter().map(ToString::to_string);
+    let notes: Vec<String> = seams.chain(moved.iter().map(ToString::to_string)).collect();
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
@@ -30,8 +32,8 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     outputs.write_table(|| table(&limits, &scene))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
     text::print(&match json {
-        true => as_json(&limits, &scene, &moved),
-        false => summary(&limits, &scene) + &text::notes(&moved),
+        true => as_json(&limits, &scene, &notes),
+        false => summary(&limits, &scene) + &text::notes(&notes),
     })?;
     Ok(ExitCode::SUCCESS)
 }

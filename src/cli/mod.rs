@@ -244,6 +244,7 @@ fn refused(source: &scene::Source, error: SimulationError) -> CliError {
 fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
     if source.built_in().is_none() {
         warn_of_millimetres(scene, system.size());
+        system.seams().iter().for_each(|seam| eprintln!("warpbeam: warning: {seam}"));
         warn_of_built_in_mesh(source, scene);
     }
 }

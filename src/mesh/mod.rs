@@ -14,6 +14,7 @@ mod gmsh;
 mod locate;
 mod recovery;
 mod refine;
+mod seam;
 
 pub(crate) use beam::{axis_angle, bent, straightened};
 pub use gmsh::GmshError;
