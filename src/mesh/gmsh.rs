@@ -28,9 +28,6 @@ pub enum GmshError {
         /// Expected content.
         expected: String,
     },
-    /// A binary file, or not a Gmsh file.
-    #[error("expected Gmsh format 4.1, ASCII, got a binary file; {SAVE_IT}")]
-    NotText,
     /// The file follows the format, but no mesh can be made of it: it has no triangles or quadrilaterals, elements of
     /// another shape, or too many elements.
     #[error("{0}")]
@@ -229,7 +226,8 @@ impl File {
             let name = section.strip_prefix('$').ok_or_else(|| lines.error("a section such as $Nodes"))?;
             match name {
                 "PhysicalNames" => file.read_names(&mut lines)?,
-                "Entities" => file.read_entities(&mut lines)?,
+                "Entities" => file.read_entities(&mut lines, false)?,
+                "PartitionedEntities" => file.read_entities(&mut lines, true)?,
                 "Nodes" => file.read_nodes(&mut lines)?,
                 "Elements" => file.read_elements(&mut lines)?,
                 _ => {}
@@ -255,17 +253,30 @@ impl File {
         Ok(())
     }
 
-    fn read_entities(&mut self, lines: &mut Lines<'_>) -> Result<(), GmshError> {
+    /// Reads the physical groups of the curves; those of a partitioned mesh are parts of others.
+    fn read_entities(&mut self, lines: &mut Lines<'_>, is_partitioned: bool) -> Result<(), GmshError> {
+        if is_partitioned {
+            lines.next("the number of partitions")?;
+            let ghosts: Vec<u64> = lines.numbers(1, "the number of ghost entities")?;
+            for _ in 0..ghosts[0] {
+                lines.next("a ghost entity")?;
+            }
+        }
         let counts: Vec<u64> = lines.numbers(4, "the numbers of points, curves, surfaces and volumes")?;
         for _ in 0..counts[0] {
             lines.next("a point")?;
         }
         for _ in 0..counts[1] {
             let expected = "a curve: tag, box, physical tags";
-            let curve: Vec<f64> = lines.numbers(8, expected)?;
-            let groups = curve[7].max(0.0) as usize;
-            let tags = curve.get(8..8usize.saturating_add(groups)).ok_or_else(|| lines.error(expected))?;
-            self.curve_groups.insert(curve[0] as i64, tags.iter().map(|&t| t as i64).collect());
+            let mut curve: Vec<f64> = lines.numbers(8, expected)?;
+            if is_partitioned {
+                // Between tag and box: dimension and tag of the whole, the number of partitions, and these.
+                let partitions = curve[3].max(0.0) as usize;
+                curve.drain(1..curve.len().min(partitions.saturating_add(4)));
+            }
+            let [tag, _, _, _, _, _, _, groups, rest @ ..] = &curve[..] else { return Err(lines.error(expected)) };
+            let tags = rest.get(..groups.max(0.0) as usize).ok_or_else(|| lines.error(expected))?;
+            self.curve_groups.insert(*tag as i64, tags.iter().map(|&t| t as i64).collect());
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{ElementKind, Invalid, MeshFile, Scene, SceneError, registry};
-use crate::mesh::{GmshError, Mesh};
+use crate::mesh::Mesh;
 use crate::sentence::Sentence;
 
 /// Largest accepted mesh file, bytes.
@@ -69,7 +69,8 @@ pub(super) fn read_mesh(scene: &mut Scene, folder: &Path) -> Result<(), Invalid>
                 return Err(failed(format!("expected at most {MAX_MESH_BYTES} bytes, got {size}")));
             }
             let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
-            String::from_utf8(bytes).map_err(|_| failed(GmshError::NotText.to_string()))?
+            // Only names may have other bytes than ASCII: a file that is not UTF-8 has them in Latin-1.
+            String::from_utf8(bytes).unwrap_or_else(|error| error.as_bytes().iter().copied().map(char::from).collect())
         }
     };
     mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));

@@ -61,12 +61,17 @@ impl Source {
         std::path::absolute(folder.join(".")).unwrap_or_else(|_| folder.to_owned())
     }
 
-    fn text(&self) -> Result<String, SceneError> {
-        match self.built_in() {
-            Some(built_in) => Ok(built_in.toml.to_owned()),
+    /// Returns the text of the scene, without the assignments.
+    ///
+    /// # Errors
+    /// [`SceneError::Read`], or [`SceneError::Syntax`] if the file is not UTF-8.
+    pub(crate) fn text(&self) -> Result<String, SceneError> {
+        let bytes = match self.built_in() {
+            Some(built_in) => return Ok(built_in.toml.to_owned()),
             None if self.is_stream() => self.read_stream(),
             None => read(&self.name),
-        }
+        };
+        decoded(&self.name, &bytes?)
     }
 
     /// Returns `true` for standard input and for pipes (`<(…)` in a shell), which can be read only once.
@@ -78,8 +83,8 @@ impl Source {
     }
 
     /// Reads the text of a stream and keeps it for later calls.
-    fn read_stream(&self) -> Result<String, SceneError> {
-        static TEXTS: Mutex<BTreeMap<PathBuf, Result<String, ReadError>>> = Mutex::new(BTreeMap::new());
+    fn read_stream(&self) -> Result<Vec<u8>, SceneError> {
+        static TEXTS: Mutex<BTreeMap<PathBuf, Result<Vec<u8>, ReadError>>> = Mutex::new(BTreeMap::new());
         let is_input = self.name == Path::new(STANDARD_INPUT);
         let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
         let text = texts.entry(self.name.clone()).or_insert_with(|| match is_input {
@@ -92,10 +97,27 @@ impl Source {
 }
 
 /// Reads a text up to the size limit of scenes.
-fn read_to_limit(stream: impl Read) -> Result<String, ReadError> {
-    let mut text = String::new();
-    let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_string(&mut text)? as u64;
+fn read_to_limit(stream: impl Read) -> Result<Vec<u8>, ReadError> {
+    let mut text = Vec::new();
+    let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_end(&mut text)? as u64;
     if bytes > MAX_FILE_BYTES { Err(too_large(bytes)) } else { Ok(text) }
+}
+
+/// Returns a scene's text; the error names the encoding and the line of the first byte that is not UTF-8.
+fn decoded(name: &Path, bytes: &[u8]) -> Result<String, SceneError> {
+    // The text of a scene has no zeros, but every second byte of UTF-16 is one.
+    let zero = bytes.iter().position(|&byte| byte == 0);
+    let invalid = str::from_utf8(bytes).err().map(|error| error.valid_up_to());
+    let Some(at) = invalid.or(zero) else { return Ok(String::from_utf8_lossy(bytes).into_owned()) };
+    let line = 1 + bytes.iter().take(at).filter(|&&byte| byte == b'\n').count();
+    let (got, encoding) = match bytes.get(at).filter(|_| zero.is_none()) {
+        Some(byte) => (format!("the byte 0x{byte:X}, as in Latin-1"), "LATIN1"),
+        None => ("UTF-16".to_owned(), "UTF-16"),
+    };
+    let message = format!(
+        "expected text in UTF-8, got {got}; save it as UTF-8, or convert it: `iconv -f {encoding} -t UTF-8 in.toml > out.toml`"
+    );
+    Err(SceneError::Syntax { file: Some(name.to_owned()), line: Some(line), message })
 }
 
 fn too_large(bytes: u64) -> ReadError {
@@ -136,7 +158,7 @@ impl Scene {
     }
 }
 
-fn read(path: &Path) -> Result<String, SceneError> {
+fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     let failed = |reason: ReadError| unreadable(path, reason);
     let metadata = std::fs::metadata(path).map_err(|e| failed(e.into()))?;
     if !metadata.is_file() {
@@ -145,7 +167,7 @@ fn read(path: &Path) -> Result<String, SceneError> {
     if metadata.len() > MAX_FILE_BYTES {
         return Err(failed(too_large(metadata.len())));
     }
-    std::fs::read_to_string(path).map_err(|e| failed(e.into()))
+    std::fs::read(path).map_err(|e| failed(e.into()))
 }
 
 /// Reads a scene from the text of `file`, applies assignments, and reads its mesh from `folder`.

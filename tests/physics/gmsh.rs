@@ -196,14 +196,15 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
     };
     fs::write(folder.path().join("square.msh"), SQUARE).unwrap();
     fs::write(folder.path().join("old.msh"), SQUARE.replacen("4.1 0 8", "2.2 0 8", 1)).unwrap();
-    fs::write(folder.path().join("binary.msh"), [&SQUARE.as_bytes()[..40], &[0xff, 0, 0xfe]].concat()).unwrap();
+    let binary = SQUARE.replacen("4.1 0 8", "4.1 1 8", 1);
+    fs::write(folder.path().join("binary.msh"), [&binary.as_bytes()[..40], &[0xff, 0, 0xfe]].concat()).unwrap();
     fs::write(folder.path().join("unnamed.msh"), SQUARE.replacen("1 7 0\n", "0 0\n", 1)).unwrap();
     fs::write(folder.path().join("parts.msh"), in_parts()).unwrap();
     for (file, edge, code, message) in [
         ("square.msh", "wall", 0, ""),
         ("missing.msh", "wall", 2, "scene.toml:3: mesh.file:"),
         ("old.msh", "wall", 2, "scene.toml:3: mesh.file: old.msh: line 2: expected Gmsh format 4.1"),
-        ("binary.msh", "wall", 2, "got a binary file; save it with `gmsh in.msh -save -format msh41 -o out.msh`"),
+        ("binary.msh", "wall", 2, "got version 4.1, binary; save it with `gmsh in.msh -save -format msh41 -o out.msh`"),
         ("square.msh", "left", 2, "scene.toml:9: support.0.edge: expected one of wall, got \"left\""),
         ("unnamed.msh", "wall", 2, "Gmsh saves only the physical groups if there are any"),
         ("parts.msh", "wall", 2, "scene.toml:2: mesh: expected one connected body, got 2 parts that share no nodes"),
