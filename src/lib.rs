@@ -82,7 +82,7 @@
 //! ```
 //!
 //! A module imports only from its own layer and from layers to its left: `format`, `sentence`, `progress`, `timings`,
-//! `simd`, `image` → `model`, the scene's data → `rotation`, `displacement`, `material`, `state`, `continuation`,
+//! `simd`, `image`, `atomic_write` → `model`, the scene's data → `rotation`, `displacement`, `material`, `state`, `continuation`,
 //! `exact_beam` → `element` → `mesh`, `article` → `scene` → `solver` → `assembly` → `method`, `dynamics`, `stress`,
 //! `section` → `simulation` → `export`, `study` → `plot` → `render` → the window → the commands. A test holds this
 //! order (`LAYERS` in `tests/style/architecture.rs`).
@@ -110,6 +110,8 @@ pub mod app;
 mod article;
 #[doc(hidden)]
 pub mod assembly;
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
+mod atomic_write;
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 #[doc(hidden)]
 pub mod cli;

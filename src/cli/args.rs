@@ -258,7 +258,7 @@ pub(super) struct TuneArgs {
     /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or a number of milliseconds.
     #[arg(long, value_name = "TIME", value_parser = parse_milliseconds)]
     pub time: Option<f64>,
-    /// Save the scene with the chosen setting.
+    /// Save the scene with the chosen setting; the rest of its text stays as it is.
     #[arg(long, value_name = "FILE.toml")]
     pub write: Option<PathBuf>,
 }

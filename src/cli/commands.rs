@@ -10,6 +10,7 @@ use super::solved::{SolvedScene, Spent};
 use super::{
     CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text, validated,
 };
+use crate::atomic_write;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
@@ -297,10 +298,12 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
         }
         tuning => tuning.map_err(failed(&source))?,
     };
-    if let Some(path) = &write {
-        export::write_text(path, &tuned(&scene, &tuning, &source, path).to_toml()?)?;
-    }
     text::print(&format!("{tuning}\n"))?;
+    if let Some(path) = &write {
+        let text = scene::edited(&source.text()?, &tuned(&scene, &tuning, &source, path))?;
+        let failed = |source| ExportError::Write { path: path.display().to_string(), source };
+        atomic_write::save(path, text.as_bytes()).map_err(failed)?;
+    }
     if tuning.is_partial {
         return Ok(ended(true, "finer meshes have not been measured"));
     }

@@ -382,6 +382,18 @@ pub(crate) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> 
     Some(parse(text, unit).map_err(|error| Invalid::new(key, &error)))
 }
 
+/// Writes a number for `key` in the unit of the text `before`; `None` if no decimal number in that unit is exactly `value`.
+#[cfg(feature = "cli")]
+pub(crate) fn in_unit_of(before: &str, key: &str, value: f64) -> Option<String> {
+    let unit = unit_of(key)?;
+    let plain = without_groups(before.trim())?.number;
+    let (_, typed) = split(&plain)?;
+    let one = parse(&format!("1{typed}"), unit).ok()?;
+    let rounded = (14..17).filter_map(|digits| format!("{:.digits$e}", value / one).parse::<f64>().ok());
+    let mut written = rounded.map(|number| format!("{number}{typed}"));
+    written.find(|text| parse(text, unit) == Ok(value))
+}
+
 /// Replaces every number that is written with its unit in a TOML text by the plain number, keeping line numbers, so
 /// that later errors refer to lines of the file. `rename` maps a key of the text to a key of the scene. A text that is
 /// not TOML is returned unchanged; a later parser reports it.
@@ -435,7 +447,8 @@ fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut FoundUnits) -> R
     Ok(())
 }
 
-fn toml_number(value: f64) -> String {
+/// Writes a number as TOML.
+pub(crate) fn toml_number(value: f64) -> String {
     if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
 }
 

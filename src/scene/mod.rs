@@ -3,12 +3,16 @@
 //! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`] and every name
 //! against the existing ones; its errors contain the expected value.
 
+#[cfg(feature = "cli")]
+mod edit;
 mod kinds;
 mod mesh;
 mod open;
 pub mod registry;
 mod required;
 
+#[cfg(feature = "cli")]
+pub use edit::edited;
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use mesh::built_in_mesh;
 pub use open::{STANDARD_INPUT, Source, locate, open};

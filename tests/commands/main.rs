@@ -9,6 +9,7 @@ mod cli;
 #[cfg(feature = "app")]
 mod docs;
 mod examples;
+mod files;
 mod limits;
 mod packages;
 #[cfg(feature = "app")]

@@ -31,6 +31,7 @@ mod point_values;
 mod precision;
 mod pulses;
 mod reference;
+mod scene_text;
 mod sections;
 mod stress;
 mod study;

@@ -13,7 +13,7 @@ use crate::files::rust_files;
 /// Layers from the lowest to the highest, with their files and folders in `src`. The longest matching entry counts;
 /// `lib` is the crate's root.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("foundations", &["format", "sentence", "progress", "timings", "simd", "image"]),
+    ("foundations", &["format", "sentence", "progress", "timings", "simd", "image", "atomic_write"]),
     ("model", &["model"]),
     ("kinematics", &["rotation", "displacement", "material", "state", "continuation", "exact_beam"]),
     ("element", &["element"]),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::app::platform::{IS_PAGE, files};
-use crate::scene::{MeshFile, Scene, SceneError, Source, built_in_mesh};
+use crate::scene::{self, MeshFile, Scene, SceneError, Source, built_in_mesh};
 use crate::sentence::{Sentence, sentence};
 
 /// Name of a scene's file or built-in scene, and the scene as it is stored there.
@@ -108,7 +108,8 @@ impl Document {
         scene
     }
 
-    /// Writes a scene to a file, and returns the document of that file. A built-in mesh is written beside it.
+    /// Writes a scene to a file, as an edit of the text that was read, and returns the document of that file. A built-in
+    /// mesh is written beside it.
     ///
     /// # Errors
     /// [`SaveError`]; the file is unchanged.
@@ -117,7 +118,8 @@ impl Document {
         if let Some(mesh) = written.mesh.as_mut().filter(|_| !IS_PAGE) {
             save_built_in_mesh(mesh, path)?;
         }
-        let toml = written.to_toml()?;
+        let read = self.text.as_deref().map(str::to_owned).or_else(|| files::text(&self.source));
+        let toml = scene::edited(&read.unwrap_or_default(), &written)?;
         files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
         let source = Source { name: path.to_owned(), assignments: Vec::new() };
         let saved = Self::with_text(source, scene.clone(), Some(toml.into()));
@@ -146,4 +148,38 @@ fn save_built_in_mesh(mesh: &mut MeshFile, path: &Path) -> Result<(), SaveError>
 /// Returns the absolute path of a file's folder; `None` on a page, which has none.
 fn folder(path: &Path) -> Option<PathBuf> {
     path.parent().and_then(|folder| std::path::absolute(folder.join(".")).ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Saving changes only what was edited, also in another file and a second time. A file that may not be written stays.
+    #[test]
+    fn a_saved_scene_keeps_its_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, copy] = ["mine.toml", "copy.toml"].map(|name| folder.path().join(name));
+        let own = include_str!("../../../tests/data/files/commented.toml");
+        std::fs::write(&path, own).unwrap();
+        let opened = Document::open(Source { name: path.clone(), assignments: Vec::new() }).unwrap();
+        let unedited = opened.save(&opened.original, &path).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), own);
+        let mut scene = opened.original.clone();
+        scene.material.young = 3e6;
+        let saved = unedited.save(&scene, &copy).unwrap();
+        let edited = own.replace("1 N/mm²", "3 N/mm²");
+        assert_eq!(std::fs::read_to_string(&copy).unwrap(), edited);
+        scene.material.young = 4e6;
+        saved.save(&scene, &copy).unwrap();
+        assert_eq!(std::fs::read_to_string(&copy).unwrap(), own.replace("1 N/mm²", "4 N/mm²"));
+        let mut permissions = std::fs::metadata(&copy).unwrap().permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(&copy, permissions).unwrap();
+        let refused = saved.save(&opened.original, &copy).unwrap_err().to_string();
+        assert!(refused.contains("copy.toml: the file is read-only"), "{refused}");
+        // The text of a built-in scene is kept, too.
+        let built_in = Document::open(Source { name: "article".into(), assignments: Vec::new() }).unwrap();
+        built_in.save(&built_in.original, &path).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), crate::scene::registry::find("article").unwrap().toml);
+    }
 }

@@ -2,8 +2,14 @@
 
 use std::path::PathBuf;
 
-pub(crate) use crate::app::platform::desktop::atomic_write::{save, save_without_sync};
+pub(crate) use crate::atomic_write::{save, save_without_sync};
+use crate::scene::Source;
 pub(crate) use crate::scene::open;
+
+/// Returns the text of a scene.
+pub(crate) fn text(source: &Source) -> Option<String> {
+    source.text().ok()
+}
 
 /// Asks the browser for scene files.
 pub(crate) fn choose() {}

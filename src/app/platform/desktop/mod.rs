@@ -1,6 +1,5 @@
 //! Desktop: files on disk, the system clipboard, a window of its own.
 
-mod atomic_write;
 pub(crate) mod clipboard;
 pub(crate) mod copies;
 pub(crate) mod files;

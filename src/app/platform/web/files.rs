@@ -32,14 +32,11 @@ thread_local! {
 /// # Errors
 /// [`SceneError`].
 pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
-    let text = |name: &str| STORE.with_borrow(|store| store.texts.get(name).cloned());
-    let Some(toml) = source.name.to_str().and_then(text).filter(|_| source.built_in().is_none()) else {
-        return scene::open(source);
-    };
+    let Some(toml) = chosen(source) else { return scene::open(source) };
     let mut scene = Scene::from_toml(&toml)?;
     let Some(mesh) = &mut scene.mesh else { return Ok(scene) };
     let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let Some(read) = text(name) else {
+    let Some(read) = stored(name) else {
         // The meshes of the built-in scenes are part of the library.
         let file = mesh.file.as_str();
         let message = sentence!("%{file}: expected the mesh file together with its scene file", file);
@@ -50,6 +47,20 @@ pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
     mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&read));
     mesh.text = Some(read.into());
     Ok(scene)
+}
+
+fn stored(name: &str) -> Option<String> {
+    STORE.with_borrow(|store| store.texts.get(name).cloned())
+}
+
+/// Returns the text of a scene file that the user has chosen.
+fn chosen(source: &Source) -> Option<String> {
+    source.name.to_str().and_then(stored).filter(|_| source.built_in().is_none())
+}
+
+/// Returns the text of a scene.
+pub(crate) fn text(source: &Source) -> Option<String> {
+    chosen(source).or_else(|| source.text().ok())
 }
 
 /// Adds the text of a scene that came with the page's address, and returns its name.
