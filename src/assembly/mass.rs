@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::pattern::Pattern;
 use super::{Matrix, System};
 
 /// Nodal masses of a body, kg.
@@ -95,6 +96,41 @@ impl Mass {
                 result[b] += v[a] * *mass;
             }
         }
+    }
+
+    /// Returns the acceleration of every node, m/s², under nodal forces, N; fixed unknowns and held points rest.
+    #[must_use]
+    pub(crate) fn acceleration(&self, pattern: &Pattern, force: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+        // Conjugate gradients, preconditioned by the lumped masses: the condition does not depend on the mesh (Wathen 1987).
+        const MOST: u32 = 200;
+        const TOLERANCE: f64 = 1e-13;
+        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let scaled = |residual: &[f64]| -> Vec<f64> {
+            residual.iter().zip(pattern.free()).map(|(r, &unknown)| r / self.lumped[unknown as usize / 2]).collect()
+        };
+        let (mut acceleration, mut momentum) = (vec![Vector2::zeros(); force.len()], force.to_vec());
+        let mut residual = vec![0.0; pattern.dofs()];
+        pattern.restrict(force, &mut residual);
+        let mut direction = scaled(&residual);
+        let mut norm = product(&residual, &direction);
+        let (goal, mut image) = (TOLERANCE * TOLERANCE * norm, residual.clone());
+        for _ in 0..MOST {
+            if norm.is_nan() || norm <= goal {
+                break;
+            }
+            let mut nodal = vec![Vector2::zeros(); force.len()];
+            pattern.add_free(&direction, 1.0, &mut nodal);
+            self.multiply(&nodal, &mut momentum);
+            pattern.restrict(&momentum, &mut image);
+            let length = norm / product(&direction, &image);
+            acceleration.iter_mut().zip(&nodal).for_each(|(a, d)| *a += d * length);
+            residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= i * length);
+            let next = scaled(&residual);
+            let after = product(&residual, &next);
+            direction.iter_mut().zip(&next).for_each(|(d, next)| *d = next + *d * (after / norm));
+            norm = after;
+        }
+        acceleration
     }
 
     /// Returns v M v.

@@ -45,6 +45,11 @@ impl Side {
         self.line.normal().dot(&(at - self.line.at))
     }
 
+    /// Returns the distance of a rest position from [`SectionLine::at`] along the tangent, m.
+    pub fn along(&self, at: Vector2<f64>) -> f64 {
+        self.line.tangent().dot(&(at - self.line.at))
+    }
+
     /// Returns `true` if a rest position is in front.
     pub fn is_in_front(&self, at: Vector2<f64>) -> bool {
         self.distance(at) > self.least
@@ -133,7 +138,6 @@ fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
     if nodes.iter().all(is_in_front) || !nodes.iter().any(is_in_front) {
         return None;
     }
-    let tangent = side.line.tangent();
     let points = mesh.sides(nodes).flat_map(|segment| {
         let rest: Vec<Vector2<f64>> = segment.nodes().iter().map(|&node| mesh.node(node)).collect();
         let point = |xi: f64| {
@@ -144,7 +148,7 @@ fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
                 .map(|(&node, (weight, _))| (node, weight))
                 .collect();
             let at: Vector2<f64> = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
-            CutPoint { along: tangent.dot(&(at - side.line.at)), weights }
+            CutPoint { along: side.along(at), weights }
         };
         side.crossings(&rest).into_iter().map(point).collect::<Vec<_>>()
     });

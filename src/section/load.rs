@@ -1,15 +1,16 @@
 //! Loads and reactions between a line and the nodes in front of it.
 //!
-//! Weight, edge loads, and forces and reactions at points act on nodes in the discrete problem. The nodes in front of a line carry other loads than the
+//! Weight, inertia, edge loads, and forces and reactions at points act on nodes in the discrete problem. The nodes in front of a line carry other loads than the
 //! part of the body in front of it; the difference is that of the elements which the line crosses.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
 
 use super::cut::{Cut, Side};
-use crate::assembly::{Forces, Problem};
-use crate::element::{integrate_side, side_weights};
+use crate::assembly::{NodeWeights, Problem};
+use crate::element::{Lame, integrate_side, side_weights};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::scene::{Load, Place, Pulse};
 
@@ -37,86 +38,130 @@ impl Wrench {
     }
 }
 
-/// Returns, for an equilibrium, the loads and reactions on the part of a body in front of a cut, minus those on the nodes in
+/// Forces and accelerations of a state that sections balance.
+#[derive(Debug)]
+pub(crate) struct NodalBalance<'a> {
+    /// Factor of the loads.
+    pub load_factor: f64,
+    /// Forces minus inertia of every node, N: on fixed unknowns minus the reaction.
+    pub residual: Cow<'a, [Vector2<f64>]>,
+    /// Force of the mouse spring, N.
+    pub mouse_spring: Vector2<f64>,
+    /// Inertia and viscous stress; `None` at rest.
+    pub motion: Option<MotionBalance>,
+}
+
+/// Part of the balance that a body at rest lacks.
+#[derive(Debug)]
+pub(crate) struct MotionBalance {
+    /// Acceleration of every node plus that of mass-proportional damping, m/s².
+    pub acceleration: Vec<Vector2<f64>>,
+    /// Moduli of the viscous stress, N s/m.
+    pub viscosity: Lame,
+    /// Displacement at which the viscous stress acts, m.
+    pub damped: Vec<Vector2<f64>>,
+}
+
+/// Returns the loads, the reactions and the inertia of the part of a body in front of a cut, minus those of the nodes in
 /// front: force, N, and moment about `middle`, N m.
 pub(super) fn beyond_nodes(
     problem: &Problem,
     shape: &PlacedMesh<'_>,
     cut: &Cut,
-    (load_factor, forces): (f64, &Forces),
+    (balance, time): (&NodalBalance<'_>, f64),
     middle: Vector2<f64>,
 ) -> Wrench {
+    let mesh = shape.mesh;
     let mut sum = Wrench::default();
-    for (support, force) in problem.supports().point_forces(forces.residual()) {
-        shape.add_point_load(cut, support.middle, force, middle, &mut sum);
+    for (support, force) in problem.supports().point_forces(&balance.residual) {
+        shape.add_point_load(cut, mesh.locate(support.middle), force, middle, &mut sum);
     }
-    let factor = |pulse: &Option<Pulse>| load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(0.0));
-    let mut weight = Vector2::zeros();
+    if let Some(spring) = problem.mouse_spring() {
+        shape.add_point_load(cut, Some(spring.point()), balance.mouse_spring, middle, &mut sum);
+    }
+    let factor = |pulse: &Option<Pulse>| balance.load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(time));
+    let mut gravity = Vector2::zeros();
     for load in problem.scene_loads() {
         match load {
-            Load::Gravity { acceleration, pulse } => {
-                weight += Vector2::from(*acceleration) * (factor(pulse) * problem.material().area_density());
-            }
+            Load::Gravity { acceleration, pulse } => gravity += Vector2::from(*acceleration) * factor(pulse),
             Load::Force { place: Place::Edge(name), force, pulse, .. } => {
                 shape.add_edge_load(cut, name, Vector2::from(*force) * factor(pulse), middle, &mut sum);
             }
             Load::Force { place: Place::At(at), at_point: true, force, pulse } => {
-                shape.add_point_load(cut, (*at).into(), Vector2::from(*force) * factor(pulse), middle, &mut sum);
+                let force = Vector2::from(*force) * factor(pulse);
+                shape.add_point_load(cut, mesh.locate((*at).into()), force, middle, &mut sum);
             }
             _ => {}
         }
     }
-    if weight != Vector2::zeros() {
+    let acceleration = balance.motion.as_ref().map(|motion| motion.acceleration.as_slice());
+    if gravity != Vector2::zeros() || acceleration.is_some() {
+        let density = problem.material().area_density();
         for &element in &cut.elements {
-            shape.add_weight(element, cut.side(), weight, middle, &mut sum);
+            shape.add_body_force(element, cut.side(), middle, &mut sum, |weights| {
+                let inertia = acceleration.map_or_else(Vector2::zeros, |acceleration| mean(acceleration, weights));
+                (gravity - inertia) * density
+            });
         }
     }
     sum
 }
 
-impl PlacedMesh<'_> {
-    fn position(&self, weights: impl Iterator<Item = (u32, f64)>) -> Vector2<f64> {
-        weights.map(|(node, weight)| self.positions[node as usize] * weight).sum()
-    }
+/// Interpolates a nodal field.
+fn mean(nodal: &[Vector2<f64>], weights: &[(u32, f64)]) -> Vector2<f64> {
+    weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
+}
 
-    /// Adds the weight, N/m², of the part of an element in front, minus that of its nodes in front.
-    fn add_weight(&self, element: usize, side: Side, weight: Vector2<f64>, middle: Vector2<f64>, sum: &mut Wrench) {
-        let mesh = self.mesh;
+impl PlacedMesh<'_> {
+    /// Adds a force per area, N/m², on the part of an element in front, minus that on its nodes in front.
+    fn add_body_force(
+        &self,
+        element: usize,
+        side: Side,
+        middle: Vector2<f64>,
+        sum: &mut Wrench,
+        per_area: impl Fn(&[(u32, f64)]) -> Vector2<f64>,
+    ) {
+        let (mesh, entry) = (self.mesh, self.mesh.entry());
         let Some(nodes) = mesh.elements().nth(element) else { return };
         let rest: Vec<Vector2<f64>> = nodes.iter().map(|&node| mesh.node(node)).collect();
-        for (&node, area) in nodes.iter().zip(mesh.entry().nodal_areas(&rest)) {
-            if side.is_in_front(mesh.node(node)) {
-                sum.add(self.positions[node as usize] - middle, weight * -area);
+        let at_place = |place: [f64; 2], area: f64| -> (NodeWeights, Vector2<f64>) {
+            let weights: NodeWeights = nodes.iter().copied().zip((entry.shape)(place)).collect();
+            let force = per_area(&weights) * (area * entry.jacobian(&rest, place).determinant());
+            (weights, force)
+        };
+        for point in entry.mass_points {
+            let (weights, force) = at_place(point.at, point.weight);
+            for (node, weight) in weights.into_iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
+                sum.add(self.positions[node as usize] - middle, force * -weight);
             }
         }
-        let corners = part_in_front(mesh, nodes, side);
-        let Some((first, others)) = corners.split_first() else { return };
-        for pair in others.windows(2) {
-            let triangle = [*first, pair[0], pair[1]];
-            let area = 0.5 * (triangle[1] - triangle[0]).perp(&(triangle[2] - triangle[0]));
-            // The middles of the sides, exact to degree 2.
-            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                let at = (triangle[a] + triangle[b]) * 0.5;
-                let place = mesh.place_in(element, at);
-                let weights = place.and_then(|at| mesh.weights(MaterialPoint { element, at }));
-                if let Some(weights) = weights {
-                    sum.add(self.position(weights.into_iter()) - middle, weight * (area / 3.0));
-                }
-            }
+        for line in outline_in_front(mesh, element, &rest, side) {
+            visit_fan(&line, &mut |place, area| {
+                let (weights, force) = at_place(place.into(), area);
+                sum.add(mean(self.positions, &weights) - middle, force);
+            });
         }
     }
 
     /// Adds the force, N, at a point inside an element of the cut if the point is in front, minus its parts on the nodes
     /// in front.
-    fn add_point_load(&self, cut: &Cut, at: Vector2<f64>, force: Vector2<f64>, middle: Vector2<f64>, sum: &mut Wrench) {
+    fn add_point_load(
+        &self,
+        cut: &Cut,
+        point: Option<MaterialPoint>,
+        force: Vector2<f64>,
+        middle: Vector2<f64>,
+        sum: &mut Wrench,
+    ) {
         let (mesh, side) = (self.mesh, cut.side());
-        let Some(point) = mesh.locate(at).filter(|point| cut.elements.contains(&point.element)) else { return };
+        let Some(point) = point.filter(|point| cut.elements.contains(&point.element)) else { return };
         let Some(weights) = mesh.weights(point) else { return };
         for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
             sum.add(self.positions[node as usize] - middle, force * -weight);
         }
-        if side.is_in_front(at) {
-            sum.add(self.position(weights.into_iter()) - middle, force);
+        if side.is_in_front(mean(mesh.nodes(), &weights)) {
+            sum.add(mean(self.positions, &weights) - middle, force);
         }
     }
 
@@ -145,8 +190,8 @@ impl PlacedMesh<'_> {
             for part in ends.windows(2) {
                 if is_in_front {
                     integrate_side(&nodes, [part[0], part[1]], |shape, length| {
-                        let at = self.position(segment.nodes().iter().copied().zip(shape.iter().copied()));
-                        sum.add(at - middle, per_length * length);
+                        let weights: NodeWeights = segment.nodes().iter().copied().zip(shape.iter().copied()).collect();
+                        sum.add(mean(self.positions, &weights) - middle, per_length * length);
                     });
                 }
                 is_in_front = !is_in_front;
@@ -155,24 +200,66 @@ impl PlacedMesh<'_> {
     }
 }
 
-/// Returns the corners of the part of an element in front at rest, counter-clockwise; curved sides become straight
-/// between their nodes.
-fn part_in_front(mesh: &Mesh, nodes: &[u32], side: Side) -> Vec<Vector2<f64>> {
-    let outline: Vec<Vector2<f64>> = mesh
-        .sides(nodes)
-        .flat_map(|segment| {
-            // The last node of a side is the first of the next.
-            let (_, own) = segment.nodes().split_last().unwrap_or((&0, &[]));
-            own.iter().map(|&node| mesh.node(node)).collect::<Vec<_>>()
-        })
-        .collect();
-    let mut part = Vec::new();
-    for (i, &from) in outline.iter().enumerate() {
-        let to = outline[(i + 1) % outline.len()];
-        if side.is_in_front(from) {
-            part.push(from);
+/// Points of a line on the outline of a part of an element, in reference coordinates, with their weights: the steps
+/// along the line that they stand for.
+type OutlinePoints = Vec<(Vector2<f64>, Vector2<f64>)>;
+
+/// Gauss points and weights on [0, 1], exact to degree 9.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_0, 0.118_463_442_528_094_5),
+    (0.230_765_344_947_158_5, 0.239_314_335_249_683_2),
+    (0.5, 0.284_444_444_444_444_4),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_2),
+    (0.953_089_922_969_332_0, 0.118_463_442_528_094_5),
+];
+
+/// Returns the outline of the part of an element in front at rest, counter-clockwise: parts of its sides, curved or not,
+/// and of the line of the cut.
+fn outline_in_front(mesh: &Mesh, element: usize, rest: &[Vector2<f64>], side: Side) -> Vec<OutlinePoints> {
+    let entry = mesh.entry();
+    let (mut outline, mut crossings) = (Vec::new(), Vec::new());
+    for own in entry.sides {
+        let (Some(&first), Some(&last)) = (own.first(), own.last()) else { continue };
+        let nodes: Vec<Vector2<f64>> = own.iter().map(|&node| rest[node]).collect();
+        let [from, to] = [first, last].map(|node| Vector2::from(entry.nodes[node]));
+        let place = |xi: f64| from + (to - from) * (0.5 * (xi + 1.0));
+        let mut ends = vec![-1.0];
+        ends.extend(side.crossings(&nodes));
+        crossings.extend(ends[1..].iter().map(|&xi| place(xi)));
+        ends.push(1.0);
+        let mut is_in_front = side.is_in_front(nodes[0]);
+        for part in ends.windows(2) {
+            if is_in_front {
+                let [from, to] = [place(part[0]), place(part[1])];
+                outline.push(GAUSS.map(|(s, weight)| (from + (to - from) * s, (to - from) * weight)).to_vec());
+            }
+            is_in_front = !is_in_front;
         }
-        part.extend(side.crossings(&[from, to]).into_iter().map(|xi| from + (to - from) * (0.5 * (xi + 1.0))));
     }
-    part
+    let position = |place: &Vector2<f64>| -> Vector2<f64> {
+        rest.iter().zip((entry.shape)((*place).into())).map(|(x, n)| x * n).sum()
+    };
+    let mut crossings: Vec<Vector2<f64>> = crossings.iter().map(position).collect();
+    crossings.sort_by(|a, b| side.along(*b).total_cmp(&side.along(*a)));
+    // The part in front is on the left of the cut seen against its tangent.
+    for pair in crossings.chunks_exact(2) {
+        let step = pair[1] - pair[0];
+        let point = |(s, weight): (f64, f64)| {
+            let place = mesh.place_in(element, pair[0] + step * s)?;
+            Some((place.into(), entry.jacobian(rest, place).try_inverse()? * step * weight))
+        };
+        outline.push(GAUSS.into_iter().filter_map(point).collect());
+    }
+    outline
+}
+
+/// Calls `visit` at points of the triangle between a line and the origin of the reference coordinates, with the area in
+/// reference coordinates that each stands for, negative where the line runs clockwise. For the lines of a closed outline,
+/// the integral of a polynomial is that over the area inside.
+fn visit_fan(line: &[(Vector2<f64>, Vector2<f64>)], visit: &mut dyn FnMut(Vector2<f64>, f64)) {
+    for (place, step) in line {
+        for (radius, weight) in GAUSS {
+            visit(place * radius, weight * radius * place.perp(step));
+        }
+    }
 }

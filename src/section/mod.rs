@@ -7,7 +7,8 @@
 //! G = Σ fₑ,ₐ,  M = Σ (xₐ − c) × fₑ,ₐ  over a ∈ A and the elements e with nodes on both sides
 //!
 //! are force and moment of the part in front on the part behind, on every mesh and for every line. They balance the
-//! loads on the nodes in front; `load.rs` adds the distributed loads between these nodes and the line.
+//! loads on the nodes in front, and in a motion their inertia; `load.rs` adds loads and inertia between these nodes and the
+//! line.
 
 mod cut;
 mod load;
@@ -17,8 +18,8 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::assembly::{Forces, Kinematics, Problem, System};
-use crate::element::Rotations;
+use crate::assembly::{Kinematics, Problem, System};
+use crate::element::{Rotations, StrainRate};
 use crate::mesh::{axis_angle, straightened};
 use crate::model::{Beam, SectionLine};
 use crate::rotation::Rotation;
@@ -28,6 +29,7 @@ use crate::state::State;
 use crate::stress::NodalStress;
 use cut::{Cut, CutPoint};
 pub use load::Wrench;
+pub(crate) use load::{MotionBalance, NodalBalance};
 use load::{PlacedMesh, beyond_nodes};
 
 /// Reason why a line has no section.
@@ -94,8 +96,10 @@ pub struct Section {
     pub line: SectionLine,
     /// Ends of the cut at rest, m, in the order of the tangent.
     pub rest: [Vector2<f64>; 2],
-    /// Ends of the cut in the current state, m; those at rest in linear theory.
+    /// Ends of the cut in the current state, m.
     pub ends: [Vector2<f64>; 2],
+    /// Ends of the cut that axes and lever arms refer to, m: those at rest in linear theory, else the current ones.
+    axis: [Vector2<f64>; 2],
     /// Force, N.
     pub force: Vector2<f64>,
     /// Components of the force in the axes of the current cut, and the moment.
@@ -107,42 +111,43 @@ pub struct Section {
 }
 
 impl Section {
-    /// Returns the middle of the cut in the current state, m.
+    /// Returns the middle of the cut, m, about which [`SectionForces::moment`] acts: in linear theory at rest, else in the
+    /// current state.
     #[must_use]
     pub fn middle(&self) -> Vector2<f64> {
-        (self.ends[0] + self.ends[1]) * 0.5
+        (self.axis[0] + self.axis[1]) * 0.5
     }
 
-    /// Returns the unit tangent in the current state, from the first end to the second.
+    /// Returns the unit tangent from the first end to the second: in linear theory at rest, else in the current state.
     #[must_use]
     pub fn tangent(&self) -> Vector2<f64> {
-        (self.ends[1] - self.ends[0]).normalize()
+        (self.axis[1] - self.axis[0]).normalize()
     }
 
-    /// Returns the unit normal in the current state: the tangent, rotated clockwise by 90°.
+    /// Returns the unit normal: the tangent, rotated clockwise by 90°.
     #[must_use]
     pub fn normal(&self) -> Vector2<f64> {
         let tangent = self.tangent();
         Vector2::new(tangent.y, -tangent.x)
     }
 
-    /// Computes the section of a state with its forces along a line. `load_factor` is that of an equilibrium, `None` in a motion;
-    /// `nodal` is the recovered stress of the state, `None` to leave out the stress along the line.
+    /// Computes the section of a state along a line; `nodal` is the recovered stress of the state, `None` to leave out the
+    /// stress along the line.
     pub(crate) fn of(
         problem: &Problem,
         state: &State,
         kinematics: Kinematics,
-        load_factor: Option<f64>,
-        forces: &Forces,
+        balance: &NodalBalance<'_>,
         nodal: Option<&NodalStress>,
         line: SectionLine,
     ) -> Result<Self, SectionError> {
         let system = problem.system();
         let mesh = system.mesh();
         let cut = cut_of(system, line)?;
-        let positions: Vec<Vector2<f64>> = match kinematics {
-            Kinematics::Linear => mesh.nodes().to_vec(),
-            Kinematics::Corotated => mesh.nodes().iter().zip(state.displacement()).map(|(x, u)| x + u).collect(),
+        let moved: Vec<Vector2<f64>> = mesh.nodes().iter().zip(state.displacement()).map(|(x, u)| x + u).collect();
+        let positions = match kinematics {
+            Kinematics::Linear => mesh.nodes(),
+            Kinematics::Corotated => &moved,
         };
         let mean = |of: &[Vector2<f64>], point: &CutPoint| -> Vector2<f64> {
             point.weights.iter().map(|&(node, weight)| of[node as usize] * weight).sum()
@@ -153,23 +158,23 @@ impl Section {
         let mut section = Self {
             line,
             rest: [first, last].map(|point| mean(mesh.nodes(), point)),
-            ends: [first, last].map(|point| mean(&positions, point)),
+            ends: [first, last].map(|point| mean(&moved, point)),
+            axis: [first, last].map(|point| mean(positions, point)),
             force: Vector2::zeros(),
             forces: SectionForces::default(),
             stress_forces: SectionForces::default(),
             points: Vec::new(),
         };
         let middle = section.middle();
-        let shape = PlacedMesh { mesh, positions: &positions };
-        let mut sum =
-            load_factor.map(|factor| beyond_nodes(problem, &shape, &cut, (factor, forces), middle)).unwrap_or_default();
-        for (node, force) in element_forces(problem, state, &cut) {
+        let shape = PlacedMesh { mesh, positions };
+        let mut sum = beyond_nodes(problem, &shape, &cut, (balance, state.time()), middle);
+        for (node, force) in element_forces(problem, state, balance.motion.as_ref(), &cut) {
             sum.add(positions[node as usize] - middle, force);
         }
         section.force = sum.force;
         section.forces = section.components(sum);
         if let Some(nodal) = nodal {
-            section.add_stress(&cut, nodal, problem, |point| mean(&positions, point));
+            section.add_stress(&cut, nodal, problem, |point| mean(positions, point));
         }
         let forces = section.forces;
         let is_finite = [forces.normal, forces.shear, forces.moment].iter().all(|v| v.is_finite());
@@ -186,7 +191,7 @@ impl Section {
 
     /// Returns the normal and shear stress of beam theory, Pa, at a distance from the middle of the cut, m.
     pub(crate) fn beam_stress(&self, thickness: f64, along: f64) -> [f64; 2] {
-        let height = (self.ends[1] - self.ends[0]).norm();
+        let height = (self.axis[1] - self.axis[0]).norm();
         let (area, eta) = (height * thickness, 2.0 * along / height);
         let SectionForces { normal, shear, moment } = self.forces;
         let bending = 12.0 * moment * along / (area * height * height);
@@ -263,8 +268,13 @@ pub(crate) fn cut_ends(system: &System, line: SectionLine) -> Option<[f64; 2]> {
     Some([points.first()?.along, points.last()?.along])
 }
 
-/// Returns the nodes in front with the forces of the cut's elements on them, N.
-fn element_forces(problem: &Problem, state: &State, cut: &Cut) -> Vec<(u32, Vector2<f64>)> {
+/// Returns the nodes in front with the forces of the cut's elements on them, N: elastic, and in a motion viscous.
+fn element_forces(
+    problem: &Problem,
+    state: &State,
+    motion: Option<&MotionBalance>,
+    cut: &Cut,
+) -> Vec<(u32, Vector2<f64>)> {
     let system = problem.system();
     let mesh = system.mesh();
     let connectivity: Vec<u32> =
@@ -277,6 +287,9 @@ fn element_forces(problem: &Problem, state: &State, cut: &Cut) -> Vec<(u32, Vect
     let mut magnitude = forces.clone();
     let moduli = problem.material().membrane();
     elements.linearize(moduli, state.compensated(), Rotations::Given(&rotations), &mut forces, &mut magnitude, None);
+    if let Some(MotionBalance { viscosity, damped, .. }) = motion {
+        elements.viscous_force(*viscosity, damped, StrainRate::Velocity(state.velocity()), &mut forces);
+    }
     let mut nodes = connectivity;
     nodes.sort_unstable();
     nodes.dedup();

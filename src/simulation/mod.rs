@@ -680,7 +680,7 @@ impl Simulation {
                 },
                 ..energy(problem, state, load_factor)
             },
-            reaction: reaction(problem, state, self.forces()),
+            reaction: reaction(problem, state, self.kinematics(), self.forces()),
             supports,
             time: *self.timings(),
             auto: search.and_then(Equilibrium::auto_report),

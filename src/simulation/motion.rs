@@ -8,8 +8,10 @@ use crate::dynamics::{
     Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport, Solves,
     StageSolver, Step, StepEnergy, StepError, StopReason, critical_step,
 };
+use crate::element::StrainRate;
 use crate::method::MotionMethod;
 use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
+use crate::section::{MotionBalance, NodalBalance};
 use crate::state::{State, largest};
 use crate::timings::Timings;
 
@@ -427,6 +429,42 @@ impl TimeStepping {
 
     pub(super) fn forces(&self) -> &Forces {
         &self.memory.forces
+    }
+
+    /// Returns the forces and accelerations of the current state that sections balance, with this force of the mouse
+    /// spring, N. Accelerations are those of the nodal forces, not differences of velocities, so that nothing but the state
+    /// counts.
+    pub(super) fn nodal_balance(&self, body: &Body, mouse_spring: Vector2<f64>) -> NodalBalance<'static> {
+        let Body { scene, problem, state } = body;
+        let DynamicsSettings { damping, integrator, time_step, .. } = scene.dynamics;
+        let (system, mut forces) = (problem.system(), Forces::new(state.displacement.len()));
+        problem.linearize(state, &mut forces, None);
+        let mut loads = problem.loads().clone();
+        loads.set_time(state.time);
+        loads.force(system, &state.displacement, self.kinematics(), 1.0, &mut forces.external);
+        if let Some(spring) = problem.mouse_spring() {
+            spring.add_force(mouse_spring, &mut forces.external);
+        }
+        // Velocities of integrators of first order are those of half a step before, so that the viscous stress vanishes
+        // in rotations only there.
+        let before = if integrator.entry().order == 1 { 0.5 * time_step } else { 0.0 };
+        let damped: Vec<Vector2<f64>> = match self.kinematics() {
+            Kinematics::Corotated => {
+                state.displacement.iter().zip(&state.velocity).map(|(u, v)| u - v * before).collect()
+            }
+            Kinematics::Linear => vec![Vector2::zeros(); state.velocity.len()],
+        };
+        let viscosity = problem.material().membrane().scaled(damping.stiffness);
+        let rate = StrainRate::Velocity(&state.velocity);
+        system.elements().viscous_force(viscosity, &damped, rate, &mut forces.internal);
+        let mut residual: Vec<Vector2<f64>> =
+            forces.external.iter().zip(&forces.internal).map(|(f, i)| f - i).collect();
+        let acceleration = self.mass.acceleration(system.pattern(), &residual);
+        let mut inertia = forces.internal;
+        self.mass.multiply(&acceleration, &mut inertia);
+        residual.iter_mut().zip(&inertia).for_each(|(f, inertia)| *f -= inertia);
+        let motion = Some(MotionBalance { acceleration, viscosity, damped });
+        NodalBalance { load_factor: 1.0, residual: residual.into(), mouse_spring, motion }
     }
 
     pub(super) fn timings(&self) -> &Timings {

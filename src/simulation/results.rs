@@ -106,20 +106,21 @@ pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
     Energy { elastic: problem.elastic_energy(state), external, supports: None }
 }
 
-/// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with current lever arms about the
-/// origin.
+/// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with lever arms about the origin:
+/// those at rest in linear theory, else current ones.
 #[must_use]
-pub fn reaction(problem: &Problem, state: &State, forces: &Forces) -> Wrench {
+pub fn reaction(problem: &Problem, state: &State, kinematics: Kinematics, forces: &Forces) -> Wrench {
     let mut total = Wrench::default();
     let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
     let supports = problem.supports();
+    let moved = if kinematics == Kinematics::Linear { 0.0 } else { 1.0 };
     let residual = supports.with_point_forces(forces.residual());
     let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(residual.iter()));
     for ((x, u), (mask, residual)) in nodes {
-        total.add(x + u, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
+        total.add(x + u * moved, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
     }
     for (support, force) in supports.point_forces(forces.residual()) {
-        total.add(support.middle + support.mean(&state.displacement), force);
+        total.add(support.middle + support.mean(&state.displacement) * moved, force);
     }
     total
 }

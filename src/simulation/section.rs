@@ -1,21 +1,26 @@
 //! Sections of the current state.
 
-use super::{Equilibrium, Simulation};
+use std::cell::LazyCell;
+
+use nalgebra::Vector2;
+
+use super::{Process, Simulation};
 #[cfg(feature = "cli")]
 use crate::mesh::straightened;
 use crate::mesh::{axis_angle, bent};
 use crate::model::SectionLine;
 #[cfg(feature = "cli")]
 use crate::model::{Load, Place};
-use crate::section::{Section, SectionError};
+use crate::section::{NodalBalance, Section, SectionError};
 use crate::stress::NodalStress;
 
 impl Simulation {
     /// Computes the section forces of the current state along a line: those that the part of the body in front of the
     /// line exerts on the part behind. Takes a loop over the whole body.
     ///
-    /// At rest they balance the loads and reactions on the part in front, also those between the line and the nodes. In
-    /// a motion, loads, reactions and inertia act on the nodes. Reactions of supports on nodes always do.
+    /// They balance the loads, the reactions and in a motion the inertia of the part in front, also those between the line
+    /// and the nodes; reactions of supports on nodes act on the nodes. In a motion they include the viscous stress of
+    /// stiffness-proportional damping, which the stress along the line does not.
     ///
     /// ```
     /// use warpbeam::{Scene, Section, SectionError, SectionForces, SectionLine, SectionPoint, Simulation};
@@ -38,13 +43,17 @@ impl Simulation {
     /// # Errors
     /// [`SectionError::Missed`], [`SectionError::Several`], [`SectionError::NotFinite`].
     pub fn section(&self, line: SectionLine) -> Result<Section, SectionError> {
-        self.section_of(line, Some(&self.nodal_stress()))
+        self.section_with(line, Some(&self.nodal_stress()))
     }
 
     /// Computes as [`Self::section`], without the stress along the line.
     #[cfg(feature = "app")]
     pub(crate) fn section_forces(&self, line: SectionLine) -> Result<Section, SectionError> {
-        self.section_of(line, None)
+        self.section_with(line, None)
+    }
+
+    fn section_with(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
+        self.sections_of(std::iter::once(line), nodal).next().unwrap_or(Err(SectionError::Missed))
     }
 
     /// Computes the sections of the scene, with the stress recovered once for all.
@@ -52,12 +61,31 @@ impl Simulation {
     pub(crate) fn scene_sections(&self) -> Vec<Result<Section, SectionError>> {
         let lines = &self.scene().sections;
         let nodal = if lines.is_empty() { None } else { Some(self.nodal_stress()) };
-        lines.iter().map(|&line| self.section_of(line, nodal.as_ref())).collect()
+        self.sections_of(lines.iter().copied(), nodal.as_ref()).collect()
     }
 
-    fn section_of(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
-        let load_factor = self.equilibrium().map(Equilibrium::load_factor);
-        Section::of(self.problem(), self.state(), self.kinematics(), load_factor, self.forces(), nodal, line)
+    /// Computes the sections along these lines.
+    fn sections_of<'a>(
+        &'a self,
+        lines: impl Iterator<Item = SectionLine> + 'a,
+        nodal: Option<&'a NodalStress>,
+    ) -> impl Iterator<Item = Result<Section, SectionError>> + 'a {
+        let balance = LazyCell::new(|| self.nodal_balance());
+        lines.map(move |line| Section::of(self.problem(), self.state(), self.kinematics(), &balance, nodal, line))
+    }
+
+    /// Returns the forces and accelerations that sections balance.
+    fn nodal_balance(&self) -> NodalBalance<'_> {
+        let mouse_spring = self.mouse_spring().map_or_else(Vector2::zeros, |(_, force)| force);
+        match &self.process {
+            Process::Search(search) => NodalBalance {
+                load_factor: search.load_factor(),
+                residual: search.forces().residual().into(),
+                mouse_spring: mouse_spring * search.load_factor(),
+                motion: None,
+            },
+            Process::Motion(motion) => motion.nodal_balance(&self.body, mouse_spring),
+        }
     }
 
     /// Computes as [`Self::section`] the sections normal to the axis of a beam at `count` points, evenly spaced from
@@ -104,6 +132,6 @@ impl Simulation {
         let beam = self.system().beam().ok_or(SectionError::NoAxis)?;
         let nodal = self.nodal_stress();
         let line = |along: f64| SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) };
-        along.map(|along| self.section_of(line(along), Some(&nodal))).collect()
+        self.sections_of(along.map(line), Some(&nodal)).collect()
     }
 }
