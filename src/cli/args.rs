@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use super::outputs::OutputArgs;
 use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number};
-use crate::scene::limits::{BUDGET_MS, COORDINATE, Limit, MAX_ERROR_PERCENT, ROTATION};
+use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
 use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
@@ -220,8 +220,7 @@ fn parse_place(text: &str) -> Result<(f64, Option<f64>), NumberError> {
 }
 
 fn parse_angle(text: &str) -> Result<f64, NumberError> {
-    // A full turn: a larger number is one of degrees without their unit.
-    parse_number(text, Limit { min: -6.3, max: 6.3, ..ROTATION })
+    parse_number(text, ROTATION)
 }
 
 #[derive(Debug, Args)]

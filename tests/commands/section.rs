@@ -90,6 +90,18 @@ fn tables_and_pictures_are_written() {
     assert!(size("height") > size("width"), "three figures, one below the other: {:?}", size("height"));
 }
 
+/// In linear theory too the ends of a cut have moved, and an angle has the range of the scene's key.
+#[test]
+fn a_cut_in_linear_theory_has_moved_with_the_body() {
+    let scene = "tests/data/scenes/moved-edge.toml";
+    let text = stdout(&warpbeam(&["section", scene, "--at", "5"]));
+    assert!(text.starts_with("moment of a moved support") && text.contains("now from (4.995, "), "{text}");
+    let turned = |angle: &str| sections(&[scene, "--at", "5", "--angle", angle])["sections"][0]["angle"].clone();
+    assert_eq!(turned("30").as_f64(), Some(30.0));
+    let refused = warpbeam(&["section", scene, "--at", "5", "--angle", "101"]);
+    assert!(stderr(&refused).contains("expected -100 to 100 rad"), "{}", stderr(&refused));
+}
+
 /// `solve` prints the sections of the scene, with the values of `section`; a line beside the body is refused before the
 /// solve, with its key.
 #[test]
