@@ -8,9 +8,6 @@ use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
 
-/// Largest number of iterations per displayed frame.
-pub(crate) const MAX_ITERATIONS: u32 = 100;
-
 /// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
@@ -52,8 +49,8 @@ pub(crate) enum Action {
     Speed(f64),
     /// Show the same motion with another integrator; if it is shown, hide it.
     Compare(IntegratorKind),
-    /// Set the number of iterations per displayed frame.
-    Iterations(u32),
+    /// Make one iteration per displayed frame, or as many as the frame has time for.
+    SlowMotion,
     /// Fit the camera to the whole body.
     Fit,
     /// Show or hide a part of the display.
@@ -84,8 +81,8 @@ pub(crate) enum Action {
     Card(usize),
     /// Tell the story of the first start again.
     Story,
-    /// Use a measured setting: its scene, and its number of iterations per displayed frame.
-    Apply(Box<Scene>, u32),
+    /// Use the scene of a measured setting.
+    Apply(Box<Scene>),
     /// Cancel the background solve of a large model, and keep the previous model.
     Cancel,
 }

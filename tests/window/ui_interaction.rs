@@ -161,6 +161,7 @@ fn messages_stay_off_the_tips_of_arrows() {
 #[test]
 fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     let mut harness = harness("article");
+    harness.state_mut().set_frame_work(std::time::Duration::from_secs(20));
     let camera = harness.state().camera();
     let to = tip(harness.state());
     harness.hover_at(to);

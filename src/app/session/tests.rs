@@ -426,7 +426,6 @@ fn a_large_mesh_is_made_in_the_background() {
 #[test]
 fn a_frame_makes_as_many_iterations_as_it_has_time_for() {
     let mut session = session(large(12));
-    session.set_iterations(100);
     assert!(session.advance(0.0));
     let made = session.simulation().iterations();
     assert!((1..100).contains(&made) && session.iterates(), "{made} iterations");

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use egui::Rect;
 use nalgebra::Vector2;
+use web_time::Duration;
 
 use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, tr};
@@ -130,10 +131,9 @@ impl Lab {
         self.desk.budget.motion_study()
     }
 
-    /// Returns the number of iterations per displayed frame.
-    #[must_use]
-    pub fn iterations(&self) -> u32 {
-        self.desk.session.iterations()
+    /// Sets the time of iterations after which a displayed frame makes no more.
+    pub fn set_frame_work(&mut self, time: Duration) {
+        self.desk.session.set_frame_work(time);
     }
 
     /// Displays a state; returns `false` if it does not fit the mesh.
@@ -226,6 +226,12 @@ impl Lab {
         let file = session.document().path().and_then(Path::file_name);
         let file = file.map_or_else(String::new, |file| format!(" ({})", file.to_string_lossy()));
         format!("{}{edited}{file} \u{2013} warpbeam", tr(&session.scene().name))
+    }
+
+    /// Returns `true` while the reference that follows a dragged load is being computed.
+    #[must_use]
+    pub fn is_following(&self) -> bool {
+        self.desk.session.is_following()
     }
 
     /// Returns `true` if there is an edit to undo.

@@ -1,6 +1,6 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
-use crate::app::action::{Action, MAX_ITERATIONS};
+use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::figure;
@@ -105,9 +105,7 @@ impl Lab {
                     self.desk.panel.choose_force(added);
                 }
             }
-            Action::Apply(scene, iterations) => {
-                self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MAX_ITERATIONS)));
-            }
+            Action::Apply(scene) => _ = self.apply(ctx, Edit::Scene("Method", scene)),
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
                 // A body that has reached its end cannot be paused.
@@ -148,7 +146,7 @@ impl Lab {
                 self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
-            Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MAX_ITERATIONS)),
+            Action::SlowMotion => self.desk.session.set_slow(!self.desk.session.is_slow()),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
                 self.desk.viewport.fit();

@@ -18,7 +18,7 @@ use crate::app::shell::gallery::Gallery;
 use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
-use crate::app::viewport::view::{BodyView, CardContent, Content, is_lost};
+use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
@@ -94,8 +94,8 @@ impl Desk {
             direction: panel.force_direction(),
             opening: OpeningLoads::of(&session.document().opened),
             eases,
+            last: session.fallback(),
             own: session.equations(),
-            last: session.converged().filter(|_| is_lost(session.simulation())),
         }
     }
 }
@@ -228,8 +228,8 @@ impl Lab {
         self.desk.view.mode == Mode::Compare && self.desk.session.is_motion()
     }
 
-    /// Makes the iterations of one displayed frame if the lab runs, or the time steps that are due at `now`, s (any
-    /// clock that runs in real time). Returns `true` if more remain.
+    /// Iterates to equilibrium, or as far as a displayed frame has time, if the lab runs; or makes the time steps that are due
+    /// at `now`, s (any clock that runs in real time). Returns `true` if more remain.
     pub fn advance(&mut self, now: f64) -> bool {
         if self.story.is_some() {
             self.advance_story(now);
@@ -324,7 +324,8 @@ impl Lab {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
         let (facts, reference) = (session.facts(), session.reference());
         Readout {
-            reference: reference.and_then(Result::ok),
+            reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
+            live: session.live(),
             reference_failure: reference.and_then(Result::err),
             // Only an equilibrium is the end of a path, or of another one.
             path: (facts.path.get(session.scene()))
@@ -338,14 +339,13 @@ impl Lab {
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
             value_range: viewport.body().value_range(),
-            shows_converged: viewport.shows_converged(),
-            shows_iterate: viewport.shows_search(session),
+            is_fallback: session.fallback().is_some(),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),
             scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
-            shown: viewport.shown_of(session),
+            shown: session.drawn(),
             linear: session.linear(),
             running: session.is_running(),
             ended: match view.mode {
@@ -355,9 +355,10 @@ impl Lab {
             },
             playback: session.playback(),
             frequency: facts.frequency.latest().copied(),
-            iterations: session.iterations(),
+            is_slow: session.is_slow(),
             timings: session.timings(),
-            from_rest: facts.time.get(session.scene()),
+            from_rest: session.from_rest(),
+            last_from_rest: session.last_from_rest(),
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),

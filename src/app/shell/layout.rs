@@ -1,5 +1,7 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
+use web_time::Duration;
+
 use egui::{CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo};
 
 use crate::app::action::Action;
@@ -22,6 +24,9 @@ use crate::app::widgets::palette::{self, Palette};
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
 const NARROW: f32 = 900.0;
+
+/// Time between two polls of the reference that follows a dragged load.
+const SOON: Duration = Duration::from_millis(10);
 
 /// Height of the status bar, points.
 const STATUS_BAR_HEIGHT: f32 = 42.0;
@@ -48,6 +53,7 @@ impl Lab {
         let (mut actions, mut requests) = (Vec::new(), Vec::new());
         self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
+        self.desk.session.follow_edit();
         self.desk.panel.fade_messages(ui.ctx());
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
@@ -86,10 +92,7 @@ impl Lab {
         }
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
-            Mode::Compare => {
-                self.desk.viewport.show_last_equilibrium(&self.desk.session);
-                self.comparison(ui, &mut actions, &mut requests);
-            }
+            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
             _ => self.body_view(ui, &mut actions, &mut requests),
         });
         let view = &self.desk.view;
@@ -98,6 +101,10 @@ impl Lab {
         }
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
+        }
+        if self.desk.session.follow_edit() {
+            // All parts of a frame show the edited scene: those before the edit are laid out again.
+            ui.ctx().request_discard("edit");
         }
         help::show(ui.ctx(), &mut self.desk.view.help);
         self.show_question(ui.ctx());
@@ -126,7 +133,7 @@ impl Lab {
         let learns_rho = self.learns_rho();
         let (session, shown) = self.desk.shown_facts(learns_rho);
         if session.request_facts(shown, is_pressed) {
-            ctx.request_repaint_after(POLL);
+            ctx.request_repaint_after(if session.is_following() { SOON } else { POLL });
         }
     }
 
@@ -212,11 +219,11 @@ impl Lab {
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.desk.view.drawer else { return };
         let state = diagnosis::state_text(&self.readout());
-        let Desk { session, view, viewport, sections, .. } = &mut self.desk;
+        let Desk { session, view, sections, .. } = &mut self.desk;
         let facts = session.facts();
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => {
-                let shown = viewport.shown_of(session);
+                let shown = session.drawn();
                 if sections.request(shown) {
                     ui.ctx().request_repaint_after(POLL);
                 }
@@ -249,7 +256,8 @@ impl Lab {
             motions.show(ui, &input)
         } else {
             // The reference solution does not depend on the iteration of the panel's own setting.
-            if !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
+            let is_pressed = ui.input(|i| i.pointer.any_down());
+            if !is_pressed && !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
                 ui.ctx().request_repaint_after(POLL);
             }
             let (compare, input) = self.compared();
@@ -267,10 +275,12 @@ impl Lab {
         let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
         let input = CompareInput {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
-            reference: session.facts().reference.get(session.scene()),
+            reference: session.facts().reference.get(session.scene()).or(session.live().map(|live| &live.reference)),
+            live: session.live(),
             reference_failure: session.facts().reference.failure(session.scene()),
-            from_rest: session.facts().time.get(session.scene()),
+            from_rest: session.from_rest(),
             running: session.is_running(),
+            is_slow: session.is_slow(),
             chosen: budget.chosen(session.scene()),
         };
         (compare, input)
@@ -317,12 +327,11 @@ impl Lab {
         actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
-        self.desk.session.keep_converged();
         let (viewport, content) = self.viewport_and_content();
         viewport.update(ui.visuals(), &content);
         if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.displace(|points| lesson.learn.place(session.simulation(), session.geometry(), points));
+            viewport.displace(|points| lesson.learn.place(session.drawn(), session.geometry(), points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -332,18 +341,11 @@ impl Lab {
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
-        let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
-        // If there is a status bar, it shows the status.
-        let status = (is_bad && !self.desk.view.bars).then_some(status);
-        let label = if self.content().shows_iterate() {
-            Some(tr("last iterate, no equilibrium").to_owned())
-        } else {
-            diagnosis::state_text(&readout)
-        };
+        // Without bars, the note has the status of a motion that has stopped.
+        let stopped = || Some(diagnosis::status_text(&readout)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
+        let label = diagnosis::state_text(&readout).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
-        let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
-        let note = status.iter().chain(&label).map(String::as_str).collect::<Vec<_>>().join("\n");
-        let note = (!note.is_empty()).then_some((note.as_str(), color));
+        let note = label.as_deref().map(|note| (note, Palette::new(visuals).text));
         self.desk.viewport.paint(&painter, visuals, &self.content(), errors, note);
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
@@ -357,7 +359,7 @@ impl Lab {
         if let Some(lesson) = &mut self.lesson {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::CardView {
-                simulation: session.simulation(),
+                simulation: session.drawn(),
                 geometry: session.geometry(),
                 points: viewport.body().points(),
                 camera: viewport.camera(),
@@ -408,39 +410,23 @@ impl Lab {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
-        let (status, bad) = diagnosis::summary(&input, None);
-        let reasoned = remedy.as_ref().map(|remedy| {
-            let (status, _) = diagnosis::summary(&input, Some(remedy));
-            format!("{} {status}", remedy.text)
-        });
+        let (mut status, bad) = diagnosis::summary(&input, None);
+        if let Some(remedy) = &remedy {
+            status.clone_from(&remedy.text);
+        }
         let color = if bad { palette.error } else { palette.text };
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                self.status_buttons(ui, &input, actions);
+                explain_link(ui, actions);
                 if let Some(remedy) = remedy {
                     actions.extend(remedy_button(ui, &remedy));
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let font = egui::TextStyle::Body.resolve(ui.style());
-                    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), color).size().x;
-                    // The button has the reason too.
-                    let reasoned = reasoned.filter(|text| width(text.clone()) <= ui.available_width());
-                    let text = egui::RichText::new(reasoned.unwrap_or(status)).color(color);
-                    ui.add(egui::Label::new(text).truncate());
+                    ui.add(egui::Label::new(egui::RichText::new(status).color(color)).truncate());
                 });
             });
         });
-    }
-
-    /// Shows the buttons beside the status.
-    fn status_buttons(&self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
-        if diagnosis::is_stale(input) && ui.button(tr("Step now")).clicked() {
-            actions.push(Action::Step);
-        }
-        if ui.link(tr("explain")).clicked() {
-            actions.push(Action::Toggle(Toggle::Why));
-        }
     }
 
     /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
@@ -461,8 +447,7 @@ impl Lab {
         let (text, bad) = diagnosis::summary(&input, remedy.as_ref());
         // A card that leaves the body little room shows a good status itself.
         let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
-        let is_good = !(bad || diagnosis::is_stale(&input));
-        if is_tight && is_good {
+        if is_tight && !bad {
             return;
         }
         let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
@@ -478,14 +463,21 @@ impl Lab {
                     ui.horizontal_wrapped(|ui| {
                         ui.colored_label(palette.error, &remedy.text);
                         actions.extend(remedy_button(ui, &remedy));
+                        if input.has_failed() {
+                            explain_link(ui, actions);
+                        }
                     });
                 });
+                // The remedy of a failure says what has failed.
+                if input.has_failed() {
+                    return;
+                }
             }
             let tint = if bad { palette.error_chip } else { palette.panel };
             chip(tint).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.colored_label(if bad { palette.error } else { palette.text }, text);
-                    self.status_buttons(ui, &input, actions);
+                    explain_link(ui, actions);
                 });
             });
         });
@@ -513,6 +505,13 @@ impl Lab {
                 });
             });
         });
+    }
+}
+
+/// Shows the link beside the status that explains it.
+fn explain_link(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if ui.link(tr("explain")).clicked() {
+        actions.push(Action::Toggle(Toggle::Why));
     }
 }
 

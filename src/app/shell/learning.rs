@@ -1,7 +1,7 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
-use crate::app::modes::learn::{self, CardStart, Learn};
+use crate::app::modes::learn::{self, Learn};
 use crate::app::session::Session;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
 use crate::app::view_options::{Mode, ViewOptions};
@@ -76,13 +76,14 @@ impl Lab {
         }
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
+        session.set_slow(setup.waits);
         panel.clear();
         view.color_with(setup.field);
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
         viewport.fit();
-        session.set_running(setup.start != CardStart::Waiting);
-        if setup.start != CardStart::Now {
+        session.set_running(!setup.waits);
+        if setup.waits {
             self.reset();
             let (viewport, content) = self.viewport_and_content();
             viewport.expect_bending(&content);

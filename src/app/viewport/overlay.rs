@@ -34,10 +34,8 @@ use crate::study::Reference;
 pub(crate) struct Overlay<'a> {
     /// Scene of the drawn body.
     pub scene: &'a Scene,
-    /// Scene that was asked for and whose state diverges; the last equilibrium is drawn in its place.
+    /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
-    /// `true` if the body is not the result for the scene: it is dimmed.
-    pub is_dimmed: bool,
     pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
@@ -84,7 +82,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
-    if overlay.is_dimmed {
+    if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
@@ -115,7 +113,7 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     let palette = Palette::new(visuals);
-    if overlay.is_dimmed {
+    if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
@@ -598,7 +596,7 @@ fn legend(
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
     let colors = |bar: Rect| {
         color_bar(painter, bar, palette.map(field));
-        if overlay.is_dimmed {
+        if overlay.wanted.is_some() {
             dim(painter, bar, palette);
         }
     };

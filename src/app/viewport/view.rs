@@ -83,21 +83,17 @@ impl<'a> Content<'a> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
-    /// Returns the reference solution if it is known for the displayed state.
+    /// Returns the drawn body.
+    fn drawn(&self) -> &'a Simulation {
+        self.animation.map_or_else(|| self.session.drawn(), |(simulation, _)| simulation)
+    }
+
+    /// Returns the reference solution if it is known for the drawn state; one that follows a load may be of the load before.
     fn reference(&self) -> Option<&'a Reference> {
         let session = self.session;
         let is_at_rest = !session.is_motion() && !session.iterates() && session.simulation().mouse_spring().is_none();
-        session.reference().and_then(Result::ok).filter(|_| is_at_rest)
-    }
-
-    /// Returns the reference solution if it is known for the displayed state and its outline is not hidden.
-    fn exact(&self) -> Option<&'a Reference> {
-        self.reference().filter(|_| self.options.exact)
-    }
-
-    /// Returns `true` if a card of Learn shows the last iterate of a search that has found no equilibrium.
-    pub(crate) fn shows_iterate(&self) -> bool {
-        self.card.is_some() && self.animation.is_none() && is_lost(self.simulation())
+        let reference = session.reference().and_then(Result::ok).or(session.live().map(|live| &live.reference));
+        reference.filter(|_| is_at_rest && session.fallback().is_none())
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -109,11 +105,6 @@ impl<'a> Content<'a> {
         };
         linear.map(Simulation::displacement).filter(|_| is_wanted)
     }
-}
-
-/// Returns `true` if a search has ended without an equilibrium.
-pub(crate) fn is_lost(simulation: &Simulation) -> bool {
-    matches!(simulation.status(), Status::Diverged(_) | Status::NotConverged(_))
 }
 
 /// State of the checks for self-intersections of the outline.
@@ -151,10 +142,6 @@ pub(crate) struct BodyView {
     choice: Magnification,
     /// Largest displacement of a motion so far, m.
     largest_displacement: f64,
-    /// `true` while the last equilibrium is drawn in place of a state that diverges.
-    shows_converged: bool,
-    /// Number of consecutive updates with a body that is not the result for the scene, but an iterate, or the one before.
-    late: u32,
     /// Bounding box of all states of a body in motion so far, m.
     swept: Option<[Vector2<f64>; 2]>,
     crossing: Crossing,
@@ -177,8 +164,6 @@ impl BodyView {
             magnification: 1.0,
             choice: Magnification::None,
             largest_displacement: 0.0,
-            shows_converged: false,
-            late: 0,
             swept: None,
             crossing: Crossing::default(),
         }
@@ -207,24 +192,6 @@ impl BodyView {
 
     pub(crate) fn body(&self) -> &BodyMesh {
         &self.body
-    }
-
-    /// Returns `true` while the last equilibrium is drawn in place of a state that diverges.
-    pub(crate) fn shows_converged(&self) -> bool {
-        self.shows_converged
-    }
-
-    /// Returns `true` if the drawn body is not the result for the scene: it is an iterate, or the body before a solve in
-    /// the background. A wait of few frames does not count, because the body would flicker.
-    fn is_late(&self, session: &Session) -> bool {
-        /// Number of frames of a short wait.
-        const SHORT: u32 = 12;
-        self.late > SHORT || self.late > 0 && !session.is_running()
-    }
-
-    /// Returns `true` if the drawn body is an iterate of a search for an equilibrium, which is paused or takes long.
-    pub(crate) fn shows_search(&self, session: &Session) -> bool {
-        self.is_late(session) && session.work().is_none()
     }
 
     /// Returns the pinned material point, whose values are shown.
@@ -305,20 +272,17 @@ impl BodyView {
 
     /// Updates the drawn mesh to the current state.
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
-        self.shows_converged = self.hides_divergence(content);
-        let simulation = self.drawn(content);
-        let is_still = content.card.is_none() && content.animation.is_none() && !content.session.is_motion();
-        let is_search = is_still && *simulation.status() == Status::Running && simulation.mouse_spring().is_none();
-        let is_late = is_search || content.session.work().is_some();
-        self.late = if is_late { self.late.saturating_add(1) } else { 0 };
+        let simulation = content.drawn();
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        let is_own = !self.shows_converged && content.animation.is_none();
-        let shown = (content.options, content.reference().filter(|_| is_own));
+        let shown = (
+            content.options,
+            content.reference().filter(|_| content.animation.is_none() && content.session.live().is_none()),
+        );
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
@@ -350,30 +314,9 @@ impl BodyView {
         self.body.displace(place);
     }
 
-    /// Returns `true` if the last equilibrium is to be drawn in place of a state that diverges. Cards of Learn show the
-    /// diverging state.
-    fn hides_divergence(&self, content: &Content<'_>) -> bool {
-        let simulation = content.simulation();
-        if content.card.is_some() || content.session.converged().is_none() {
-            return false;
-        }
-        match simulation.status() {
-            Status::Diverged(_) => true,
-            // While a handle or the body is grabbed, the iteration may still converge.
-            Status::Running if !self.pointer.holds() || content.session.is_motion() => false,
-            Status::Running | Status::NotConverged(_) => {
-                let projection = self.projection();
-                let mut places = self.drawn_positions(simulation);
-                let leaves = |place| !self.rect.contains(projection.point(place));
-                simulation.residual() > 1.0 || self.camera.shows_whole() && places.any(leaves)
-            }
-            _ => false,
-        }
-    }
-
     /// Returns the drawn outline of the reference solution, m; empty while the drawn body has another load.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
-        let reference = content.exact().filter(|_| !self.shows_converged);
+        let reference = content.reference().filter(|_| content.options.exact);
         reference.map(|reference| overlay::magnified_outline(reference, self.magnification)).unwrap_or_default()
     }
 
@@ -381,27 +324,7 @@ impl BodyView {
     fn ghost<'a>(&self, content: &Content<'a>) -> Option<&'a [Vector2<f64>]> {
         // Linear theory does not have the force of the mouse spring.
         let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        content.ghost().filter(|_| !self.shows_converged && !is_grabbed)
-    }
-
-    /// Returns the drawn body; animations are ignored.
-    pub(crate) fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
-        self.shown_of(content.session)
-    }
-
-    /// Lets the panel beside other views than this one show the last equilibrium in place of a state that diverges.
-    pub(crate) fn show_last_equilibrium(&mut self, session: &Session) {
-        self.shows_converged = is_lost(session.simulation()) && session.converged().is_some();
-    }
-
-    /// Returns the drawn body of a session; animations are ignored.
-    pub(crate) fn shown_of<'a>(&self, session: &'a Session) -> &'a Simulation {
-        session.converged().filter(|_| self.shows_converged).unwrap_or(session.simulation())
-    }
-
-    /// Returns the drawn body.
-    fn drawn<'a>(&self, content: &Content<'a>) -> &'a Simulation {
-        content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation)
+        content.ghost().filter(|_| content.session.fallback().is_none() && !is_grabbed)
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
@@ -505,7 +428,7 @@ impl BodyView {
         if content.is_apart() {
             return None;
         }
-        let shown = self.shown(content);
+        let shown = content.session.drawn();
         if let Some((point, at)) = self.pointer.over_body()
             && !egui::Popup::is_any_open(ui.ctx())
             && let point = rounded(content, point)
@@ -552,14 +475,9 @@ impl BodyView {
         }
         let size = self.size();
         let (session, is_motion) = (content.session, content.session.is_motion());
-        let status = session.simulation().status();
-        let is_sound = match is_motion {
-            true => !matches!(status, Status::Stopped(_)),
-            // The outlines around it are hidden, which is no reason to come closer.
-            false => status.is_success() || self.shows_converged && !self.is_in_view(content),
-        };
-        let is_stepped = !is_motion && !session.is_running();
-        if is_sound || (content.shows_iterate() || is_stepped) && self.is_of_usual_size(content) {
+        let status = session.drawn().status();
+        let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
+        if is_sound {
             let (mut low, mut high) = content.mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
                 (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
@@ -591,22 +509,6 @@ impl BodyView {
         if self.camera.aim(fitted, self.eases.then_some(dt)) {
             ui.ctx().request_repaint();
         }
-    }
-
-    /// Returns `true` if the view has the drawn body and the arrows.
-    fn is_in_view(&self, content: &Content<'_>) -> bool {
-        let (projection, view) = (self.projection(), self.rect);
-        let tips = self.arrows(content).into_iter().map(|arrow| arrow.tip());
-        let points = self.body.points().iter().map(|point| projection.point(*point));
-        points.chain(tips).all(|point| view.contains(point))
-    }
-
-    /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
-    fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
-        const LARGEST: f64 = 10.0;
-        let (low, high) = content.mesh().bounds();
-        let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
-        (to - from).norm() < LARGEST * (high - low).norm()
     }
 
     /// Leaves room for a beam that is going to bend, and for its arrow.
@@ -696,7 +598,7 @@ impl BodyView {
     ) {
         let (session, is_animated) = (content.session, content.animation.is_some());
         let simulation = session.simulation();
-        let shown = self.drawn(content);
+        let (shown, fallback) = (content.drawn(), session.fallback().filter(|_| !is_animated));
         let moves_support = simulation.problem().supports().move_the_body();
         let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
@@ -706,8 +608,7 @@ impl BodyView {
         let exact = if is_animated { Cow::Borrowed(&[][..]) } else { self.exact(content) };
         let overlay = Overlay {
             scene: shown.scene(),
-            wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
-            is_dimmed: content.shows_iterate() || self.shows_converged && !is_animated || self.is_late(session),
+            wanted: fallback.map(|_| simulation.scene()),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,

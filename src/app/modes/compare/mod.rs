@@ -9,10 +9,11 @@ use self::grid::{Preset, grow};
 use self::panes::{ComparedPane, Condition, PaneChange, Panes};
 use self::trace::Trace;
 use crate::app::action::Action;
-use crate::app::diagnosis::{coarse_text, error_color, error_tip};
+use crate::app::diagnosis::{coarse_text, error_color, error_text, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
+use crate::app::session::live::Live;
 use crate::app::task::thread::{POLL, QUIET_POLL};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
@@ -22,7 +23,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-use crate::app::widgets::text::{UNKNOWN, semibold};
+use crate::app::widgets::text::semibold;
 use crate::format::{engineering, engineering_pair, three_digits, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
@@ -58,14 +59,26 @@ const LOW_FOR_TWO_ROWS: f32 = 680.0;
 /// Input of the comparison of equilibria.
 pub(crate) struct CompareInput<'a> {
     pub common: PaneInput<'a>,
+    /// Reference solution of the load, or the one that follows it.
     pub reference: Option<&'a Reference>,
+    /// Reference solution that follows the load, if errors are measured against it.
+    pub live: Option<&'a Live>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
     /// Time of a solve from rest with the panel's settings; `None` until it has been measured.
     pub from_rest: Option<&'a SolveFromRest>,
     pub running: bool,
+    /// `true` if a frame makes one iteration.
+    pub is_slow: bool,
     /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
+}
+
+impl<'a> CompareInput<'a> {
+    /// Returns the reference solution of the load itself.
+    fn exact(&self) -> Option<&'a Reference> {
+        self.reference.filter(|_| self.live.is_none())
+    }
 }
 
 /// Panes, and their load curve.
@@ -169,15 +182,15 @@ impl Compare {
         let share = WORK / u32::try_from(self.panes.list.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes.list {
             let until = Instant::now() + share;
-            let frame = FrameConditions { moves, holds, runs: input.running, until };
+            let frame = FrameConditions { is_slow: input.is_slow, holds, runs: input.running, until };
             pane.solve.advance(pane.setting.apply(input.common.scene), &equations, frame);
             is_new |= self.trace.record(input.common.scene, pane);
-            pane.update_error(input.reference);
+            pane.update_error(input);
         }
         if !holds || !moves {
             self.trace.request_exact(input.common.scene, ctx);
         }
-        self.trace.record_reference(input.reference);
+        self.trace.record_reference(input.exact());
         let mut solves = self.panes.list.iter().map(|pane| &pane.solve);
         let busy = |solve: &ComparedSolve| !solve.is_settled() && !solve.is_away() && !solve.waits();
         if is_new || input.running && solves.clone().any(busy) {
@@ -289,10 +302,10 @@ impl Compare {
         for pane in &mut self.panes.list {
             let is_own = || pane.setting.apply(input.common.scene) == *input.common.scene;
             pane.keep_equilibrium(input.common.last.filter(|_| is_own()));
-            pane.update_display((input.common.view, input.reference), self.panes.magnification, ui.visuals(), &known);
+            pane.update_display((input.common.view, input.exact()), self.panes.magnification, ui.visuals(), &known);
             known.extend(pane.equations());
         }
-        let range = self.share_colors(input.common.view);
+        let range = self.panes.share_colors(input.common.view, |_| true);
         let whole = ui.available_rect_before_wrap();
         let grid = self.panes.lay_out(ui, shown_probes(input.common.scene));
         let reference = input.reference.filter(|_| input.common.view.exact);
@@ -325,16 +338,6 @@ impl Compare {
         for (i, pane) in panes {
             pane.show_value(ui, view, rest, self.camera(), (i == number).then_some(at));
         }
-    }
-
-    /// Gives all panes the same colour range, and returns it: that of the results, or, while there is none, that of the
-    /// panes that have not failed.
-    fn share_colors(&mut self, view: &ViewOptions) -> [f64; 2] {
-        let choices: [fn(&Pane) -> bool; 2] = [|pane| pane.solve.is_sound(), |pane| !pane.solve.has_failed()];
-        let has_range = |pane: &&Pane| pane.display.range.is_some();
-        let is_useful = |counts: &fn(&Pane) -> bool| self.panes.list.iter().filter(has_range).any(counts);
-        let counts = choices.into_iter().find(is_useful).unwrap_or(|_| true);
-        self.panes.share_colors(view, counts)
     }
 
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user
@@ -456,7 +459,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         painter.rect_filled(rect, 4.0, palette.error_chip);
         left += 6.0;
     } else {
-        let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
+        let number = error_text(error, input.live.is_some());
         let bound = judged.map(|(error, first)| first.error_bound(error));
         let color = error_color(&palette, bound);
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);

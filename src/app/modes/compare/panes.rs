@@ -38,10 +38,10 @@ pub(crate) struct PaneInput<'a> {
     pub opening: OpeningLoads,
     /// `true` if camera movements are animated.
     pub eases: bool,
+    /// Body that the panel describes in place of a search that has found no equilibrium.
+    pub last: Option<&'a Simulation>,
     /// Equations of the body in Explore, which panes share if their mesh is the same.
     pub own: Equations,
-    /// Last equilibrium that the panel describes in place of a state that diverges.
-    pub last: Option<&'a Simulation>,
 }
 
 /// Displayed body of a pane, and the pointer over it.
@@ -375,7 +375,6 @@ impl<P: ComparedPane> Panes<P> {
                 apart: false,
                 scene,
                 wanted: wanted.as_ref(),
-                is_dimmed: wanted.is_some(),
                 system,
                 geometry: &display.geometry,
                 options: input.view,

@@ -18,7 +18,7 @@ use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Scene, Source, registry};
 use crate::sentence::Sentence;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, Status};
 use crate::study::Study;
 
 mod area;
@@ -33,7 +33,7 @@ mod residuals;
 mod trade;
 mod triangle;
 
-pub(crate) use cards::{CARDS, Card, CardStart};
+pub(crate) use cards::{CARDS, Card};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
 use locking::ElementError;
@@ -191,7 +191,7 @@ impl Learn {
 
     /// Returns `true` if the card iterates when the user starts it.
     pub(crate) fn waits_for_steps(&self) -> bool {
-        self.card().setup.start == cards::CardStart::Waiting
+        self.card().setup.waits
     }
 
     /// Returns `true` if the card shows ρ at the equilibrium.
@@ -390,6 +390,20 @@ impl Learn {
 /// Returns `true` if the window has no room for a status bar.
 pub(crate) fn is_low(ctx: &Context) -> bool {
     ctx.content_rect().height() < LOW_WINDOW
+}
+
+/// Shows the buttons that step (name, tooltip, and `true` if it can), return to rest, and iterate to the end.
+fn step_buttons(ui: &mut Ui, shown: &Shown<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
+    let goes_on = *shown.input.simulation.status() == Status::Running && !shown.input.running;
+    for (name, tip, on, action) in [
+        (step.0, step.1, step.2, Action::Step),
+        ("From rest", "Back to rest (R)", true, Action::Reset),
+        ("Go on", "Iterate to the end (Space)", goes_on, Action::ToggleRun),
+    ] {
+        if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+            actions.push(action);
+        }
+    }
 }
 
 /// Returns the areas of the text, and of the numbers and controls next to it.
