@@ -150,6 +150,10 @@ pub(crate) struct Session {
     is_held: bool,
     /// `true` if the scene has been edited since the last [`Self::follow_edit`].
     is_edited_now: bool,
+    /// `true` if the frame before, in which there was such an edit, has left the search unfinished.
+    was_edited: bool,
+    /// `true` if this frame iterates once it is known that there is no edit.
+    is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
     timings: Timings,
     /// Residual after every iteration since the last change.
@@ -172,8 +176,8 @@ pub(crate) struct Session {
     notices: Vec<Notice>,
 }
 
-/// Relative residual above which an iterate is not drawn.
-pub(crate) const WILD: f64 = 1.0;
+/// Relative residual above which the iterate of a dragged body is not drawn.
+pub(crate) const WILD: f64 = 0.1;
 
 impl Session {
     /// Creates a session with `scene` that iterates from rest.
@@ -193,6 +197,8 @@ impl Session {
             frame_left: MAX_FRAME_WORK,
             is_held: false,
             is_edited_now: false,
+            was_edited: false,
+            is_postponed: false,
             timings: Timings::default(),
             residuals: Vec::new(),
             playback: Playback::default(),
@@ -341,8 +347,8 @@ impl Session {
     /// Returns the body drawn in place of the simulation, whose search has found no equilibrium; `None` if the simulation
     /// is drawn.
     pub(crate) fn fallback(&self) -> Option<&Simulation> {
-        // An iterate that was asked for is drawn, however far it is from equilibrium.
-        let is_wild = self.running && !self.is_slow && self.simulation.residual() > WILD;
+        // An iterate that was asked for, or of a body that is not dragged, is drawn however far it is from equilibrium.
+        let is_wild = self.running && self.is_held && !self.is_slow && self.simulation.residual() > WILD;
         let is_hidden = match self.simulation.status() {
             Status::Running => is_wild && !self.is_motion(),
             _ => is_lost(&self.simulation),
@@ -597,7 +603,11 @@ impl Session {
             self.timings = *self.simulation.last_iteration();
             return false;
         }
-        self.search();
+        // The edit that a drag makes in this frame comes first.
+        self.is_postponed = std::mem::take(&mut self.was_edited) && !self.is_slow;
+        if !self.is_postponed {
+            self.search();
+        }
         true
     }
 
@@ -614,13 +624,15 @@ impl Session {
         self.frame_left = self.frame_left.saturating_sub(since.elapsed());
     }
 
-    /// Iterates after an edit, in the same frame; returns `true` if there was one.
+    /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
     pub(crate) fn follow_edit(&mut self) -> bool {
         let is_edited = std::mem::take(&mut self.is_edited_now) && !self.is_motion();
-        if is_edited && self.iterates() && !self.is_slow && !self.is_in_background() {
+        self.was_edited |= is_edited;
+        let has_news = std::mem::take(&mut self.is_postponed) || is_edited;
+        if has_news && self.iterates() && !self.is_slow && !self.is_in_background() {
             self.search();
         }
-        is_edited
+        has_news
     }
 
     /// Stops the clock of a motion until the next [`Self::advance`].

@@ -183,6 +183,8 @@ pub struct Lab {
     /// Progress of the scene's recording; `None` if there is none.
     pub(super) recording: Option<String>,
     pub(super) gallery: Gallery,
+    /// `true` if parts of the last frame show the scene before an edit.
+    pub(super) is_mixed: bool,
 }
 
 impl Lab {
@@ -206,7 +208,14 @@ impl Lab {
             closed_warnings: 0,
             recording: None,
             gallery: Gallery::default(),
+            is_mixed: false,
         }
+    }
+
+    /// Returns `true` if an edit during the last [`Self::ui`] has left parts that show the scene before it, which are to be
+    /// laid out again before they are displayed.
+    pub(crate) fn take_mixed(&mut self) -> bool {
+        std::mem::take(&mut self.is_mixed)
     }
 
     /// Creates a lab that shows the first built-in scene until `scene`, which is large, has been meshed in the

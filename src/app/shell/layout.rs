@@ -53,7 +53,6 @@ impl Lab {
         let (mut actions, mut requests) = (Vec::new(), Vec::new());
         self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
-        self.desk.session.follow_edit();
         self.desk.panel.fade_messages(ui.ctx());
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
@@ -103,8 +102,8 @@ impl Lab {
             self.act(ui.ctx(), action, &mut requests);
         }
         if self.desk.session.follow_edit() {
-            // All parts of a frame show the edited scene: those before the edit are laid out again.
-            ui.ctx().request_discard("edit");
+            self.is_mixed = true;
+            ui.ctx().request_repaint();
         }
         help::show(ui.ctx(), &mut self.desk.view.help);
         self.show_question(ui.ctx());

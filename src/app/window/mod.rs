@@ -269,14 +269,21 @@ impl App {
         input.events = events;
         let mut requests = Vec::new();
         let (mut mark, mut cursor) = (Vec::new(), None);
-        let mut output = self.ctx.run_ui(input, |ui| {
-            requests.extend(self.lab.ui(ui));
-            if let Some(recording) = &self.recording {
-                mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
-                cursor = pointer(ui.ctx());
-                ui.ctx().request_repaint_after(POLL);
+        let again = egui::RawInput { events: Vec::new(), ..input.clone() };
+        let mut output = egui::FullOutput::default();
+        for input in [input, again] {
+            output.append(self.ctx.run_ui(input, |ui| {
+                requests.extend(self.lab.ui(ui));
+                if let Some(recording) = &self.recording {
+                    mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
+                    cursor = pointer(ui.ctx());
+                    ui.ctx().request_repaint_after(POLL);
+                }
+            }));
+            if !self.lab.take_mixed() {
+                break;
             }
-        });
+        }
         if let Some(reason) = open.bare.clipboard.after(&output.platform_output) {
             self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason = reason));
             self.ctx.request_repaint();
