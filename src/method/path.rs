@@ -146,7 +146,9 @@ impl PathEquations for StaticEquations<'_> {
         });
         if problem.supports().move_the_body() {
             let Rotation { c, s } = problem.supports().frame_rotation(problem.system().mesh(), factor);
-            [&mut *correction, &mut *rate].map(|free| rotate(problem, Rotation { c, s: -s }, free));
+            for free in [&mut *correction, &mut *rate] {
+                rotate(problem, Rotation { c, s: -s }, free);
+            }
         }
         let is_finite = correction.iter().chain(&*rate).all(|v| v.is_finite());
         is_finite.then(|| cholesky.negative_eigenvalues())
@@ -361,11 +363,11 @@ pub enum PathEndReason {
 #[derive(Clone, Debug)]
 pub(crate) enum PathPart {
     /// The equilibria between two points, in the order of the load.
-    Between(ContinuationPoint<State>, ContinuationPoint<State>),
+    Between(Box<[ContinuationPoint<State>; 2]>),
     /// The last point is critical, or the end of the path.
     Mark,
     /// The state at which a jump or a descent ends.
-    Landing(ContinuationPoint<State>),
+    Landing(Box<ContinuationPoint<State>>),
 }
 
 /// Follower of the path from rest to a load factor.
@@ -581,16 +583,16 @@ impl PathFollower {
             self.events.jump.get_or_insert(jump);
             self.limit = None;
             self.last = landing.clone();
-            self.parts.push(PathPart::Landing(landing.clone()));
+            self.parts.push(PathPart::Landing(Box::new(landing.clone())));
             start = landing;
         }
         if let Some(crossing) = crossing.filter(|crossing| crossing.factor > start.factor && crossing.factor < self.end)
         {
-            self.parts.extend([PathPart::Between(start, crossing.clone()), PathPart::Mark]);
+            self.parts.extend([PathPart::Between(Box::new([start, crossing.clone()])), PathPart::Mark]);
             start = crossing;
         }
         if to.factor < self.end {
-            self.parts.push(PathPart::Between(start, to.clone()));
+            self.parts.push(PathPart::Between(Box::new([start, to.clone()])));
             if to.modes == self.unstable_modes && to.slope >= 0.0 {
                 self.last = to;
             }
@@ -602,7 +604,7 @@ impl PathFollower {
             self.last = from;
             return self.start_descent();
         };
-        self.parts.extend([PathPart::Between(start, end.clone()), PathPart::Mark]);
+        self.parts.extend([PathPart::Between(Box::new([start, end.clone()])), PathPart::Mark]);
         self.last = end;
         PathProgress::Reached
     }
@@ -639,7 +641,7 @@ impl PathFollower {
                     if self.path.locates_all {
                         next = next.locating_all();
                     }
-                    self.parts.push(PathPart::Landing(next.last.clone()));
+                    self.parts.push(PathPart::Landing(Box::new(next.last.clone())));
                     *self = Self {
                         parts: std::mem::take(&mut self.parts),
                         events: std::mem::take(&mut self.events),

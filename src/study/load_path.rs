@@ -405,7 +405,7 @@ impl Tracer {
             let progress = follower.advance(&mut self.equations(), MAX_SOLVES);
             for part in follower.take_parts() {
                 match part {
-                    PathPart::Between(from, to) => self.follow(&follower, &from, &to),
+                    PathPart::Between(ends) => self.follow(&follower, &ends[0], &ends[1]),
                     PathPart::Mark => self.mark(),
                     PathPart::Landing(landing) => {
                         if follower.has_jumped() && landing.factor <= 1.0 {
