@@ -19,18 +19,21 @@ const ROUNDING: f64 = 1e-7;
 /// Number of further halvings covered by the bound if each changes the displacement by the same amount.
 const HALVINGS: f64 = 8.0;
 
+/// Smallest part of the last change, relative to it, that may recur with every halving beside a point.
+const HIDDEN: f64 = 0.25;
+
 /// Returns the bound of the distance from the last of these displacements, m, to their limit on finer and finer meshes,
 /// m. `None` for a single displacement.
 ///
 /// The changes d₁, d₂, … of a converging sequence decrease by a ratio q, and the remaining ones sum to d q/(1 − q). A
 /// single change does not show the ratio: the slowest is assumed.
 ///
-/// If the changes do not decrease, there may be no limit: under a force on a point (`has_point`) each halving adds the
-/// same displacement (Flamant 1892), and strains become large around it, so that a fast rate is not trusted. The bound
-/// then holds for meshes with elements down to 1/256 of the size.
+/// If the changes do not decrease, there may be no limit. The bound then holds for meshes with elements down to 1/256 of
+/// the size. Beside forces and supports on points (`has_point`) see [`error_beside_points`].
 pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -> Option<f64> {
     let size = displacements.last()?.norm();
-    let changes: Vec<f64> = displacements.windows(2).map(|w| (w[1] - w[0]).norm()).collect();
+    let steps: Vec<Vector2<f64>> = displacements.windows(2).map(|w| w[1] - w[0]).collect();
+    let changes: Vec<f64> = steps.iter().map(Vector2::norm).collect();
     let (last, before, earlier) = match *changes.as_slice() {
         [] => return None,
         [only] => (only, only / SLOWEST, only / SLOWEST),
@@ -40,13 +43,13 @@ pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -
     if last.max(before) <= ROUNDING * size {
         return Some(SAFETY * ROUNDING * size);
     }
+    if has_point {
+        return Some(SAFETY * error_beside_points(&steps));
+    }
     // A change that is small by chance does not predict the next one.
     let change = last.max(ORDINARY * before);
     let ratio = last / before;
-    let (ratio, constant) = if has_point {
-        let constant = ((last - ORDINARY * before) / (1.0 - ORDINARY)).max(0.0);
-        (SLOWEST, constant)
-    } else if ratio <= STALLED {
+    let (ratio, constant) = if ratio <= STALLED {
         (ratio.max(ORDINARY), 0.0)
     } else if last <= SLOWEST * earlier {
         (ERRATIC, 0.0)
@@ -54,6 +57,31 @@ pub(super) fn remaining_error(displacements: &[Vector2<f64>], has_point: bool) -
         (SLOWEST, last)
     };
     Some(SAFETY * (change * ratio / (1.0 - ratio) + HALVINGS * constant))
+}
+
+/// Returns the remaining changes, m, after these ones beside forces and supports on points.
+///
+/// Under a force on a point each halving adds the same displacement c (Flamant 1892). A support at a point lets the whole
+/// body move by it, and where strains become large around a point, everything moves. As c may be opposite to the part
+/// a qᵏ that converges, two changes a qᵏ + c show neither: all of the last one may recur. Three changes, as vectors, show
+/// q and c; their directions then agree.
+fn error_beside_points(steps: &[Vector2<f64>]) -> f64 {
+    // A change that is small by chance does not predict the next one.
+    let scaled = steps.iter().rev().zip([1.0, ORDINARY, ORDINARY * ORDINARY]);
+    let change = scaled.map(|(step, part)| part * step.norm()).fold(0.0, f64::max);
+    let shown = match *steps {
+        [.., earlier, before, last] => {
+            let [first, second] = [before - earlier, last - before];
+            let ratio = second.dot(&first) / first.norm_squared();
+            let across = second - first * ratio;
+            let is_shown = (-ORDINARY..=STALLED).contains(&ratio) && across.norm() <= ORDINARY * first.norm();
+            let ratio = ratio.clamp(ORDINARY, SLOWEST);
+            is_shown.then(|| ((last - before * ratio) / (1.0 - ratio)).norm())
+        }
+        _ => None,
+    };
+    let constant = shown.map_or(change, |constant| constant.max(HIDDEN * change));
+    change * SLOWEST / (1.0 - SLOWEST) + HALVINGS * constant
 }
 
 #[cfg(test)]
@@ -114,5 +142,24 @@ mod tests {
             let bound = remaining_error(&u, has_point).unwrap();
             assert!((0.08..0.25).contains(&bound), "{bound}");
         }
+    }
+
+    /// A logarithm beside a part that converges, in any direction to it: hidden in the last change or in two of them.
+    #[test]
+    fn a_hidden_logarithm_is_bounded() {
+        for (converging, angle) in (0..400).map(|i| (10f64.powf(0.01 * f64::from(i) - 2.0), 0.9 * f64::from(i))) {
+            for (q, count) in [(0.25, 3), (0.25, 4), (0.25, 5), (0.35, 4), (0.35, 5), (0.5, 4), (0.5, 5)] {
+                let constant = Vector2::new(angle.cos(), angle.sin()) * 1e-3;
+                let at = |k: f64| Vector2::new(1.0 + 1e-2 * converging * f64::powf(q, k), 0.0) + constant * k;
+                let u: Vec<_> = (0..count).map(|k| at(f64::from(k))).collect();
+                let after = at(f64::from(count) + 7.0);
+                let (bound, error) = (remaining_error(&u, true).unwrap(), (after - u[u.len() - 1]).norm());
+                assert!(bound >= error, "{converging} {angle} {q} {count}: {bound} for {error}");
+            }
+        }
+        // Where three changes show that there is none, the bound is not that of a logarithm.
+        let (u, error) = (sequence(0.1, 0.25, 4), 0.1 * 0.25f64.powi(3));
+        let bound = remaining_error(&u, true).unwrap();
+        assert!(bound >= error && bound <= 20.0 * error, "{bound} for {error}");
     }
 }

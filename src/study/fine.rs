@@ -99,7 +99,7 @@ pub(super) struct Fine {
     pub linear: Option<Vector2<f64>>,
     /// Points that are not at the places given in the scene.
     pub moved: Vec<MovedPoint>,
-    /// `true` if the solution on the next finer mesh has a fold.
+    /// `true` if the solution on the next finer mesh has a fold, which [`Self::errors`] cover.
     pub folds: bool,
     /// `true` if the mesh comes from a file and all its sides are straight.
     pub is_polygon: bool,
@@ -126,6 +126,8 @@ const NARROWEST: f64 = 1e-4;
 const MAX_ITERATIONS: u32 = 1000;
 /// Part of the work that a solve towards a fold may add.
 const FOLD_SHARE: f64 = 1.5;
+/// Distance of the folds on still finer meshes, relative to that of the first: a fold has no limit, and grows with them.
+const FARTHER_FOLD: f64 = 1.5;
 /// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
@@ -205,7 +207,7 @@ pub(super) fn fine(
     }
     let mut errors = errors(&solutions, has_point);
     for (error, distance) in errors.iter_mut().zip(&fold) {
-        *error = Some(error.unwrap_or(*distance) + distance);
+        *error = Some(error.unwrap_or(*distance) + FARTHER_FOLD * distance);
     }
     scene.solver.method = MethodKind::Linear;
     let mut linear = Simulation::with_system(&scene, simulation.system().clone())?;

@@ -125,7 +125,7 @@ pub struct Reference {
     /// Points of the scene at which the reference solution has no node.
     pub moved: Vec<MovedPoint>,
     /// `true` if the solution on a finer mesh has a fold: the reference is the last one without, and its own error covers
-    /// the distance.
+    /// 1.5 times the distance.
     pub folds: bool,
     /// `true` if all sides of a mesh file are straight: errors then refer to the polygon, not to a curved part that it
     /// approximates.
@@ -189,8 +189,8 @@ impl From<&Reference> for Sentence {
 }
 
 /// Limitation of a reference with [`Reference::folds`].
-pub(crate) const FOLDS: &str =
-    "on finer meshes the material folds at the corner of a support; the error of the reference covers that state";
+pub(crate) const FOLDS: &str = "on finer meshes the material folds at the corner of a support, and the fold may grow with \
+                                each of them: the error of the reference covers half more than that of the first";
 
 /// Largest bound of a reference's own error, percent; with a larger bound there is no reference.
 const LARGEST_OWN_ERROR: f64 = 20.0;

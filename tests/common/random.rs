@@ -113,3 +113,54 @@ pub fn scene(seed: u64) -> Scene {
     };
     Scene::from_toml(&toml).unwrap_or_else(|error| panic!("{error}\n{toml}"))
 }
+
+/// Returns a static scene on a coarse mesh with forces, and in some scenes supports, at points between nodes; a probe at
+/// each of them, at another point and at the end.
+pub fn scene_with_points(seed: u64) -> Scene {
+    let mut random = Random(seed.wrapping_mul(0x5851_F42D_4C95_7F2D));
+    let random = &mut random;
+    let length = random.between(1.5, 6.0);
+    let (element, along, across) = (random.one_of(&["t3", "t6", "q4"]), 3 + random.below(4), 1 + random.below(4));
+    let (poisson, plane) = (random.one_of(&[0.0, 0.3, 0.45]), random.one_of(&["stress", "strain"]));
+    let mut toml = format!(
+        "name = \"points {seed}\"\n[beam]\nlength = {length}\nheight = 1.0\ncells = [{along}, {across}]\nelement = \"{element}\"\n\
+         [material]\nyoung = 1e6\npoisson = {poisson}\nplane = \"{plane}\"\n"
+    );
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    // On an outline, near it, or anywhere.
+    let mut point = |random: &mut Random| {
+        let anywhere = random.between(-0.5, 0.5);
+        let at = [random.between(0.02, 1.0) * length, random.one_of(&[-0.5, 0.5, 0.49, 0.0, anywhere])];
+        points.push(at);
+        at
+    };
+    let clamp = "[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n";
+    let held = |at: [f64; 2], fix: &str, moved: f64| {
+        format!("[[support]]\nat = {at:?}\nacts_on = \"point\"\nfix = {fix}\ndisplacement = [0.0, {moved}]\n")
+    };
+    match random.below(4) {
+        0 | 1 => toml += clamp,
+        2 => {
+            toml += clamp;
+            for _ in 0..=random.below(2) {
+                let fix = random.one_of(&["[\"y\"]", "[\"x\"]", "[\"x\", \"y\"]"]);
+                let moved = if random.unit() < 0.4 && fix.contains('y') { random.between(-0.03, 0.03) } else { 0.0 };
+                toml += &held(point(random), fix, moved);
+            }
+        }
+        _ => toml += &(held(point(random), "[\"x\", \"y\"]", 0.0) + &held(point(random), "[\"y\"]", 0.0)),
+    }
+    for _ in 0..=random.below(3) {
+        let size = 1e6 / 12.0 / (length * length) * 10f64.powf(random.between(-2.0, -0.5));
+        let angle = random.between(-3.2, 3.2);
+        let force = [size * angle.cos(), size * angle.sin()];
+        let at = point(random);
+        let _ = write!(toml, "[[load]]\nkind = \"force\"\nat = {at:?}\nacts_on = \"point\"\nforce = {force:?}\n");
+    }
+    point(random);
+    for (i, at) in points.iter().enumerate() {
+        let _ = write!(toml, "[[probe]]\nname = \"p{i}\"\nat = {at:?}\n");
+    }
+    toml += "[[probe]]\nname = \"end\"\nedge = \"right\"\n";
+    Scene::from_toml(&toml).unwrap_or_else(|error| panic!("{error}\n{toml}"))
+}

@@ -223,3 +223,62 @@ fn the_reference_does_not_jump_to_a_fold() {
     );
     assert!(!Reference::of(&scene(30e3)).unwrap().folds);
 }
+
+/// Returns the displacements of the probes of a scene on its mesh with cells this number of times as small, m.
+fn on_finer_cells(scene: &Scene, times: u32) -> Option<Vec<Vector2<f64>>> {
+    let mut scene = scene.clone().with_method(MethodKind::Newton).with_element(ElementKind::Q4);
+    let beam = scene.beam.as_mut()?;
+    beam.cells = beam.cells.map(|cells| cells * times);
+    scene.solver.max_iterations = 300;
+    let mut simulation = Simulation::new(&scene).ok()?;
+    let solved = *simulation.solve() == Status::Converged;
+    solved.then(|| simulation.solution().probes.iter().map(|probe| probe.u).collect())
+}
+
+/// Beside forces and supports at points, where a logarithm may hide behind a part that converges, displacements on cells a
+/// 32nd of the scene's own size are within the bound. Cells of a sixteenth are larger than those of some references: their
+/// distance from cells of an eighth is allowed for.
+#[test]
+fn bounds_beside_points_hold_on_finer_meshes() {
+    let seeds = crate::common::sampled(0..200_u64, 40);
+    let in_full = crate::common::sweeps_run_in_full();
+    let (mut judged, mut unknown, mut wrong) = (0, 0, Vec::new());
+    for seed in seeds {
+        let scene = random::scene_with_points(seed);
+        let Ok(reference) = Reference::of(&scene) else { continue };
+        let Some(finer) = on_finer_cells(&scene, if in_full { 32 } else { 16 }) else { continue };
+        let Some(coarser) = (if in_full { Some(finer.clone()) } else { on_finer_cells(&scene, 8) }) else { continue };
+        for (known, (u, coarser)) in reference.probes().iter().zip(finer.into_iter().zip(coarser)) {
+            let Some(known) = known else {
+                unknown += 1;
+                continue;
+            };
+            judged += 1;
+            let (off, apart) = (known.percent(u, known.displacement), known.percent(u, coarser));
+            if off > known.own_error_percent + apart {
+                wrong.push(format!("{seed}: {off} %, {apart} % apart, {}", known.own_error()));
+            }
+        }
+    }
+    println!("{judged} bounds, {unknown} unknown");
+    assert!(wrong.is_empty(), "of {judged}: {wrong:#?}");
+    assert!(judged > 5, "{judged} bounds, {unknown} unknown");
+}
+
+/// Scenes whose bounds were too small: displacements on finer meshes are within them.
+#[test]
+fn bounds_cover_what_finer_meshes_have_shown() {
+    let bounds = |name: &str| {
+        let scene = crate::common::scene(&format!("tests/data/scenes/{name}.toml"));
+        Reference::of(&scene).unwrap().probes().iter().map(|known| known.unwrap()).collect::<Vec<_>>()
+    };
+    // p1 on meshes 32 times as fine as the scene's own.
+    assert!(bounds("bound60")[1].own_error_percent > 0.11);
+    // Six-node triangles with nodes at the forces, 42,000 unknowns.
+    let p0 = bounds("bound95")[0];
+    let off = 100.0 * ((p0.displacement.y - 12.490e-3).abs() + 0.001e-3) / 12.490e-3;
+    assert!(off < p0.own_error_percent, "{off} % of {} %", p0.own_error_percent);
+    // The fold on 86 × 32 cells of six-node triangles, which moves on.
+    let fold = bounds("fold");
+    assert!(fold[0].own_error_percent > 11.3 && fold[1].own_error_percent > 8.5, "{fold:?}");
+}
