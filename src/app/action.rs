@@ -67,10 +67,6 @@ pub(crate) enum Action {
     Export(Box<Figure>, FigureFile),
     /// Save an image of the window.
     Screenshot,
-    /// Record the window from now on, or end the recording.
-    Record,
-    /// Record the scene from its start, or end the recording.
-    RecordScene,
     /// Copy the scene as TOML.
     Copy,
     /// Copy a link to the web page with the scene in it.
@@ -93,11 +89,10 @@ impl Action {
         self.exists_on(IS_PAGE)
     }
 
-    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): a page has links but no
-    /// recordings, a desktop the reverse.
+    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): only a page has
+    /// links.
     pub(crate) fn exists_on(&self, page: bool) -> bool {
         match self {
-            Self::Record | Self::RecordScene => !page,
             Self::CopyLink => page,
             _ => true,
         }

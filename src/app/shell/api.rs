@@ -377,9 +377,4 @@ impl Lab {
             _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
         }
     }
-
-    /// Shows the progress of the scene's recording; `None` when it has ended.
-    pub(crate) fn show_recording(&mut self, progress: Option<String>) {
-        self.recording = progress;
-    }
 }

@@ -194,8 +194,6 @@ impl Lab {
                 ctx.request_repaint();
             }
             Action::Screenshot => requests.push(Request::Screenshot),
-            Action::Record => requests.push(Request::Record),
-            Action::RecordScene => requests.push(Request::RecordScene),
             Action::Copy => self.copy(ctx),
             Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {

@@ -32,10 +32,6 @@ pub enum Request {
     Close,
     /// Remove the copy of unsaved edits left by a crashed window.
     DiscardCopy,
-    /// Record the window, or end the recording.
-    Record,
-    /// Record the scene from its start, or end that recording.
-    RecordScene,
 }
 
 /// Model with its view and tools. The mode Learn has a desk of its own.
@@ -148,8 +144,6 @@ pub(super) enum Question {
     None,
     /// Unsaved edits would be lost.
     Unsaved(UnsavedDeparture),
-    /// The window is to close while the scene is recorded.
-    Recording,
     /// The scene is to be saved to its file, which another program has changed. A departure may follow.
     Changed(Option<UnsavedDeparture>),
     /// "Save" was answered, and the dialog asks for a file.
@@ -180,8 +174,6 @@ pub struct Lab {
     /// Warnings, and the number of them that the user has closed.
     pub(super) warnings: Vec<String>,
     pub(super) closed_warnings: usize,
-    /// Progress of the scene's recording; `None` if there is none.
-    pub(super) recording: Option<String>,
     pub(super) gallery: Gallery,
     /// `true` if parts of the last frame show the scene before an edit.
     pub(super) is_mixed: bool,
@@ -206,7 +198,6 @@ impl Lab {
             toast: None,
             warnings: Vec::new(),
             closed_warnings: 0,
-            recording: None,
             gallery: Gallery::default(),
             is_mixed: false,
         }

@@ -265,7 +265,6 @@ impl Lab {
         self.edit_loads(ui.ctx(), &interaction, requests);
         let painter = ui.painter_at(rect);
         self.show_work(ui, rect, actions);
-        self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 
@@ -387,7 +386,6 @@ impl Lab {
             }
         }
         self.report_crossing(ui);
-        self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 

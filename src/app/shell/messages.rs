@@ -1,4 +1,4 @@
-//! Messages over the view: notices of the session, and the progress of a recording.
+//! Messages over the view: notices of the session, warnings and offers.
 
 use std::time::Duration;
 
@@ -8,7 +8,6 @@ use crate::app::action::Action;
 use crate::app::language::{fill, said, sentence, tr};
 use crate::app::session::Notice;
 use crate::app::shell::lab::{Lab, Request};
-use crate::app::task::thread::POLL;
 use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
@@ -97,15 +96,6 @@ impl Lab {
         if is_shown && viewport.finds_crossing(&content, now) {
             self.say(ui.ctx(), tr("The body passes through itself: contact is not modelled").to_owned());
         }
-    }
-
-    /// Paints the progress of the scene's recording.
-    pub(super) fn paint_recording(&self, ui: &Ui, painter: &Painter, rect: Rect) {
-        let Some(progress) = &self.recording else { return };
-        let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
-        let color = ui.visuals().strong_text_color();
-        boxed_text(painter, place, Align2::CENTER_BOTTOM, progress, ui.visuals(), color, 400.0);
-        ui.ctx().request_repaint_after(POLL);
     }
 
     /// Paints the message, while it is shown.

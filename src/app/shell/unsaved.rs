@@ -1,5 +1,5 @@
-//! Questions before something is lost: unsaved edits, the rest of a recording, or the changes of another program. The offer to restore the edits left by a
-//! crashed window.
+//! Questions before something is lost: unsaved edits, or the changes of another program. The offer to restore the edits
+//! left by a crashed window.
 
 use egui::{Context, Event, Id, Key, Modal, RichText, Ui};
 
@@ -31,8 +31,8 @@ impl Lab {
         self.left.is_some()
     }
 
-    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits or
-    /// a recording, and [`Request::Close`] follows unless the answer is "Cancel".
+    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits,
+    /// and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
         self.end_story();
         if self.unsaved().is_some() && self.lesson.is_some() {
@@ -46,7 +46,7 @@ impl Lab {
     /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
         self.dialog.is_some()
-            || matches!(self.question, Question::Unsaved(_) | Question::Recording | Question::Changed(_))
+            || matches!(self.question, Question::Unsaved(_) | Question::Changed(_))
     }
 
     /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
@@ -69,7 +69,6 @@ impl Lab {
 
     fn go(&mut self, ctx: &Context, departure: UnsavedDeparture) {
         match departure {
-            UnsavedDeparture::Close if self.recording.is_some() => self.ask(ctx, Question::Recording),
             UnsavedDeparture::Close => self.closes = true,
             UnsavedDeparture::Open(source) => self.open(ctx, source),
             UnsavedDeparture::AskForFile if IS_PAGE => files::choose(),
@@ -107,17 +106,6 @@ impl Lab {
                     Some(_) => {}
                 }
             }
-            // Once the recording is complete, there is nothing to ask.
-            Question::Recording if self.recording.is_some() => {
-                let text = tr("If the window closes now, the file has only the pictures recorded so far.");
-                let answers = [("Close", Key::Enter), ("Cancel", Key::Escape)];
-                match dialog(ctx, tr("The scene is being recorded."), text, &answers) {
-                    None => self.question = Question::Recording,
-                    Some("Close") => self.closes = true,
-                    Some(_) => {}
-                }
-            }
-            Question::Recording => {}
             Question::Changed(departure) => {
                 let title = fill!("%{file} has changed on disk.", file = self.source().name.display());
                 let text = tr("Overwrite discards those changes. Reload discards your own; undo restores them.");

@@ -22,16 +22,13 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::app::language::{fill, tr};
-use crate::app::offscreen::record::{LiveRecording, pointer};
-use crate::app::offscreen::recorder::Recorder;
 use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
-use crate::app::task::thread::POLL;
-use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError, new_file};
-use crate::app::{AppError, ThemeChoice};
+use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError};
+use crate::app::AppError;
 use crate::render::RenderError;
 use crate::scene::{Scene, Source, registry};
 use crate::simulation::Simulation;
@@ -122,10 +119,6 @@ struct App {
     open: Option<OpenWindow>,
     /// Window that has been opened and is taken over by the next event.
     opening: Rc<RefCell<Option<Result<OpenWindow, AppError>>>>,
-    /// Recording of the window.
-    recording: Option<LiveRecording>,
-    /// Recording of the scene from its start.
-    scene_recording: Option<Recorder>,
     /// Time at which the window opened.
     start: Instant,
     /// Events that are processed in the next frame.
@@ -199,8 +192,6 @@ impl App {
             recovery,
             open: None,
             opening: Rc::default(),
-            recording: None,
-            scene_recording: None,
             start: Instant::now(),
             later: Vec::new(),
             wake: None,
@@ -215,10 +206,6 @@ impl App {
     fn run(self, display: Display) -> Result<(), AppError> {
         let ended = platform::start::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
         let Some(mut app) = ended else { return Ok(()) };
-        let ended = app.recording.as_ref().and_then(|recording| recording.ended(true));
-        let scene_ended = app.scene_recording.as_mut().and_then(|recorder| recorder.ended(true));
-        // The window that would show the messages is closed.
-        ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
         app.keep_settings();
         app.error.map_or(Ok(()), Err)
     }
@@ -257,8 +244,6 @@ impl App {
         };
         let now = self.start.elapsed().as_secs_f64();
         self.lab.advance(now);
-        self.follow_scene_recording();
-        let Some(open) = &mut self.open else { return Ok(()) };
         let size = [open.graphics.configuration.width, open.graphics.configuration.height];
         let mut input = open.bare.take_input(&self.ctx, now, size);
         let mut events = std::mem::take(&mut self.later);
@@ -268,18 +253,10 @@ impl App {
         self.later = clicks::after_first(&mut events);
         input.events = events;
         let mut requests = Vec::new();
-        let (mut mark, mut cursor) = (Vec::new(), None);
         let again = egui::RawInput { events: Vec::new(), ..input.clone() };
         let mut output = egui::FullOutput::default();
         for input in [input, again] {
-            output.append(self.ctx.run_ui(input, |ui| {
-                requests.extend(self.lab.ui(ui));
-                if let Some(recording) = &self.recording {
-                    mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
-                    cursor = pointer(ui.ctx());
-                    ui.ctx().request_repaint_after(POLL);
-                }
-            }));
+            output.append(self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui))));
             if !self.lab.take_mixed() {
                 break;
             }
@@ -293,33 +270,13 @@ impl App {
             event_loop,
             std::mem::take(&mut output.platform_output),
         );
-        let mut primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         open.graphics.stage.set_textures(&open.graphics.gpu, &mut output.textures_delta);
-        let whole = self.ctx.content_rect();
-        let over = |shapes: Vec<egui::Shape>| {
-            let clipped = shapes.into_iter().map(|shape| egui::epaint::ClippedShape {
-                clip_rect: whole,
-                shape,
-                transform_after_tessellation: egui::emath::TSTransform::IDENTITY,
-            });
-            self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
-        };
         let screen = open.graphics.screen(output.pixels_per_point);
         let views = self.lab.views(screen.pixels_per_point);
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
         let screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
-        if let Some(recording) = &mut self.recording {
-            recording.pass_frames(&open.graphics.gpu);
-            if let Some(number) = recording.due(now) {
-                let own = primitives.len();
-                primitives.extend(over(cursor.into_iter().collect()));
-                let drawn = (views.as_slice(), primitives.as_slice());
-                recording.take(&open.graphics.gpu, &mut open.graphics.stage, drawn, &screen, (number, now));
-                primitives.truncate(own);
-            }
-            primitives.extend(over(mark));
-        }
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         open.graphics.stage.paint(&open.graphics.gpu, &view, &screen, &primitives, &views);
         open.bare.window.pre_present_notify();
@@ -337,14 +294,8 @@ impl App {
             match request {
                 Request::Screenshot => self.say_saved(screenshot.as_ref()),
                 Request::DiscardCopy => self.recovery.iter_mut().for_each(RecoveryCopies::discard_left),
-                Request::Record => self.record(now),
-                Request::RecordScene => self.record_scene(),
                 Request::Close => self.close(event_loop),
             }
-        }
-        if let Some(text) = self.recording.as_ref().and_then(|recording| recording.ended(false)) {
-            self.recording = None;
-            self.say(text);
         }
         Ok(())
     }
@@ -366,9 +317,6 @@ impl App {
     fn renew_graphics(&mut self, event_loop: &ActiveEventLoop, reason: String) {
         // A window may have one surface at a time.
         let Some(OpenWindow { graphics, bare, .. }) = self.open.take() else { return };
-        if let Some(recording) = &mut self.recording {
-            recording.stop(&graphics.gpu, self.start.elapsed().as_secs_f64());
-        }
         drop(graphics);
         let now = Instant::now();
         self.losses.retain(|loss| now.saturating_duration_since(*loss) < LOSS_PERIOD);
@@ -431,53 +379,6 @@ impl App {
             self.warn(fill!("The copy of unsaved changes could not be removed: %{reason}", reason = error));
         }
         self.quit(event_loop, None);
-    }
-
-    /// Starts recording the window, or ends the recording.
-    fn record(&mut self, now: f64) {
-        let Some(open) = &self.open else { return };
-        if let Some(recording) = &mut self.recording {
-            recording.stop(&open.graphics.gpu, now);
-            return open.bare.window.request_redraw();
-        }
-        let size = [open.graphics.configuration.width, open.graphics.configuration.height];
-        let format = open.graphics.configuration.format;
-        let started = new_file("gif")
-            .and_then(|file| LiveRecording::start(&open.graphics.gpu, format, size, file, self.lab.language()));
-        match started {
-            Ok(recording) => {
-                self.recording = Some(recording);
-                open.bare.window.request_redraw();
-            }
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
-        }
-    }
-
-    /// Starts recording the scene from its start, or ends that recording.
-    fn record_scene(&mut self) {
-        if let Some(recorder) = &self.scene_recording {
-            return recorder.stop();
-        }
-        let theme = if self.ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
-        let (language, adapter) = (self.lab.language(), self.adapter.clone());
-        match new_file("gif").and_then(|file| Recorder::start(source, scene, (theme, language), adapter, file)) {
-            Ok(recorder) => self.scene_recording = Some(recorder),
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
-        }
-        self.schedule(Duration::ZERO);
-    }
-
-    /// Shows the progress of the scene's recording, or its end.
-    fn follow_scene_recording(&mut self) {
-        let Some(recorder) = &mut self.scene_recording else { return };
-        let ended = recorder.ended(false);
-        let progress = ended.is_none().then(|| recorder.progress());
-        self.lab.show_recording(progress);
-        if let Some(text) = ended {
-            self.scene_recording = None;
-            self.lab.say(&self.ctx, text);
-        }
     }
 
     /// Shows a message.
@@ -545,10 +446,6 @@ impl App {
             self.keep_at_end();
         }
         self.error = self.error.take().or(error);
-        if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
-            recording.stop(&open.graphics.gpu, self.start.elapsed().as_secs_f64());
-        }
-        self.scene_recording.iter().for_each(Recorder::stop);
         // The surface must be dropped before the display connection closes.
         self.open = None;
         event_loop.exit();
