@@ -572,7 +572,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
         press(&mut harness, "Leave");
         harness.state_mut().show_comparison(&parse_panes("linear,warped").unwrap());
         harness.run();
-        for name in ["+ Pane", "current | budget", "Load curve"] {
+        for name in ["+ Pane", "current | budget"] {
             let rect = harness.get_by_role_and_label(Role::Button, &zh(name)).rect();
             assert!(window.contains_rect(rect), "{size:?}, Compare: {name} at {rect:?}");
         }

@@ -112,13 +112,6 @@ impl Lab {
         self.desk.motions.panes()
     }
 
-    /// Returns the equilibria that the comparison has traced under the current kind of load. Each has its setting, and
-    /// three numbers: the load, and both components of the first probe's displacement, m.
-    #[must_use]
-    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
-        self.desk.compare.traced()
-    }
-
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {

@@ -157,11 +157,6 @@ impl Lab {
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
             // A motion has no load curve.
             Action::Toggle(Toggle::Curve) if self.desk.session.is_motion() => {}
-            // Compare has a load curve of its own.
-            Action::Toggle(Toggle::Curve) if self.desk.view.mode == Mode::Compare => {
-                self.desk.compare.toggle_trace();
-                ctx.request_repaint();
-            }
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();

@@ -72,7 +72,7 @@ impl Lab {
         match self.desk.view.mode {
             Mode::Explore => self.plots(ui, &mut actions),
             Mode::Learn => self.card_row(ui, &mut actions),
-            Mode::Compare => self.comparison_bars(ui, &mut actions),
+            Mode::Compare => self.comparison_bars(ui),
             Mode::Budget => {
                 let Desk { session, budget, .. } = &mut self.desk;
                 drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
@@ -236,14 +236,14 @@ impl Lab {
         });
     }
 
-    /// Shows the presets over the compared panes, and the load curve under them.
-    fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    /// Shows the presets over the compared panes.
+    fn comparison_bars(&mut self, ui: &mut Ui) {
         if self.desk.session.is_motion() {
             let (motions, input) = self.compared_motions();
             return motions.bars(ui, &input);
         }
         let (compare, input) = self.compared();
-        compare.bars(ui, &input, actions);
+        compare.bars(ui, &input);
     }
 
     /// Shows the compared panes in place of the body.

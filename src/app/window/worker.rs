@@ -1,7 +1,6 @@
 //! Work that a worker of the web page can do.
 
 use crate::app::modes::budget::study_task::StudyWork;
-use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
 use crate::app::session::facts::{
@@ -27,7 +26,6 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<TimeFact>>(),
     entry::<FactWork<MotionTimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
-    entry::<FactWork<ExactLine>>(),
     entry::<FactWork<RhoFact>>(),
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),

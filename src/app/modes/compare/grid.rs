@@ -168,7 +168,7 @@ pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, rang
 }
 
 /// Returns the number of panes in the first row in a view of this width, points.
-pub(super) fn first_row(panes: usize, width: f32) -> usize {
+fn first_row(panes: usize, width: f32) -> usize {
     let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
     if one_row { panes } else { panes.div_ceil(2) }
 }
