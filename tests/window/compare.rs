@@ -427,7 +427,7 @@ fn motions_have_panes_of_their_own() {
     assert!(harness.state().motion_panes().iter().all(|pane| pane.place().is_some()));
 }
 
-/// Panes of a paused scene are paused in the table of the curve too.
+/// Panes of a paused scene are paused in their headers too.
 #[test]
 fn paused_panes_are_paused_everywhere() {
     let mut harness = harness_of("article", scene("article"));

@@ -287,11 +287,7 @@ impl Lab {
     pub fn is_computing(&self) -> bool {
         let Desk { session, view, limits, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
-        let plots = match view.drawer {
-            Some(Drawer::Motion) => facts.frequency.is_pending(scene),
-            Some(Drawer::Section) => self.desk.sections.is_pending(),
-            _ => false,
-        };
+        let plots = view.drawer == Some(Drawer::Section) && self.desk.sections.is_pending();
         let limits = match view.mode {
             Mode::Limits if view.shows_curve(scene) => facts.curve.is_pending(scene),
             Mode::Limits => limits.base().is_none_or(|base| facts.limits.is_pending(base)),

@@ -219,7 +219,6 @@ impl Lab {
         let Some(drawer) = self.desk.view.drawer else { return };
         let state = diagnosis::state_text(&self.readout());
         let Desk { session, view, sections, .. } = &mut self.desk;
-        let facts = session.facts();
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => {
                 let shown = session.drawn();
@@ -229,9 +228,8 @@ impl Lab {
                 sections.show(ui, session.scene(), (shown, state.as_deref()), actions);
             }
             Drawer::Motion => {
-                let frequency = facts.frequency.get(session.scene()).copied();
                 let integrator = session.scene().dynamics.integrator;
-                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator, frequency);
+                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator);
             }
         });
     }

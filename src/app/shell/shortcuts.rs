@@ -67,7 +67,7 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
         Action::Toggle(Toggle::Drawer(Drawer::Section))
     }),
-    key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
+    key(Key::E, "Energy, tip and phase of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
     key(Key::M, "Limits: up to which load each method and element holds, on or off", || {
