@@ -10,7 +10,6 @@ use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, tr};
 use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
 use crate::app::modes::learn::{self};
-use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Magnification, Mode, ViewOptions};
 use crate::app::viewport::handle::Handle;
@@ -38,11 +37,6 @@ impl Lab {
     /// Sets the factor of the drawn displacement in the mode Explore.
     pub fn magnify(&mut self, magnification: Magnification) {
         self.desk.view.magnification = magnification;
-    }
-
-    /// Animates the growth of the load when the window opens. It delays nothing, and any input ends it.
-    pub(crate) fn introduce(&mut self) {
-        self.intro = Intro::new(self.desk.session.simulation());
     }
 
     /// Shows the load curve in the mode Limits.

@@ -24,7 +24,6 @@ impl Lab {
             return;
         }
         if changed.scene {
-            self.intro = None;
             let scene = session.simulation().scene();
             view.drawer = view.drawer.filter(|drawer| drawer.suits(scene));
         }

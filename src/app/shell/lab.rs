@@ -15,7 +15,6 @@ use crate::app::session::recovery::Unsaved;
 use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
-use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
 use crate::app::viewport::view::{BodyView, CardContent, Content};
@@ -159,7 +158,6 @@ pub struct Lab {
     pub(super) card: usize,
     /// Measurements of the last lesson.
     pub(super) card_study: Budget,
-    pub(super) intro: Option<Intro>,
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
@@ -188,7 +186,6 @@ impl Lab {
             lesson: None,
             card: 0,
             card_study: Budget::default(),
-            intro: None,
             story: None,
             dialog: None,
             question: Question::None,
@@ -309,14 +306,14 @@ impl Lab {
 
     /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
-        let Self { desk: Desk { session, view, panel, .. }, intro, lesson, .. } = self;
-        content(session, view, panel, intro.as_ref(), lesson.as_deref())
+        let Self { desk: Desk { session, view, panel, .. }, lesson, .. } = self;
+        content(session, view, panel, lesson.as_deref())
     }
 
     /// Returns the view of the body, and its content.
     pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
-        let Self { desk: Desk { session, viewport, view, panel, .. }, intro, lesson, .. } = self;
-        (viewport, content(session, view, panel, intro.as_ref(), lesson.as_deref()))
+        let Self { desk: Desk { session, viewport, view, panel, .. }, lesson, .. } = self;
+        (viewport, content(session, view, panel, lesson.as_deref()))
     }
 
     /// Returns the state that bars, panel and cards show.
@@ -371,14 +368,12 @@ fn content<'a>(
     session: &'a Session,
     options: &'a ViewOptions,
     panel: &PanelState,
-    intro: Option<&'a Intro>,
     lesson: Option<&'a Lesson>,
 ) -> Content<'a> {
     Content {
         session,
         options,
         direction: panel.force_direction(),
-        animation: intro.map(|intro| (intro.simulation(), intro.linear())),
         card: lesson
             .map(|lesson| CardContent { is_apart: lesson.learn.is_apart(), reach: lesson.learn.reach.as_ref() }),
     }

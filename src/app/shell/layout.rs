@@ -57,7 +57,6 @@ impl Lab {
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
         self.desk.budget.poll(ui.ctx());
-        self.continue_intro(ui.ctx());
         self.show_notices(ui.ctx());
         self.desk.view.narrow = ui.available_width() < NARROW;
         // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
@@ -113,7 +112,7 @@ impl Lab {
             ui.ctx().request_repaint_after(POLL);
         } else if let Some(story) = &self.story {
             ui.ctx().request_repaint_after(story.delay());
-        } else if self.iterates() || self.intro.is_some() {
+        } else if self.iterates() {
             ui.ctx().request_repaint();
         }
         requests
@@ -133,25 +132,6 @@ impl Lab {
         let (session, shown) = self.desk.shown_facts(learns_rho);
         if session.request_facts(shown, is_pressed) {
             ctx.request_repaint_after(if session.is_following() { SOON } else { POLL });
-        }
-    }
-
-    /// Continues the opening animation, until it ends or the user does something.
-    fn continue_intro(&mut self, ctx: &egui::Context) {
-        if self.intro.is_none() {
-            return;
-        }
-        let (now, touched) = ctx.input(|i| {
-            let idle = |event: &egui::Event| {
-                matches!(event, egui::Event::PointerMoved(_) | egui::Event::WindowFocused(_) | egui::Event::PointerGone)
-            };
-            (i.time, i.events.iter().any(|event| !idle(event)))
-        });
-        // The camera is fitted to the end of the animation, so the equilibrium must be known first.
-        let waits = self.iterates() || self.desk.session.facts().reference.is_pending(self.desk.session.scene());
-        let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
-        if touched || !goes_on {
-            self.intro = None;
         }
     }
 
@@ -371,7 +351,7 @@ impl Lab {
         let kept = viewport.show_values(ui, &painter, &content);
         actions.extend(kept.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.paint_story(ui, &painter, rect);
-        if self.desk.view.bars && self.intro.is_none() {
+        if self.desk.view.bars {
             let mut free = rect;
             if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
                 free.max.x -= PANEL_WIDTH;

@@ -31,7 +31,6 @@ impl Lab {
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
         let aside = std::mem::replace(own, desk);
-        self.intro = None;
         self.lesson = Some(Box::new(Lesson { learn: Learn::new(self.card), aside }));
         self.set_card_up();
     }

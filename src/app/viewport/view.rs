@@ -50,8 +50,6 @@ pub(crate) struct Content<'a> {
     pub options: &'a ViewOptions,
     /// Direction of a force of zero, degrees.
     pub direction: f64,
-    /// Body and linear solution of an animation, drawn in place of the session's.
-    pub animation: Option<(&'a Simulation, Option<&'a Simulation>)>,
     /// Card of Learn below the view.
     pub card: Option<CardContent<'a>>,
 }
@@ -99,11 +97,7 @@ impl<'a> Content<'a> {
     /// Returns the displacement of the linear solution, m, if it is displayed.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
         let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
-        let linear = match self.animation {
-            Some((_, linear)) => linear,
-            None => self.session.linear(),
-        };
-        linear.map(Simulation::displacement).filter(|_| is_wanted)
+        self.session.linear().map(Simulation::displacement).filter(|_| is_wanted)
     }
 }
 
@@ -279,19 +273,15 @@ impl BodyView {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        let shown = (
-            content.options,
-            content.reference().filter(|_| content.animation.is_none() && content.session.live().is_none()),
-        );
+        let shown = (content.options, content.reference().filter(|_| content.session.live().is_none()));
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
 
-    /// Returns the factor of the drawn displacement: 1 under a card of Learn, in animations and while the body is
-    /// grabbed.
+    /// Returns the factor of the drawn displacement: 1 under a card of Learn and while the body is grabbed.
     fn magnification_of(&mut self, simulation: &Simulation, content: &Content<'_>) -> f64 {
         let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        if content.card.is_some() || is_grabbed || content.animation.is_some() {
+        if content.card.is_some() || is_grabbed {
             return 1.0;
         }
         let (choice, moves) = (content.options.magnification, content.session.is_motion());
@@ -346,7 +336,7 @@ impl BodyView {
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
     /// the background.
     fn bases<'a>(&'a self, content: &Content<'a>) -> Option<Bases<'a>> {
-        let is_fixed = content.card.is_some() || content.animation.is_some() || content.session.is_in_background();
+        let is_fixed = content.card.is_some() || content.session.is_in_background();
         (!is_fixed).then(|| Bases {
             scene: content.session.scene(),
             system: content.simulation().system(),
@@ -488,12 +478,6 @@ impl BodyView {
                 }
             };
             include(&mut self.body.points().iter().copied());
-            if content.animation.is_some() {
-                // The animation ends at the session's body.
-                for body in std::iter::once(session.simulation()).chain(session.linear()) {
-                    include(&mut self.drawn_positions(body));
-                }
-            }
             include(&mut self.exact(content).iter().flatten().copied());
             if let Some(reach) = content.reach() {
                 include(&mut self.drawn_positions(reach));
@@ -596,16 +580,16 @@ impl BodyView {
         errors: Errors,
         note: Option<(&str, Color32)>,
     ) {
-        let (session, is_animated) = (content.session, content.animation.is_some());
+        let session = content.session;
         let simulation = session.simulation();
-        let (shown, fallback) = (content.drawn(), session.fallback().filter(|_| !is_animated));
+        let (shown, fallback) = (content.drawn(), session.fallback());
         let moves_support = simulation.problem().supports().move_the_body();
         let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
             reaction.middle = support.middle + (reaction.middle - support.middle) * self.magnification;
         }
         let sections = sections(shown);
-        let exact = if is_animated { Cow::Borrowed(&[][..]) } else { self.exact(content) };
+        let exact = self.exact(content);
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: fallback.map(|_| simulation.scene()),
@@ -618,7 +602,7 @@ impl BodyView {
             apart: content.is_apart(),
             ghost: self.ghost(content),
             exact: &exact,
-            errors: if is_animated { Errors::default() } else { errors },
+            errors,
             time: shown.state().time(),
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().opened),

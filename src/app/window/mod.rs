@@ -30,7 +30,7 @@ use crate::app::task::solve::MAX_UNKNOWNS;
 use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError};
 use crate::app::AppError;
 use crate::render::RenderError;
-use crate::scene::{Scene, Source, registry};
+use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
 
 /// Connection to a display.
@@ -143,7 +143,6 @@ impl App {
         card: Option<usize>,
         is_default: bool,
     ) -> Result<Self, AppError> {
-        let first_picture = source.name.to_str() == Some(registry::DEFAULT);
         let file = Settings::file();
         let ctx = egui::Context::default();
         let lab = match simulation {
@@ -179,7 +178,6 @@ impl App {
         match card {
             Some(card) => lab.show_card(card),
             None if is_default && is_first_start && !lab.offers_unsaved() => lab.tell_story(),
-            None if first_picture && !lab.reduces_motion() => lab.introduce(),
             None => {}
         }
         let needs_settings_file = lab.story().is_some();
