@@ -559,8 +559,9 @@ pub(crate) const TOP_ROWS_HEIGHT: f32 = 64.0;
 /// Width that the colour bar takes on the right of the view, points.
 pub(crate) const LEGEND_WIDTH: f32 = 300.0;
 
-/// Smallest size of a view with a colour bar, points.
+/// Smallest size of a view with a colour bar, and smallest width of a view with line key and scale bar, points.
 const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
+const KEY_WIDTH: f32 = 220.0;
 
 /// Returns `true` if a view of size `view`, points, has a colour bar at its bottom.
 pub(crate) fn has_legend_below(view: Vec2) -> bool {
@@ -710,6 +711,9 @@ pub(crate) fn magnified(factor: f64) -> String {
 fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
+    if rect.width() < KEY_WIDTH {
+        return Rect::from_min_size(rect.min, Vec2::ZERO);
+    }
     let with_error = |word: &str, error: Option<f64>| match error {
         Some(error) => format!("{word}  {}", percent(error)),
         None => word.to_owned(),
@@ -789,7 +793,7 @@ pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
 
 /// Paints a scale bar of a round length.
 pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
-    if rect.width() < 220.0 || rect.height() < 100.0 {
+    if rect.width() < KEY_WIDTH || rect.height() < 100.0 {
         return;
     }
     let (length, bar) = scale(camera);

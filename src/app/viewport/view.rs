@@ -83,7 +83,7 @@ impl<'a> Content<'a> {
 
     /// Returns the drawn body.
     fn drawn(&self) -> &'a Simulation {
-        self.animation.map_or_else(|| self.session.drawn(), |(simulation, _)| simulation)
+        self.session.drawn()
     }
 
     /// Returns the reference solution if it is known for the drawn state; one that follows a load may be of the load before.

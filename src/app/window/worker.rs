@@ -6,7 +6,6 @@ use crate::app::platform;
 use crate::app::session::facts::{
     CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, TimeFact,
 };
-use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
@@ -30,7 +29,6 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),
     entry::<SolveWork>(),
-    entry::<ThumbnailWork>(),
 ];
 
 /// Waits for requests of the page.
