@@ -127,9 +127,7 @@ struct App {
     wake: Option<Instant>,
     /// Part of the name of the graphics adapter; `None` stands for that of the environment.
     adapter: Option<String>,
-    /// Times at which the graphics device failed.
-    losses: Vec<Instant>,
-    /// Reason for which the graphics resources are being made again.
+    /// Reason for which the graphics device was lost; there is a second one, once.
     lost: Option<String>,
     error: Option<AppError>,
 }
@@ -194,7 +192,6 @@ impl App {
             later: Vec::new(),
             wake: None,
             adapter: None,
-            losses: Vec::new(),
             lost: None,
             error: None,
         })
@@ -209,13 +206,8 @@ impl App {
     }
 }
 
-/// Number of lost devices in [`LOSS_PERIOD`] after which the window closes with an error.
-const MAX_LOSSES: usize = 3;
-/// Time after which a lost device no longer counts.
-const LOSS_PERIOD: Duration = Duration::from_secs(60);
-
 impl App {
-    /// Draws a frame; after an error of the device, makes the graphics resources again.
+    /// Draws a frame; after the first error of a device, makes the graphics resources again.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let drawn = if self.device_failure().is_none() { self.frame(event_loop) } else { Ok(()) };
         if let Some(reason) = self.device_failure() {
@@ -310,19 +302,15 @@ impl App {
         self.take_window(event_loop);
     }
 
-    /// Makes the graphics resources again after the device failed. Closes the window with an error if that happens too
-    /// often.
+    /// Makes the graphics resources again after the device failed; closes the window with an error if the second device
+    /// fails too.
     fn renew_graphics(&mut self, event_loop: &ActiveEventLoop, reason: String) {
+        if self.lost.is_some() {
+            return self.quit(event_loop, Some(RenderError::Lost { reason }.into()));
+        }
         // A window may have one surface at a time.
         let Some(OpenWindow { graphics, bare, .. }) = self.open.take() else { return };
         drop(graphics);
-        let now = Instant::now();
-        self.losses.retain(|loss| now.saturating_duration_since(*loss) < LOSS_PERIOD);
-        self.losses.push(now);
-        if self.losses.len() >= MAX_LOSSES {
-            let error = RenderError::Lost { times: self.losses.len(), reason };
-            return self.quit(event_loop, Some(error.into()));
-        }
         self.lost = Some(reason);
         self.open_graphics(event_loop, bare);
     }
@@ -335,7 +323,7 @@ impl App {
                 let adapter = open.graphics.gpu.describe();
                 open.bare.window.request_redraw();
                 self.open = Some(open);
-                if let Some(reason) = self.lost.take() {
+                if let Some(reason) = self.lost.clone() {
                     self.say(fill!(
                         "Graphics restarted with %{adapter}: %{reason}",
                         adapter = adapter,
