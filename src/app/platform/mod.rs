@@ -7,6 +7,6 @@ mod desktop;
 mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) use desktop::{IS_PAGE, clipboard, copies, files, graphics, new_file, page, settings, start, work};
+pub(crate) use desktop::{IS_PAGE, clipboard, files, graphics, new_file, page, settings, start, work};
 #[cfg(target_arch = "wasm32")]
-pub(crate) use web::{IS_PAGE, clipboard, copies, files, graphics, new_file, page, settings, start, work};
+pub(crate) use web::{IS_PAGE, clipboard, files, graphics, new_file, page, settings, start, work};

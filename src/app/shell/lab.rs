@@ -143,8 +143,6 @@ pub(super) enum Question {
     None,
     /// Unsaved edits would be lost.
     Unsaved(UnsavedDeparture),
-    /// The scene is to be saved to its file, which another program has changed. A departure may follow.
-    Changed(Option<UnsavedDeparture>),
     /// "Save" was answered, and the dialog asks for a file.
     Saving(UnsavedDeparture),
 }

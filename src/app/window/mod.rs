@@ -152,20 +152,13 @@ impl App {
         };
         lab.set_settings(&ctx, settings.clone());
         lab.set_easing(!lab.reduces_motion());
-        let is_first_start = unreadable.is_none() && file.as_deref().is_some_and(Settings::is_missing);
+        let is_first_start = file.as_deref().is_some_and(Settings::is_missing);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
         let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
             Ok((recovery, left)) => {
                 left.into_iter().for_each(|left| lab.offer(left));
-                for (file, reason) in recovery.unreadable() {
-                    let file = file.display();
-                    lab.warn(fill!(
-                        "%{file} has unsaved changes, but cannot be read: %{reason}",
-                        file = file,
-                        reason = reason
-                    ));
-                }
+                recovery.unreadable.iter().for_each(|message| _ = lab.warn(message.clone()));
                 Some(recovery)
             }
             Err(error) => {
@@ -283,7 +276,11 @@ impl App {
         for request in requests {
             match request {
                 Request::Screenshot => self.say_saved(screenshot.as_ref()),
-                Request::DiscardCopy => self.recovery.iter_mut().for_each(RecoveryCopies::discard_left),
+                Request::DiscardCopy => {
+                    let edits = self.lab.unsaved();
+                    let discarded = self.recovery.as_mut().map(|recovery| recovery.discard_left(edits));
+                    discarded.and_then(Result::err).into_iter().for_each(|error| self.warn(no_copy(error)));
+                }
                 Request::Close => self.close(event_loop),
             }
         }
@@ -351,7 +348,7 @@ impl App {
     /// Stores a copy of unsaved edits when the window closes without a question about them.
     fn keep_at_end(&mut self) {
         let (Some(recovery), Some(edits)) = (&mut self.recovery, self.lab.unsaved()) else { return };
-        match recovery.keep_at_once(edits) {
+        match recovery.keep_at_once(Some(edits)) {
             Ok(()) => self.warn(tr("Unsaved changes are kept; the next window offers to restore them").to_owned()),
             Err(error) => self.warn(no_copy(error)),
         }
