@@ -530,11 +530,11 @@ fn presets_set_the_material_and_the_collapsed_header_names_it() {
 /// In a window of any size, every control is inside, has a name, and can be reached.
 #[test]
 fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
-    for size in [[640.0, 480.0], [800.0, 600.0], [1280.0, 800.0]] {
+    for size in [[640.0, 480.0], [959.0, 600.0], [960.0, 600.0], [1280.0, 800.0]] {
         let mut harness = harness("article");
         harness.set_size(size.into());
         harness.run();
-        let narrow = size[0] < 900.0;
+        let narrow = size[0] < 960.0;
         assert_eq!(harness.query_by_role_and_label(Role::Slider, "Force").is_none(), narrow);
         if narrow {
             harness.get_by_label("Panel").click();

@@ -170,7 +170,7 @@ pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
             (
                 "Save as…",
-                "Save the scene to another file; “warpbeam record FILE -o FILE.gif” makes a GIF of it (Ctrl+Shift+S)",
+                "Save the scene to another file; `warpbeam record FILE -o FILE.gif` makes a GIF of it (Ctrl+Shift+S)",
                 Action::SaveAs,
             ),
             ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),

@@ -19,9 +19,9 @@ use crate::scene::{Analysis, Scene, registry};
 /// Size of a picture, and height of its entry, points.
 const PICTURE: egui::Vec2 = vec2(112.0, 68.0);
 const HEIGHT: f32 = 80.0;
-/// Largest width of an entry in two columns, and smallest width for which there are two columns, points.
+/// Number of columns, and largest width of an entry, points.
+const COLUMNS: usize = 2;
 const WIDEST: f32 = 420.0;
-const NARROWEST: f32 = 340.0;
 
 /// Built-in scene in the gallery.
 struct GalleryEntry {
@@ -53,27 +53,30 @@ pub(crate) struct Gallery {
 
 impl std::fmt::Debug for Gallery {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Gallery").field("is_open", &self.is_open).finish_non_exhaustive()
+        self.is_open.fmt(f)
     }
 }
 
 impl Gallery {
     /// Shows the button with the scene's name, which opens the gallery.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
-        let palette = Palette::new(ui.visuals());
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
         let window = ui.ctx().content_rect().size();
-        let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
         let opened = ComboBox::from_id_salt("scene")
             .selected_text(tr(&input.scene.name))
-            .width(if wide { 190.0 } else { 120.0 })
-            .height((window.y - 64.0).max(200.0))
+            .width(120.0)
+            .height(window.y - 64.0)
             .truncate()
             .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));
         self.is_open = opened.inner.is_some();
         if !self.is_open {
             self.pictures.clear();
         }
-        opened.response.labelled_by(label.id).on_hover_text(tr(&input.scene.about));
+        opened.response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::ComboBox, true, tr("Scene"));
+            info.current_text_value = Some(tr(&input.scene.name).to_owned());
+            info
+        });
+        opened.response.on_hover_text(tr(&input.scene.about));
     }
 
     fn entries(&mut self, ui: &mut Ui, input: &Readout<'_>, window: f32, actions: &mut Vec<Action>) {
@@ -81,10 +84,8 @@ impl Gallery {
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;
         let palette = Palette::new(ui.visuals());
-        let room = (window - BESIDE).max(160.0);
-        let columns = if room >= 2.0 * NARROWEST + GAP { 2 } else { 1 };
-        let width = ((room - GAP * (columns - 1) as f32) / columns as f32).min(if columns > 1 { WIDEST } else { room });
-        ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
+        let width = ((window - BESIDE - GAP) / COLUMNS as f32).clamp(0.0, WIDEST);
+        ui.set_width(width * COLUMNS as f32 + GAP);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         let top = ui.horizontal(|ui| {
             let tip = with_keys(ui.ctx(), tr("Open a scene file, or a recent one (Ctrl+O)"));
@@ -102,7 +103,7 @@ impl Gallery {
         for (analysis, heading) in GROUPS {
             ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
             let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
-            for row in group.chunks(columns) {
+            for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {
                     for entry in row {
                         let is_present = entry.id == input.scene_name;
@@ -122,7 +123,14 @@ impl Gallery {
         }
     }
 
-    fn entry(&mut self, ui: &mut Ui, palette: &Palette, entry: &GalleryEntry, width: f32, is_present: bool) -> Response {
+    fn entry(
+        &mut self,
+        ui: &mut Ui,
+        palette: &Palette,
+        entry: &GalleryEntry,
+        width: f32,
+        is_present: bool,
+    ) -> Response {
         const PADDING: f32 = 6.0;
         const TEXT: f32 = 12.0;
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());

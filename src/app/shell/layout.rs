@@ -18,12 +18,11 @@ use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::menu;
-use crate::app::viewport::view::STATUS_VIEW;
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
-const NARROW: f32 = 900.0;
+const NARROW: f32 = 960.0;
 
 /// Time between two polls of the reference that follows a dragged load.
 const SOON: Duration = Duration::from_millis(10);
@@ -37,12 +36,8 @@ const DRAWER_HEIGHT: f32 = 270.0;
 const LIMITS_HEIGHT: f32 = 350.0;
 const DRAWER_SHARE: f32 = 0.45;
 
-/// Height of the status under a low view, points.
+/// Height of the line with the status under the body, points.
 const STATUS_LINE: f32 = 34.0;
-/// In a view narrower than this, points, the status is not beside the body.
-const STATUS_WIDTH: f32 = 640.0;
-/// Height of a view under a card of Learn, points, below which the card shows a good status.
-const LESSON_VIEW: f32 = 300.0;
 
 impl Lab {
     /// Shows the user interface and performs the user's actions. The body itself is drawn by another pass, under the
@@ -94,7 +89,7 @@ impl Lab {
             _ => self.body_view(ui, &mut actions, &mut requests),
         });
         let view = &self.desk.view;
-        if view.bars && view.narrow && view.sheet && self.view_rect().width() >= 160.0 {
+        if view.bars && view.narrow && view.sheet {
             self.sheet(ui, &mut actions);
         }
         for action in actions {
@@ -139,16 +134,12 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
-        let top = Panel::top("toolbar")
-            .exact_size(toolbar::height(ui.ctx().content_rect().width()))
-            .resizable(false)
-            .frame(bar(ui));
+        let top = Panel::top("toolbar").exact_size(toolbar::height(&self.desk.view)).resizable(false).frame(bar(ui));
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
         self.gallery = gallery;
-        // Compared panes have a status each; over a card of Learn a low window has no room for the status bar.
-        let is_low_card = self.lesson.is_some() && learn::is_low(ui.ctx());
-        if self.desk.view.mode != Mode::Compare && !is_low_card {
+        // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
+        if self.desk.view.mode != Mode::Compare && !(self.lesson.is_some() && self.desk.view.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
             bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
         }
@@ -284,17 +275,11 @@ impl Lab {
 
     /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
-        let (width, height) = (ui.available_width(), ui.available_height());
-        let is_small = match self.lesson {
-            None => height < STATUS_VIEW + STATUS_LINE,
-            Some(_) => width < STATUS_WIDTH && height >= LESSON_VIEW,
-        };
-        let has_line = self.desk.view.bars && is_small;
-        if has_line {
+        if self.desk.view.bars {
             self.status_line(ui, actions);
-        }
-        if self.desk.view.bars && self.desk.view.why {
-            self.explanation(ui);
+            if self.desk.view.why {
+                self.explanation(ui);
+            }
         }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
@@ -327,8 +312,7 @@ impl Lab {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
-            let taken =
-                (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend_below(rect.size()));
+            let taken = (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend(rect.size()));
             let now = self.simulation().state().time();
             time_line::show(ui, rect, taken, (self.desk.session.playback(), now), actions);
         }
@@ -352,16 +336,7 @@ impl Lab {
         actions.extend(kept.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.paint_story(ui, &painter, rect);
         if self.desk.view.bars {
-            let mut free = rect;
-            if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
-                free.max.x -= PANEL_WIDTH;
-            }
-            if free.width() >= 160.0 && free.height() >= 90.0 {
-                if !has_line {
-                    self.status(ui, free, &errors, actions);
-                }
-                self.show_work(ui, free, actions);
-            }
+            self.show_work(ui, rect, actions);
         }
         self.report_crossing(ui);
         self.paint_toast(ui, &painter, rect);
@@ -380,25 +355,25 @@ impl Lab {
         });
     }
 
-    /// Shows the status in a line under a low view, with a remedy.
+    /// Shows the status in a line under the body, with a remedy.
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
-        let (mut status, bad) = diagnosis::summary(&input, None);
-        if let Some(remedy) = &remedy {
-            status.clone_from(&remedy.text);
-        }
+        let (status, bad) = diagnosis::summary(&input, remedy.as_ref());
         let color = if bad { palette.error } else { palette.text };
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 explain_link(ui, actions);
-                if let Some(remedy) = remedy {
-                    actions.extend(remedy_button(ui, &remedy));
-                }
+                actions.extend(remedy.as_ref().and_then(|remedy| remedy_button(ui, remedy)));
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.add(egui::Label::new(egui::RichText::new(status).color(color)).truncate());
+                    // The remedy of a failure says what has failed.
+                    let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
+                    let reason = remedy.map(|remedy| (remedy.text, palette.error));
+                    for (text, color) in reason.into_iter().chain(status) {
+                        ui.add(egui::Label::new(egui::RichText::new(text).color(color)).truncate());
+                    }
                 });
             });
         });
@@ -410,63 +385,13 @@ impl Lab {
         diagnosis::remedy(input, errors).filter(|_| offers)
     }
 
-    /// Shows the status and a remedy beside the body.
-    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
-        const WIDEST: f32 = 460.0;
-        /// Width next to a small body.
-        const WIDEST_NARROW: f32 = 250.0;
-        let input = self.readout();
-        let palette = Palette::new(ui.visuals());
-        let narrow = rect.width() < STATUS_WIDTH;
-        let remedy = self.remedy(&input, errors);
-        let (text, bad) = diagnosis::summary(&input, remedy.as_ref());
-        // A card that leaves the body little room shows a good status itself.
-        let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
-        if is_tight && !bad {
-            return;
-        }
-        let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
-        let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
-        let id = egui::Id::unique("status");
-        let widest = if is_tight { WIDEST_NARROW } else { WIDEST }.min(rect.width() - 28.0);
-        let (pivot, at, width) = self.desk.viewport.message_place(&self.content(), rect, above, widest);
-        let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
-        area.show(ui.ctx(), |ui| {
-            ui.set_max_width(width);
-            if let Some(remedy) = remedy {
-                chip(palette.error_chip).show(ui, |ui| {
-                    ui.horizontal_wrapped(|ui| {
-                        ui.colored_label(palette.error, &remedy.text);
-                        actions.extend(remedy_button(ui, &remedy));
-                        if input.has_failed() {
-                            explain_link(ui, actions);
-                        }
-                    });
-                });
-                // The remedy of a failure says what has failed.
-                if input.has_failed() {
-                    return;
-                }
-            }
-            let tint = if bad { palette.error_chip } else { palette.panel };
-            chip(tint).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(if bad { palette.error } else { palette.text }, text);
-                    explain_link(ui, actions);
-                });
-            });
-        });
-    }
-
     /// Shows the progress of the background solve, with a button that cancels it.
     fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
-        /// Half of the usual width, points.
-        const HALF_WIDTH: f32 = 140.0;
         let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
         let palette = Palette::new(ui.visuals());
         let area = egui::Area::new(egui::Id::unique("work"))
             .order(egui::Order::Middle)
-            .fixed_pos(rect.center_top() + egui::vec2(-HALF_WIDTH, 52.0))
+            .fixed_pos(rect.left_top() + egui::vec2(14.0, 52.0))
             .constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {

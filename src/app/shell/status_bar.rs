@@ -27,9 +27,6 @@ use crate::scene::Scene;
 const ERROR: &str = "ERROR";
 const ERROR_REMARK: f32 = 178.0;
 
-/// In a status bar narrower than this, points, the numbers have no bars.
-const BARS: f32 = 820.0;
-
 /// Number with its name.
 struct BarNumber {
     name: &'static str,
@@ -45,7 +42,8 @@ struct BarNumber {
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
-    let wide = ui.available_width() >= BARS;
+    // In a narrow window the numbers have no bars.
+    let wide = !view.narrow;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {

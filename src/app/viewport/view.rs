@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
+use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
@@ -13,12 +13,11 @@ use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
+use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{CardChoice, CardRequest, Pinned, PointCard};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
-use crate::app::widgets::legend;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -29,19 +28,10 @@ use crate::simulation::{Field, Simulation, Status};
 use crate::state::largest;
 use crate::study::{Reference, section_chart};
 
-/// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
-/// and the colour bar below.
-const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
-/// Height below which a view has the status under it, because it would cover the body, points.
-pub(crate) const STATUS_VIEW: f32 = 526.0;
-/// Margins above a card of Learn, which leaves less of the view.
-const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
-/// Margins above a card in a low view: room for the arrow of the largest load of its slider.
-const LOW_CARD_MARGINS: Margins = Margins { top: 50.0, bottom: 80.0, ..LOW_MARGINS };
-/// Width of a low view from which line key and colour bar share a row, points.
-const ONE_ROW: f64 = 560.0;
-/// Margins under the rows at the top of a low view.
-const LOW_MARGINS: Margins = Margins { sides: 60.0, top: TOP_ROWS_HEIGHT as f64, bottom: 30.0 };
+/// Largest margins around the body when the camera is fitted, points, and their largest part of the view: room for the
+/// load arrow, the line key above and the colour bar below.
+const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 92.0 };
+const FIT_SHARE: f64 = 0.16;
 
 /// Content of the view.
 #[derive(Clone, Copy)]
@@ -450,7 +440,6 @@ impl BodyView {
         let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };
         match probe::show_card(ui, painter, card, &pinned, &mut self.card_choice)? {
             CardRequest::Close => self.probe = None,
-            CardRequest::Copy(text) => ui.ctx().copy_text(text),
             CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
         }
         None
@@ -484,7 +473,7 @@ impl BodyView {
             }
             self.swept = Some([low, high]).filter(|_| is_motion);
             self.camera.set_whole([low, high]);
-            let least = least_margins(content, size);
+            let least = least_margins(size);
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
         let [low, high] = self.camera.whole();
@@ -500,7 +489,7 @@ impl BodyView {
         let (low, high) = content.mesh().bounds();
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
-        let least = least_margins(content, self.size());
+        let least = least_margins(self.size());
         let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
@@ -555,17 +544,15 @@ impl BodyView {
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.whole_arrows(&projection));
         }
-        let on_top = legend::has_bar_on_top(size.y);
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
             let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
-            let above = if on_top && arrow.vector.y < 0.0 { overlay::TOP_ROWS_HEIGHT } else { 0.0 };
-            let below = if !on_top && is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
+            let below = if is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(least.top + beyond(above - tip.y)),
+                top: margins.top.max(least.top + beyond(-tip.y)),
                 bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below)),
             }
         })
@@ -622,38 +609,6 @@ impl BodyView {
         }
     }
 
-    /// Returns the anchor, position and largest width of a message over the view: at the lower left, next to tips of
-    /// arrows that it would hide, or in another corner.
-    pub(crate) fn message_place(
-        &self,
-        content: &Content<'_>,
-        view: Rect,
-        above: f32,
-        widest: f32,
-    ) -> (Align2, Pos2, f32) {
-        const SIDE: f32 = 14.0;
-        /// Height of two messages, points.
-        const HEIGHT: f32 = 100.0;
-        const CLEAR: f32 = 18.0;
-        const NARROWEST: f32 = 220.0;
-        let lower_left = view.left_bottom() + egui::vec2(SIDE, -above);
-        let covered = Rect::from_min_max(lower_left - egui::vec2(0.0, HEIGHT), lower_left + egui::vec2(widest, 0.0));
-        let covered = covered.expand(CLEAR);
-        let hidden = self.arrows(content).into_iter().map(|arrow| arrow.tip()).filter(|tip| covered.contains(*tip));
-        let columns: Vec<f32> = hidden.map(|tip| tip.x).collect();
-        let first = columns.iter().copied().fold(f32::INFINITY, f32::min);
-        let last = columns.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let (left, right) = (first - CLEAR - lower_left.x, view.right() - SIDE - last - CLEAR);
-        if left >= NARROWEST {
-            return (Align2::LEFT_BOTTOM, lower_left, left.min(widest));
-        }
-        if right >= NARROWEST {
-            let low = view.right_bottom() - egui::vec2(SIDE, overlay::LEGEND_HEIGHT + 10.0);
-            return (Align2::RIGHT_BOTTOM, low, right.min(widest));
-        }
-        (Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0), widest)
-    }
-
     /// Checks a converged state or a motion for self-intersections of the outline at `now`, s; returns `true` for the
     /// first one of a document.
     pub(crate) fn finds_crossing(&mut self, content: &Content<'_>, now: f64) -> bool {
@@ -686,20 +641,11 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
     near.filter(|near| near.element == point.element).unwrap_or(point)
 }
 
-/// Returns the margins around a box that do not depend on the loads.
-fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
-    match (content.card.is_some(), legend::has_bar_on_top(view[1] as f32)) {
-        // The first view is a point, because nothing has been laid out.
-        (true, true) if view[0] > 1.0 && view[0] < ONE_ROW => Margins { top: LOW_MARGINS.top, ..LOW_CARD_MARGINS },
-        (true, true) => LOW_CARD_MARGINS,
-        (true, false) => CARD_MARGINS,
-        (false, true) => LOW_MARGINS,
-        // The status is in a line under the view.
-        (false, false) if content.options.bars && view[1] < f64::from(STATUS_VIEW) => {
-            Margins { bottom: 110.0, ..FIT_MARGINS }
-        }
-        (false, false) => FIT_MARGINS,
-    }
+/// Returns the margins around a box that do not depend on the loads, in a view of this size, points.
+fn least_margins(size: [f64; 2]) -> Margins {
+    let Margins { sides, top, bottom } = FIT_MARGINS;
+    let [width, height] = size.map(|side| FIT_SHARE * side);
+    Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height) }
 }
 
 /// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.

@@ -21,6 +21,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
+use crate::app::AppError;
 use crate::app::language::{fill, tr};
 use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::RecoveryCopies;
@@ -28,7 +29,6 @@ use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
 use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError};
-use crate::app::AppError;
 use crate::render::RenderError;
 use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
@@ -228,6 +228,8 @@ impl App {
         let now = self.start.elapsed().as_secs_f64();
         self.lab.advance(now);
         let size = [open.graphics.configuration.width, open.graphics.configuration.height];
+        let side = |axis: usize| size[axis] as f32 / open.bare.window.scale_factor() as f32 / platform::SMALLEST[axis];
+        self.ctx.set_zoom_factor(self.ctx.zoom_factor().max(1.0).min(side(0)).min(side(1)));
         let mut input = open.bare.take_input(&self.ctx, now, size);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);

@@ -245,7 +245,7 @@ impl Compare {
         }
         let range = self.panes.share_colors(input.common.view, |_| true);
         let whole = ui.available_rect_before_wrap();
-        let grid = self.panes.lay_out(ui, shown_probes(input.common.scene));
+        let grid = self.panes.lay_out(ui, shown_probes(input.common.scene, input.common.view));
         let reference = input.reference.filter(|_| input.common.view.exact);
         let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
         let exact = exact.unwrap_or_default();
@@ -340,22 +340,22 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
         grid::mesh_picker(ui, &palette, name, widths[2], &mut setting.cells, scene);
     });
     result(ui, &panes::pane_name(number), pane, input);
-    kept_probes(ui, pane);
+    kept_probes(ui, pane, input.common.view);
     change
 }
 
 /// Largest number of probes in a header, so that the bodies keep their room.
 const MAX_PROBES: usize = 3;
 
-/// Returns the number of probes that a header shows, the first of the scene.
-fn shown_probes(scene: &Scene) -> usize {
-    scene.probes.len().min(MAX_PROBES)
+/// Returns the number of probes that a header shows, the first of the scene; a narrow window has no room for them.
+fn shown_probes(scene: &Scene, view: &ViewOptions) -> usize {
+    if view.narrow { 0 } else { scene.probes.len().min(MAX_PROBES) }
 }
 
 /// Shows the displacements of the probes.
-fn kept_probes(ui: &mut Ui, pane: &Pane) {
+fn kept_probes(ui: &mut Ui, pane: &Pane, view: &ViewOptions) {
     let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
-    for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene())) {
+    for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene(), view)) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
         let text = RichText::new(format!("{}: u = {u}", tr(&probe.name))).size(SMALL);
