@@ -1444,7 +1444,8 @@ fn a_file_changed_by_another_program_is_not_overwritten_without_a_question() {
     let ask = |harness: &mut Harness<'_, Lab>| {
         key(harness, Modifiers::COMMAND, Key::S);
         harness.get_by_label("Save the scene");
-        harness.get_by_label_contains("mine.toml has changed on disk.");
+        // The dialog says why, and the row above the body offers to reload.
+        assert_eq!(harness.query_all_by_label_contains("mine.toml has changed on disk.").count(), 2);
         assert_eq!(read(&path), theirs);
     };
     // Cancelled, nothing is written. Reloaded; undo restores the edits, which are then saved without a question.

@@ -53,7 +53,7 @@ impl Lab {
         self.request_facts(ui.ctx());
         self.desk.budget.poll(ui.ctx());
         self.show_notices(ui.ctx());
-        self.desk.view.narrow = ui.available_width() < NARROW;
+        self.desk.view.narrow = ui.ctx().content_rect().width() < NARROW;
         // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
         let was_typing = ui.ctx().text_edit_focused();
         if self.desk.view.bars {
