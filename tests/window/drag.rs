@@ -61,7 +61,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
             harness.drag_at(tip);
             harness.step();
             let mut checked = 0;
-            for position in sampled(0..POSITIONS, 5) {
+            for position in sampled(0..POSITIONS, 10) {
                 let what = format!("{id}, {method:?}, position {position}");
                 let wanted = arrow(tip - foot, position);
                 harness.hover_at(foot + wanted);
@@ -100,7 +100,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
                     let rho = alone.certify().fixed_point_rho.map(|rho| engineering(two_digits(rho), ""));
                     assert_eq!(text(&shown, "ρ "), format!("ρ {} per iteration", rho.unwrap()), "{what}");
                 }
-                if position % 50 != 25 {
+                if position % 50 != 20 {
                     continue;
                 }
                 wait(&mut harness, "the live reference", |lab| !lab.is_following());
@@ -126,7 +126,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
                     );
                 }
             }
-            assert!(checked >= 15, "{id}, {method:?}: {checked} positions converge");
+            assert!(checked >= 8, "{id}, {method:?}: {checked} positions converge");
             harness.drop_at(foot + arrow(tip - foot, POSITIONS - 1));
             harness.run();
         }
