@@ -7,6 +7,9 @@ use warpbeam::nalgebra::Vector2;
 use warpbeam::study::{LoadPath, PathEndReason, Reference};
 use warpbeam::{MethodKind, Scene, Simulation, Status};
 
+mod small_steps;
+mod sweep;
+
 /// Returns a scene of `tests/data/scenes`.
 fn file(name: &str) -> String {
     format!("{}/tests/data/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))

@@ -1,0 +1,191 @@
+//! Equilibria in small steps of the load factor: a judge of the path from rest that shares with it only the forces and
+//! the tangent of the elements. Each step extrapolates the last ones, and corrects that by full Newton steps at a constant
+//! load factor. Steps are halved where a correction is long or converges slowly, and where the number of unstable modes
+//! changes; at a limit point no step is short enough.
+
+use warpbeam::assembly::{Forces, Kinematics, Matrix, NodalSupport, Problem};
+use warpbeam::element::Tangent;
+use warpbeam::nalgebra::Vector2;
+use warpbeam::solver::Factor;
+use warpbeam::{Rotation, Simulation};
+
+/// Number of steps on a path along which nothing is difficult.
+const STEPS: f64 = 160.0;
+
+type Field = Vec<Vector2<f64>>;
+
+/// Equilibrium, with the forces that its work needs.
+#[derive(Clone)]
+struct Point {
+    factor: f64,
+    u: Field,
+    /// Loads, and forces of supports, on every node, N.
+    forces: [Field; 2],
+    modes: usize,
+}
+
+/// Path from rest, to the full load or to the limit point that ended it.
+pub struct SmallSteps {
+    /// Largest load factor that was reached: below 1 where no step leads further.
+    pub factor: f64,
+    /// Displacement there, m.
+    pub u: Field,
+    /// Load factors at which the number of unstable modes changes, with the numbers before and after.
+    pub bifurcations: Vec<(f64, [usize; 2])>,
+    /// Work of the loads and of the supports, J.
+    pub work: [f64; 2],
+    /// Sum of the magnitudes of both in each step, J.
+    pub exchanged: f64,
+    /// Elastic energy at the end, J.
+    pub elastic: f64,
+}
+
+/// Follows the path of a simulation's scene by steps not shorter than `shortest`; `None` if the tangent at rest is
+/// singular.
+pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
+    let mut judge = Judge::new(simulation.problem());
+    let rest = vec![Vector2::zeros(); simulation.displacement().len()];
+    let mut points = vec![judge.equilibrium(rest, 0.0, f64::INFINITY)?];
+    let (mut bifurcations, mut work, mut exchanged, longest) = (Vec::new(), [0.0; 2], 0.0, 1.0 / STEPS);
+    // The first step has nothing to extrapolate.
+    let mut step = 1e-2 * longest;
+    loop {
+        let last = points.last()?.clone();
+        if last.factor >= 1.0 {
+            break;
+        }
+        let factor = if last.factor + step > 1.0 - 0.5 * shortest { 1.0 } else { last.factor + step };
+        let start = extrapolated(&points, factor);
+        let ahead = distance(&start, &last.u);
+        let allowed = if points.len() > 1 { 0.25 * ahead } else { f64::INFINITY };
+        let next = judge.equilibrium(start, factor, allowed);
+        let is_short = step <= shortest;
+        match next.filter(|next| next.modes == last.modes || is_short) {
+            Some(next) => {
+                if next.modes != last.modes {
+                    bifurcations.push((next.factor, [last.modes, next.modes]));
+                }
+                for (work, (before, after)) in work.iter_mut().zip(last.forces.iter().zip(&next.forces)) {
+                    let nodes = before.iter().zip(after).zip(last.u.iter().zip(&next.u));
+                    let more = nodes.map(|((f, g), (u, v))| 0.5 * (f + g).dot(&(v - u))).sum::<f64>();
+                    *work += more;
+                    exchanged += more.abs();
+                }
+                points.push(next);
+                if points.len() > 3 {
+                    points.remove(0);
+                }
+                step = (2.0 * step).min(longest);
+            }
+            None if is_short => break,
+            None => step = (0.5 * (factor - last.factor)).max(shortest),
+        }
+    }
+    let Point { factor, u, .. } = points.pop()?;
+    let elastic = judge.problem.elastic_energy(&judge.problem.system().state_of(&u).ok()?);
+    Some(SmallSteps { factor, u, bifurcations, work, exchanged, elastic })
+}
+
+/// Returns the largest distance of a node between two displacements, m.
+pub fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// Returns the polynomial through up to three points at a load factor.
+fn extrapolated(points: &[Point], factor: f64) -> Field {
+    let weight = |p: &Point| {
+        let others = points.iter().filter(|other| other.factor != p.factor);
+        others.map(|other| (factor - other.factor) / (p.factor - other.factor)).product::<f64>()
+    };
+    let mut u = vec![Vector2::zeros(); points[0].u.len()];
+    for point in points {
+        let weight = weight(point);
+        u.iter_mut().zip(&point.u).for_each(|(u, v)| *u += v * weight);
+    }
+    u
+}
+
+struct Judge<'a> {
+    problem: &'a Problem,
+    forces: Forces,
+    matrix: Matrix,
+    factor: Factor,
+    free: Vec<f64>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(problem: &'a Problem) -> Self {
+        let system = problem.system();
+        Self {
+            problem,
+            forces: Forces::new(system.mesh().nodes().len()),
+            matrix: Matrix::new(system.pattern()),
+            factor: Factor::new(system.symbolic().unwrap()).unwrap(),
+            free: vec![0.0; system.dofs()],
+        }
+    }
+
+    /// Moves the supports to their places.
+    fn put_supports(&self, u: &mut [Vector2<f64>], factor: f64) {
+        let (mesh, supports) = (self.problem.system().mesh(), self.problem.supports().all());
+        let target = |support: &NodalSupport, x: Vector2<f64>| {
+            let arm = x - support.middle;
+            Rotation::from_angle(factor * support.rotation).apply(arm) - arm + support.displacement * factor
+        };
+        let mut is_fixed = vec![[false; 2]; u.len()];
+        for support in supports {
+            for &(node, own) in &support.nodes {
+                for axis in (0..2).filter(|&axis| own[axis]) {
+                    u[node as usize][axis] = target(support, mesh.nodes()[node as usize])[axis];
+                    is_fixed[node as usize][axis] = true;
+                }
+            }
+        }
+        // Two points in an element disturb each other.
+        for _ in 0..200 {
+            let mut largest = 0.0_f64;
+            for support in supports {
+                for axis in (0..2).filter(|&axis| support.point.is_some_and(|axes| axes[axis])) {
+                    let mean: f64 = support.weights.iter().map(|&(node, n)| n * u[node as usize][axis]).sum();
+                    let off = target(support, support.middle)[axis] - mean;
+                    let nodes = || support.weights.iter().filter(|(node, _)| !is_fixed[*node as usize][axis]);
+                    let sum: f64 = nodes().map(|(_, n)| n * n).sum();
+                    nodes().for_each(|&(node, n)| u[node as usize][axis] += n * off / sum);
+                    largest = largest.max(off.abs());
+                }
+            }
+            if largest <= 1e-15 * self.problem.system().size() {
+                break;
+            }
+        }
+    }
+
+    /// Returns the equilibrium at a load factor that full steps from `u` lead to, unless the first is longer than `allowed`,
+    /// m, or they do not converge fast.
+    fn equilibrium(&mut self, mut u: Field, factor: f64, allowed: f64) -> Option<Point> {
+        let system = self.problem.system();
+        let (pattern, size) = (system.pattern(), system.size());
+        self.put_supports(&mut u, factor);
+        let mut allowed = allowed.max(1e-9 * size);
+        for _ in 0..12 {
+            let state = system.state_of(&u).ok()?;
+            self.problem.linearize(&state, &mut self.forces, Some((Tangent::EXACT, &mut self.matrix)));
+            self.problem.balance(&state, Kinematics::Corotated, factor, &mut self.forces);
+            pattern.restrict(self.forces.residual(), &mut self.free);
+            self.factor.factorize_symmetric(self.matrix.values());
+            self.factor.solve_in_place(&mut self.free);
+            let length = self.free.iter().map(|v| v.abs()).fold(0.0, f64::max);
+            if length.is_nan() || length > allowed {
+                return None;
+            }
+            pattern.add_free(&self.free, 1.0, &mut u);
+            if length <= 1e-8 * size {
+                let supports = self.forces.residual().iter().map(|f| -f).collect();
+                let forces = [self.forces.external().to_vec(), supports];
+                return Some(Point { factor, u, forces, modes: self.factor.negative_eigenvalues() });
+            }
+            allowed = 0.3 * length;
+        }
+        None
+    }
+}
