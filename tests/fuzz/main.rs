@@ -3,16 +3,21 @@
 //! coverage.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use peak_alloc::PeakAlloc;
 use warpbeam::element::ELEMENTS;
 use warpbeam::scene::units::parse;
 use warpbeam::scene::{ElementKind, Scene, registry};
-use warpbeam::{Field, Mesh, Simulation, Status};
+use warpbeam::study::LoadPath;
+use warpbeam::{Field, Mesh, Progress, Simulation, Status};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
+
+/// Number of random paths that `cargo test` follows.
+const ITERATIONS: usize = 100;
 
 /// Largest memory that all tests of this file together may use, MB.
 const MAX_MEMORY_MB: f32 = 256.0;
@@ -87,7 +92,11 @@ impl<'a> Choices<'a> {
         );
         for _ in 0..=self.below(2) {
             let fix = self.of(&["\"x\", \"y\"", "\"x\", \"y\"", "\"x\"", "\"y\""]);
-            text += &format!("[[support]]\nedge = \"{}\"\nfix = [{fix}]\n", self.of(&edges));
+            let place = match self.below(4) {
+                0 => format!("at = [{}, {}]\nacts_on = \"point\"", self.number(), self.number()),
+                _ => format!("edge = \"{}\"", self.of(&edges)),
+            };
+            text += &format!("[[support]]\n{place}\nfix = [{fix}]\n");
             text += &match self.below(12) {
                 0 if fix.len() > 3 => format!("displacement = [{}, {}]\n", self.number(), self.number()),
                 1 => format!("displacement = [0.0, {}]\n", self.number()),
@@ -120,6 +129,73 @@ impl<'a> Choices<'a> {
             "[solver]\nmethod = \"{}\"\nmax_iterations = 1000\nmax_error_percent = {:e}\n",
             self.of(&["linear", "warped", "newton", "auto"]),
             10f64.powi(self.below(5) as i32 - 3)
+        );
+        text
+    }
+
+    /// Returns a number from 0 to 1.
+    fn unit(&mut self) -> f64 {
+        f64::from(u16::from_le_bytes([self.byte(), self.byte()])) / 65535.0
+    }
+
+    /// Returns a number from `-size` to `size`.
+    fn within(&mut self, size: f64) -> f64 {
+        size * (2.0 * self.unit() - 1.0)
+    }
+
+    /// Returns the scene file of a body 1 m high that is held at edges and points, which may move and turn, and loaded by
+    /// up to 100 times its critical load.
+    fn moved_scene(&mut self) -> String {
+        let length = 1.0 + 40.0 * self.unit().powi(2);
+        let mut text = format!(
+            "name = \"Random\"\n[beam]\nlength = {length}\nheight = 1.0\nrise = {}\ncells = [{}, {}]\nelement = \"{}\"\n\
+             [material]\nyoung = 1e6\npoisson = {}\n",
+            if self.below(4) == 0 { self.within(0.3 * length) } else { 0.0 },
+            1 + self.below(10),
+            1 + self.below(2),
+            self.of(&["t3", "t6", "q4"]),
+            0.49 * self.unit(),
+        );
+        for edge in ["left", "right", "top"] {
+            let turn = self.within(400.0);
+            let [x, y] = [self.unit() * length, self.within(0.5)];
+            let by = [self.within(0.5 * length), self.within(0.5 * length)];
+            let (kind, moves) = (self.below(7), self.below(2) == 0);
+            text += &match kind {
+                0 | 1 if edge != "top" => {
+                    format!("[[support]]\nedge = \"{edge}\"\nfix = [\"x\", \"y\"]\nturn = \"{turn}°\"\n")
+                }
+                2..=4 => {
+                    let fix = self.of(&["\"x\", \"y\"", "\"x\", \"y\"", "\"y\""]);
+                    let acts_on = self.of(&["point", "point", "point", "node"]);
+                    format!("[[support]]\nat = [{x}, {y}]\nacts_on = \"{acts_on}\"\nfix = [{fix}]\n")
+                }
+                _ => continue,
+            };
+            if moves && text.ends_with("\"x\", \"y\"]\n") || moves && kind < 2 {
+                text += &format!("displacement = {by:?}\n");
+            }
+        }
+        // π² EI/L² is about the critical load.
+        let critical = 1e6 / length.powi(2);
+        for _ in 0..self.below(3) {
+            let size = critical * 10f64.powf(self.within(2.0));
+            let (x, force) = (self.unit() * length, [self.within(size), self.within(size)]);
+            text += &match self.below(4) {
+                0 => {
+                    format!("[[load]]\nkind = \"moment\"\nedge = \"right\"\nmoment = {}\n", self.within(size * length))
+                }
+                1 => format!("[[load]]\nkind = \"force\"\nat = [{x}, 0.0]\nacts_on = \"point\"\nforce = {force:?}\n"),
+                2 => {
+                    let acceleration = force.map(|force| force / (1000.0 * length));
+                    format!("[[load]]\nkind = \"gravity\"\nacceleration = {acceleration:?}\n")
+                }
+                _ => format!("[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = {force:?}\n"),
+            };
+        }
+        text += &format!(
+            "[[probe]]\nname = \"p\"\nedge = \"right\"\n[solver]\nmethod = \"{}\"\n",
+            self.of(&["newton", "newton", "auto", "warped"])
         );
         text
     }
@@ -174,6 +250,49 @@ fn the_solver_solves_or_refuses_small_scenes() {
     let [set_up, converged] = counts.map(AtomicU32::into_inner);
     println!("{set_up} of 8000 scenes set up, {converged} converged after some steps");
     assert!(set_up > 800 && converged > 200, "too few of the random scenes are scenes: {set_up}, {converged}");
+}
+
+/// Bodies whose points are held, and whose supports turn and move: the result, its path and the curve of the loads are
+/// numbers, or refused.
+#[test]
+fn paths_are_followed_or_refused() {
+    let counts = [AtomicU32::new(0), AtomicU32::new(0)];
+    bolero::check!().with_iterations(ITERATIONS).with_max_len(256).for_each(|bytes: &[u8]| {
+        let text = Choices::new(bytes).moved_scene();
+        for (count, yes) in counts.iter().zip(solve(&text)) {
+            count.fetch_add(u32::from(yes), Ordering::Relaxed);
+        }
+        // A path may be long: it is cancelled as by a user.
+        let watched = || {
+            let left = AtomicU32::new(200);
+            move |_: Progress<'_>| match left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1))
+            {
+                Ok(_) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        };
+        let Ok(scene) = Scene::from_toml(&text) else { return };
+        if let Some(path) = LoadPath::observed(&scene, &watched()) {
+            let states = path.states.iter().flat_map(|state| {
+                let reactions = state.reactions.iter().flat_map(|r| [r.force.x, r.force.y, r.moment]);
+                state.probes.iter().flat_map(|u| [u.x, u.y]).chain(reactions).chain([state.factor])
+            });
+            assert!(states.chain([path.supports_work]).all(f64::is_finite), "{text}");
+        }
+        if let Ok(mut simulation) = Simulation::new(&scene) {
+            simulation.solve();
+            let summary = LoadPath::to_result(&simulation, &watched());
+            assert!(summary.and_then(|summary| summary.supports_work).is_none_or(f64::is_finite), "{text}");
+        }
+        memory_is_bounded();
+    });
+    let [set_up, converged] = counts.map(AtomicU32::into_inner);
+    println!("{set_up} of {ITERATIONS} scenes set up, {converged} converged after some steps");
+    assert!(
+        set_up > ITERATIONS as u32 / 4 && converged > ITERATIONS as u32 / 8,
+        "too few of the random scenes are scenes: {set_up}, {converged}"
+    );
 }
 
 #[test]
