@@ -5,13 +5,12 @@ use std::time::{Duration, Instant};
 use crate::common::alone::ran_alone;
 use crate::common::{scene, scene_with};
 use egui::accesskit::Role;
-use egui::{Key, Pos2, Rect};
+use egui::{Key, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use nalgebra::Vector2;
 use warpbeam::Simulation;
 use warpbeam::app::{Lab, parse_panes};
-use warpbeam::scene::{Load, MethodKind, Scene, Source};
+use warpbeam::scene::{Load, Scene, Source};
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::{LoadCurve, Reference};
 

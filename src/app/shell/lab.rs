@@ -200,7 +200,7 @@ impl Lab {
 
     /// Returns `true` if an edit during the last [`Self::ui`] has left parts that show the scene before it, which are to be
     /// laid out again before they are displayed.
-    pub(crate) fn take_mixed(&mut self) -> bool {
+    pub fn take_mixed(&mut self) -> bool {
         std::mem::take(&mut self.is_mixed)
     }
 

@@ -87,7 +87,7 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
     let ended = input.ended;
     let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
         let (name, tip) = (tr(name), tr(tip));
-        let word = (wide && icon != Icon::Slow).then_some(name);
+        let word = (wide && ![Icon::Slow, Icon::Reset].contains(&icon)).then_some(name);
         let chosen = icon == Icon::Slow && input.is_slow;
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, chosen));
         if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {

@@ -6,7 +6,6 @@ use web_time::{Duration, Instant};
 
 use self::grid::{Preset, grow};
 use self::panes::{ComparedPane, Condition, PaneChange, Panes};
-use crate::app::action::Action;
 use crate::app::diagnosis::{coarse_text, error_color, error_text, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
@@ -156,6 +155,7 @@ impl Compare {
             let until = Instant::now() + share;
             let frame = FrameConditions { is_slow: input.is_slow, holds, runs: input.running, until };
             pane.solve.advance(pane.setting.apply(input.common.scene), &equations, frame);
+            pane.is_dragged = holds && input.running && !input.is_slow;
             pane.update_error(input);
         }
         let mut solves = self.panes.list.iter().map(|pane| &pane.solve);

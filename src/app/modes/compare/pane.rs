@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use super::CompareInput;
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
+use crate::app::session::WILD;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
 use crate::app::session::facts::TimeFact;
 use crate::app::session::fallback::Fallback;
@@ -33,6 +34,8 @@ pub struct Pane {
     recent: VecDeque<(Scene, Vector2<f64>)>,
     /// Bodies drawn in place of a search that has found no equilibrium.
     fallback: Fallback,
+    /// `true` while the load is dragged, and the pane iterates as fast as it can.
+    pub(super) is_dragged: bool,
     /// Time of the solve from rest.
     time: Keyed<TimeFact>,
 }
@@ -167,7 +170,9 @@ impl Pane {
         known: &[Equations],
     ) {
         let is_sound = self.solve.is_sound();
-        if let Some(simulation) = in_place(&self.solve, &self.fallback).or_else(|| self.solve.displayed()) {
+        if let Some(simulation) =
+            in_place(&self.solve, &self.fallback, self.is_dragged).or_else(|| self.solve.displayed())
+        {
             self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
@@ -198,8 +203,9 @@ impl Pane {
 }
 
 /// Returns the body drawn in place of a solve that has found no equilibrium.
-fn in_place<'a>(solve: &ComparedSolve, fallback: &'a Fallback) -> Option<&'a Simulation> {
-    fallback.of(solve.simulation().filter(|_| solve.has_failed())?)
+fn in_place<'a>(solve: &ComparedSolve, fallback: &'a Fallback, is_dragged: bool) -> Option<&'a Simulation> {
+    let is_wild = |simulation: &Simulation| is_dragged && !solve.is_settled() && simulation.residual() > WILD;
+    fallback.of(solve.simulation().filter(|simulation| solve.has_failed() || is_wild(simulation))?)
 }
 
 impl ComparedPane for Pane {
@@ -212,6 +218,7 @@ impl ComparedPane for Pane {
             error: None,
             recent: VecDeque::new(),
             fallback: Fallback::default(),
+            is_dragged: false,
             time: Keyed::default(),
         }
     }
@@ -246,11 +253,11 @@ impl ComparedPane for Pane {
     }
 
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay) {
-        let fallback = in_place(&self.solve, &self.fallback).map(Simulation::scene);
+        let fallback = in_place(&self.solve, &self.fallback, self.is_dragged).map(Simulation::scene);
         (fallback.or_else(|| self.solve.scene()).map(|scene| (scene, 0.0)), &mut self.display)
     }
 
     fn unreached(&self) -> Option<&Scene> {
-        self.solve.scene().filter(|_| in_place(&self.solve, &self.fallback).is_some())
+        self.solve.scene().filter(|_| in_place(&self.solve, &self.fallback, self.is_dragged).is_some())
     }
 }
