@@ -142,7 +142,11 @@ pub(super) fn fine(
     effort: Effort,
     observe: Observer<'_>,
 ) -> Result<Fine, StudyError> {
-    let mut scene = prepared(scene);
+    let mut scene = scene.clone();
+    scene.set_element(element(&scene));
+    scene.solver.method = MethodKind::Newton;
+    scene.solver.max_iterations = MAX_ITERATIONS;
+    scene.solver.accept_after = 0;
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = has_point(&scene);
@@ -228,16 +232,6 @@ pub(super) fn fine(
     })
 }
 
-/// Returns a scene with element and method of fine solutions.
-pub(super) fn prepared(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    scene.set_element(element(&scene));
-    scene.solver.method = MethodKind::Newton;
-    scene.solver.max_iterations = MAX_ITERATIONS;
-    scene.solver.accept_after = 0;
-    scene
-}
-
 /// Returns `true` if a solution is so far from the one it was started from that it may be another equilibrium.
 fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
     /// Distance relative to the largest displacement.
@@ -247,7 +241,7 @@ fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
 }
 
 /// Returns the displacement of every probe, m.
-pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
+fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
     let u = simulation.displacement();
     simulation.problem().probes().iter().map(|probe| probe.mean(u)).collect()
 }
@@ -291,7 +285,7 @@ fn element(scene: &Scene) -> ElementKind {
 }
 
 /// Returns the bounds of the errors of the last solution, m, for each probe.
-pub(super) fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
+fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
     let probes = solutions.last().map_or(0, Vec::len);
     let of = |probe: usize| solutions.iter().filter_map(|u| u.get(probe).copied()).collect::<Vec<_>>();
     (0..probes).map(|probe| remaining_error(&of(probe), has_point)).collect()
@@ -308,7 +302,7 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
 }
 
 /// Returns `true` if a force or a support acts on a single point.
-pub(super) fn has_point(scene: &Scene) -> bool {
+fn has_point(scene: &Scene) -> bool {
     let at = |place: &Place| matches!(place, Place::At(_));
     scene.supports.iter().any(|s| at(&s.place))
         || scene.loads.iter().any(|load| matches!(load, Load::Force { place, .. } if at(place)))
@@ -345,7 +339,7 @@ impl FineSearch<'_> {
 }
 
 /// Sequence of meshes, each with every element of the previous one cut into four.
-pub(super) struct Meshes {
+struct Meshes {
     /// Mesh before the beam is bent to its arch; the mesh itself if there is no arch.
     straight: Mesh,
     /// Arch that the beam is bent to.
@@ -354,11 +348,7 @@ pub(super) struct Meshes {
 
 impl Meshes {
     /// Returns the coarsest mesh of a scene. Points of the scene without a node are moved to the nearest one.
-    pub(super) fn of(
-        scene: &mut Scene,
-        near: Option<&Simulation>,
-        effort: Effort,
-    ) -> Result<(Self, Vec<MovedPoint>), StudyError> {
+    fn of(scene: &mut Scene, near: Option<&Simulation>, effort: Effort) -> Result<(Self, Vec<MovedPoint>), StudyError> {
         match scene.beam.clone() {
             Some(beam) => {
                 let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
@@ -391,7 +381,7 @@ impl Meshes {
     }
 
     /// Returns the current mesh.
-    pub(super) fn mesh(&self) -> Result<Mesh, StudyError> {
+    fn mesh(&self) -> Result<Mesh, StudyError> {
         match &self.arch {
             None => Ok(self.straight.clone()),
             Some(beam) => {
@@ -401,7 +391,7 @@ impl Meshes {
     }
 
     /// Refines the mesh; returns a displacement of the previous mesh interpolated to it.
-    pub(super) fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+    fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         let carried = self.straight.prolonged(displacement);
         self.straight = self.straight.refined();
         carried
@@ -547,7 +537,7 @@ fn on_lines(lines: &[f64], part: f64) -> f64 {
 }
 
 /// Returns `true` if no side of the outline is curved.
-pub(super) fn has_straight_sides(mesh: &Mesh) -> bool {
+fn has_straight_sides(mesh: &Mesh) -> bool {
     const STRAIGHT: f64 = 1e-9;
     mesh.outline().iter().all(|side| {
         let [a, b] = side.ends().map(|n| mesh.node(n));
@@ -556,7 +546,7 @@ pub(super) fn has_straight_sides(mesh: &Mesh) -> bool {
 }
 
 /// Returns the closed outlines of a body at rest and in its state, m, node by node.
-pub(super) fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
+fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
     let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
     let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
     for side in mesh.outline() {

@@ -9,7 +9,6 @@ mod background_solve;
 mod compare;
 #[cfg(target_os = "linux")]
 mod desktop;
-mod drag;
 mod figures;
 mod golden;
 mod language;

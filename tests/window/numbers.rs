@@ -16,8 +16,7 @@ use warpbeam::study::{Extent, Study};
 use warpbeam::{MethodKind, Scene, Status};
 
 /// Texts of the window.
-#[derive(Debug)]
-pub struct Shown(pub Vec<String>);
+struct Shown(Vec<String>);
 
 fn harness_of(lab: Lab) -> Harness<'static, Lab> {
     let mut harness = window([1280.0, 2000.0], lab);
@@ -26,7 +25,7 @@ fn harness_of(lab: Lab) -> Harness<'static, Lab> {
 }
 
 /// Returns the numbers of `solve` for a scene.
-pub fn solve(scene: &Scene) -> Value {
+fn solve(scene: &Scene) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene.to_toml().unwrap()).unwrap();
@@ -51,19 +50,19 @@ impl Shown {
         Self::with_role(harness, &|_| true)
     }
 
-    pub fn with_role(harness: &Harness<'_, Lab>, has: &dyn Fn(Role) -> bool) -> Self {
+    fn with_role(harness: &Harness<'_, Lab>, has: &dyn Fn(Role) -> bool) -> Self {
         let nodes = harness.get_all_by(|node| has(node.role())).map(|node| node.accesskit_node());
         Self(nodes.filter_map(|node| node.value().or(node.label())).collect())
     }
 
     /// Returns the value of a row of Details.
-    pub fn row(&self, name: &str) -> &str {
+    fn row(&self, name: &str) -> &str {
         let at = self.0.iter().position(|text| text == name);
         let value = at.and_then(|at| self.0.get(at + 1));
         value.map_or_else(|| panic!("no row {name:?}: {:?}", self.0), String::as_str)
     }
 
-    pub fn starting_with(&self, start: &str) -> Option<&str> {
+    fn starting_with(&self, start: &str) -> Option<&str> {
         self.0.iter().map(String::as_str).find(|text| text.starts_with(start))
     }
 

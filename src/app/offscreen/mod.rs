@@ -2,4 +2,5 @@
 
 pub(crate) mod painter;
 pub(crate) mod record;
+pub(crate) mod recorder;
 pub(crate) mod shot;

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use web_time::{Duration, Instant};
 
-use crate::app::session::fallback::is_lost;
 use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::BackgroundSolve;
 use crate::app::task::quality::Quality;
@@ -89,8 +88,8 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
 /// Conditions of a solve in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameConditions {
-    /// `true` if the frame makes one iteration.
-    pub is_slow: bool,
+    /// `true` while the pointer moves: a dragged load gets one iteration per frame.
+    pub moves: bool,
     /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
     pub holds: bool,
     /// `true` if iterations are made at all.
@@ -169,10 +168,9 @@ impl ComparedSolve {
         matches!(self.body, ComparedBody::Away(_))
     }
 
-    /// Returns `true` if the solve from rest found no equilibrium; while a load is held, the one from the state before.
+    /// Returns `true` if the solve from rest found no equilibrium.
     pub(crate) fn has_failed(&self) -> bool {
-        let is_lost = || self.displayed().is_some_and(is_lost);
-        self.end.as_ref().map_or_else(is_lost, |end| end.status.failure().is_some())
+        self.end.as_ref().is_some_and(|end| end.status.failure().is_some())
     }
 
     /// Returns `true` if the displayed state is a result for its load.
@@ -328,7 +326,7 @@ impl ComparedSolve {
         }
         while !self.is_large && !has_ended(simulation, most) {
             simulation.step();
-            if frame.is_slow || Instant::now() >= frame.until {
+            if frame.moves || Instant::now() >= frame.until {
                 break;
             }
         }
@@ -433,9 +431,9 @@ mod tests {
         scene
     }
 
-    /// Returns the conditions of a frame in slow motion.
+    /// Returns the conditions of a frame without time for more than one iteration.
     fn frame(holds: bool) -> FrameConditions {
-        FrameConditions { is_slow: true, holds, runs: true, until: Instant::now() }
+        FrameConditions { moves: holds, holds, runs: true, until: Instant::now() }
     }
 
     /// Advances until no work is left; returns the number of frames.

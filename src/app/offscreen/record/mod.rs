@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
+pub(crate) use self::live::{LiveRecording, pointer};
 pub use self::story::record_story;
 use crate::app::language::{self, Language, fill};
 use crate::app::offscreen::shot::Canvas;
@@ -24,6 +25,7 @@ use crate::state::State;
 
 mod colors;
 mod film;
+mod live;
 mod story;
 
 /// Default frames per second of a motion: a rate that GIF represents exactly.
