@@ -15,7 +15,10 @@ mod mesh_study;
 mod own_mesh;
 #[path = "../../examples/swing_energy.rs"]
 mod swing_energy;
+#[path = "../../examples/warped.rs"]
+mod warped;
 
+use crate::common::solve_json;
 use warpbeam::IntegratorKind;
 
 #[test]
@@ -58,6 +61,15 @@ fn the_hook_is_bent_as_a_curved_beam() {
     assert_eq!(elements, 144);
     // The section at the crown carries 50 N at a lever of 0.95 m: 6 M / (t h²) = 3.2 kPa without curvature.
     assert!((2e3..8e3).contains(&largest), "{largest}");
+}
+
+/// The method on one page is that of the program.
+#[test]
+fn the_page_of_the_method_solves_the_beam_of_the_article() {
+    let solved = solve_json(&["article", "--set", "solver.tolerance=1e-13"]);
+    let [x, y] = [0, 1].map(|axis| solved["probes"][0]["u"][axis].as_f64().unwrap());
+    let tip = warped::tip().unwrap();
+    assert!((tip.x - x).hypot(tip.y - y) < 1e-10 * x.hypot(y), "{tip:?}, ({x}, {y})");
 }
 
 #[test]
