@@ -285,9 +285,8 @@ impl Newton {
         };
         state.copy_from(&shown.state);
         self.load_factor = shown.factor;
-        // Nothing but the path leads to its end where supports move, or once the body has jumped.
-        let has_shortcut = !problem.supports().move_the_body() && !follower.has_jumped();
-        let is_too_long = has_shortcut && follower.linearizations() > self.max_path_solves;
+        // Nothing but the path leads to its end where supports move.
+        let is_too_long = !problem.supports().move_the_body() && follower.linearizations() > self.max_path_solves;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
             PathProgress::Continue if !is_too_long => {}

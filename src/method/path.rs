@@ -615,11 +615,13 @@ impl PathFollower {
         PathProgress::Continue
     }
 
-    /// Descends the energy from the limit point, a little beyond its load, and goes on from there.
+    /// Descends the energy from the limit point, and goes on from there: a little beyond its load if supports move, whose
+    /// motion must be followed, or else at the end, to which loads that stay as they are lead at once.
     fn descend(&mut self, equations: &mut StaticEquations<'_>, solves: u32) -> PathProgress {
         let limit = self.limit.take().unwrap_or_else(|| self.last.clone());
         let end = if limit.factor < 1.0 { 1.0 } else { self.end };
-        let factor = (limit.factor + BEYOND).min(end);
+        let moves = equations.problem.supports().move_the_body();
+        let factor = if moves { (limit.factor + BEYOND).min(end) } else { end };
         let mut start = limit.clone();
         put(equations.problem, &mut start.state, [limit.factor, factor]);
         let mut state = start.state.clone();
@@ -670,8 +672,9 @@ enum Descent {
     Stuck,
 }
 
-/// Performs a step that lowers the energy at a load factor: Newton's with the exact tangent, turned round in its unstable
-/// modes; if these are too many, with A + max(G, 0). It is halved until the energy falls (Armijo's rule).
+/// Performs a step that lowers the energy at a load factor: Newton's with the exact tangent or, where it is unstable, with
+/// A + max(G, 0). Where supports move, this matrix is too stiff in bending: there Newton's step is turned round in the
+/// unstable modes, if these are few. A step is halved until the energy falls (Armijo's rule).
 fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) -> Descent {
     /// Relative residual of an equilibrium.
     const BALANCED: f64 = 1e-6;
@@ -688,11 +691,12 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     if definite && residual <= BALANCED {
         return Descent::Stable;
     }
+    let moves = problem.supports().move_the_body();
     let pattern = problem.system().pattern();
     pattern.restrict(forces.residual(), &mut workspace.free);
     if definite {
         workspace.factor.solve_in_place(&mut workspace.free);
-    } else if !solve_downhill(workspace) {
+    } else if !(moves && solve_downhill(workspace)) {
         assemble(problem, state, forces, workspace, Tangent::DEFINITE, factor);
         problem.balance(state, Kinematics::Corotated, factor, forces);
         if workspace.factor.factorize(workspace.matrix.values()).is_err() {
@@ -703,7 +707,7 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     }
     let Workspace { free, trial, .. } = &mut **workspace;
     let longest = free.iter().fold(0.0, |longest: f64, v| longest.max(v.abs()));
-    let scale = (LONGEST * problem.system().size() / longest).min(1.0);
+    let scale = if moves { (LONGEST * problem.system().size() / longest).min(1.0) } else { 1.0 };
     free.iter_mut().for_each(|v| *v *= scale);
     let promised = pattern.dot(forces.residual(), free);
     let before = problem.energy(state, factor);
