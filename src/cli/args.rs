@@ -14,7 +14,7 @@ use crate::study::Effort;
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
 1 did not converge, was interrupted, or gained more than 10 % of the energy put in from its integrator \
 (the result is still printed), \
-2 bad input or usage, or a result that could not be written, 3 no usable graphics adapter.";
+2 bad input or usage, a result that could not be written, or a defect of the program, 3 no usable graphics adapter.";
 
 const SOLVE_FILES: &str = "--out of a static scene:
   .csv  a row per node: node, rest_x, rest_y, x, y, u_x, u_y (m), rotation_deg
@@ -117,10 +117,9 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
-    /// List the graphics adapters in the order in which they are tried, and draw a small frame with each: name,
-    /// backend, driver, whether the adapter is usable or why not, and which one is used. An adapter of hardware is
-    /// preferred to software, and Vulkan, Metal and DirectX 12 to OpenGL. In a window, the adapter must also be able to
-    /// draw into it.
+    /// List the graphics adapters in the order in which they are tried: name, backend, driver, whether the adapter is
+    /// usable or why not, and which one is used. An adapter of hardware is preferred to software, and Vulkan, Metal and
+    /// DirectX 12 to OpenGL. In a window, the adapter must also be able to draw into it.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Gpu(AdapterArgs),
