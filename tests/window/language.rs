@@ -225,7 +225,6 @@ fn sources(folder: &Path) -> impl Iterator<Item = PathBuf> {
 const NOT_SHOWN: &[&str] = &[
     "wasm32",
     "Cmd+",
-    "another program may have opened the file: {error}",
     "the browser is set to keep nothing",
     ".toml,.msh",
     "scene=",

@@ -331,7 +331,8 @@ mod tests {
         assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Ok(0.003), Ok(7800.0)));
         assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
         assert!(matches!(parse("12 kN", "Pa"), Err(UnitError::WrongDimension { .. })));
-        assert!(matches!(parse("0,5", "N"), Err(UnitError::Ambiguous { .. })));
+        assert!(matches!(parse("1,500", "N"), Err(UnitError::Ambiguous { .. })));
+        assert!(matches!(parse("0,5", "N"), Err(UnitError::NoNumber { .. })));
         assert!(matches!(parse("two", "N"), Err(UnitError::NoNumber { .. })));
         assert!(parse("", "N").is_err());
     }
