@@ -382,8 +382,7 @@ impl<S: Clone> Continuation<S> {
             // Beyond the first bifurcation, the critical mode at `from` may be the one of the bifurcation before.
             let (mut low, mut high, before) = (0.0, step, self.linearizations);
             for _ in 0..if self.locates_all { MAX_BISECTIONS } else { 0 } {
-                let middle = 0.5 * (low + high);
-                let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+                let Some((middle, point)) = self.correct_between(equations, &from, [low, high], 0.5) else { break };
                 if point.modes == from.modes { (low, best) = (middle, point) } else { high = middle }
             }
             self.located += self.linearizations - before;
@@ -402,8 +401,9 @@ impl<S: Clone> Continuation<S> {
             // A secant if both ends have the crossing mode and the last trial was good, else a bisection.
             let uses_secant = low.1 > 0.0 && high.1 < 0.0 && was_good;
             let part = if uses_secant { low.1 / (low.1 - high.1) } else { 0.5 };
-            let (width, middle) = (high.0 - low.0, low.0 + (high.0 - low.0) * part);
-            let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+            let width = high.0 - low.0;
+            let ends = [low.0, high.0];
+            let Some((middle, point)) = self.correct_between(equations, &from, ends, part) else { break };
             let Some(stiffness) = stiffness(equations.critical_mode()) else { break };
             let is_near = stiffness.abs() <= CROSSING_TOLERANCE * first.abs();
             if point.modes == from.modes {
@@ -421,6 +421,19 @@ impl<S: Clone> Continuation<S> {
             was_good = high.0 - low.0 <= 0.5 * width;
         }
         best
+    }
+
+    /// Corrects after a part of an interval of steps from a point; if that fails, as it does next to a singular tangent,
+    /// after other parts of it. Returns the step and the point.
+    fn correct_between(
+        &mut self,
+        equations: &mut impl PathEquations<Configuration = S>,
+        from: &ContinuationPoint<S>,
+        [low, high]: [f64; 2],
+        part: f64,
+    ) -> Option<(f64, ContinuationPoint<S>)> {
+        let steps = [part, 0.5 * part, 0.5 * (1.0 + part)].map(|part| low + (high - low) * part);
+        steps.into_iter().find_map(|step| Some((step, self.correct(equations, from, step)?.0)))
     }
 
     /// Returns the limit point within the last step, of this length.
