@@ -10,25 +10,25 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 30_476),
-    ("study", &["src/study"], 7_912),
-    ("model", &["src/model", "src/scene"], 3_309),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_382),
-    ("simulation", &["src/simulation"], 2_954),
-    ("assembly", &["src/assembly"], 2_883),
-    ("cli", &["src/cli"], 2_783),
+    ("app", &["src/app"], 30_448),
+    ("study", &["src/study"], 7_975),
+    ("model", &["src/model", "src/scene"], 3_578),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_542),
+    ("simulation", &["src/simulation"], 3_021),
+    ("assembly", &["src/assembly"], 2_981),
+    ("cli", &["src/cli"], 2_818),
     ("dynamics", &["src/dynamics"], 2_055),
     ("render", &["src/render"], 2_014),
     ("element", &["src/element"], 2_005),
-    ("mesh", &["src/mesh"], 1_742),
+    ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_038),
-    ("the rest of src", &["src"], 4_917),
-    ("tests", &["tests"], 22_309),
+    ("the rest of src", &["src"], 5_214),
+    ("tests", &["tests"], 23_618),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 67_470;
+const SRC: usize = 68_532;
 /// Largest number of crates of the program on Linux.
-const CRATES: usize = 244;
+const CRATES: usize = 245;
 
 /// Says what to do if `actual` is more than `most`, or at least 3 % less.
 fn problem(name: &str, actual: usize, most: usize) -> Option<String> {
