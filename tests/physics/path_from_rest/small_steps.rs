@@ -1,7 +1,8 @@
 //! Equilibria in small steps of the load factor: a judge of the path from rest that shares with it only the forces and
 //! the tangent of the elements. Each step extrapolates the last ones, and corrects that by full Newton steps at a constant
 //! load factor. Steps are halved where a correction is long or converges slowly, and where the number of unstable modes
-//! changes; at a limit point no step is short enough.
+//! changes; where no step is short enough, the extrapolation starts anew, which leads round a sharp turn but not beyond a
+//! limit point.
 
 use warpbeam::assembly::{Forces, Kinematics, Matrix, NodalSupport, Problem};
 use warpbeam::element::Tangent;
@@ -48,7 +49,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     let mut points = vec![judge.equilibrium(rest, 0.0, f64::INFINITY)?];
     let (mut bifurcations, mut work, mut exchanged, longest) = (Vec::new(), [0.0; 2], 0.0, 1.0 / STEPS);
     // The first step has nothing to extrapolate.
-    let mut step = 1e-2 * longest;
+    let (mut step, mut speed) = (1e-2 * longest, f64::INFINITY);
     loop {
         let last = points.last()?.clone();
         if last.factor >= 1.0 {
@@ -57,7 +58,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         let factor = if last.factor + step > 1.0 - 0.5 * shortest { 1.0 } else { last.factor + step };
         let start = extrapolated(&points, factor);
         let ahead = distance(&start, &last.u);
-        let allowed = if points.len() > 1 { 0.25 * ahead } else { f64::INFINITY };
+        let allowed = if points.len() > 1 { 0.25 * ahead } else { 4.0 * speed * (factor - last.factor) };
         let next = judge.equilibrium(start, factor, allowed);
         let is_short = step <= shortest;
         match next.filter(|next| next.modes == last.modes || is_short) {
@@ -71,12 +72,14 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
                     *work += more;
                     exchanged += more.abs();
                 }
+                speed = distance(&next.u, &last.u) / (factor - last.factor);
                 points.push(next);
                 if points.len() > 3 {
                     points.remove(0);
                 }
                 step = (2.0 * step).min(longest);
             }
+            None if is_short && points.len() > 1 => drop(points.drain(..points.len() - 1)),
             None if is_short => break,
             None => step = (0.5 * (factor - last.factor)).max(shortest),
         }
