@@ -332,7 +332,7 @@ mod tests {
         assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
         assert!(matches!(parse("12 kN", "Pa"), Err(UnitError::WrongDimension { .. })));
         assert!(matches!(parse("1,500", "N"), Err(UnitError::Ambiguous { .. })));
-        assert!(matches!(parse("0,5", "N"), Err(UnitError::NoNumber { .. })));
+        assert!(matches!(parse("0,5", "N"), Err(UnitError::Malformed { .. })));
         assert!(matches!(parse("two", "N"), Err(UnitError::NoNumber { .. })));
         assert!(parse("", "N").is_err());
     }
