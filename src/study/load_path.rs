@@ -360,6 +360,8 @@ struct Tracer {
     row: u32,
     /// Derivative of the work of moving supports with respect to the load factor at the last state, J.
     power: f64,
+    /// Slope of this derivative over the last interval, and the length of the interval.
+    power_slope: Option<[f64; 2]>,
     /// Load factor up to which the work is integrated.
     reached: f64,
     work: f64,
@@ -383,6 +385,7 @@ impl Tracer {
             path: Vec::new(),
             row: 1,
             power: 0.0,
+            power_slope: None,
             reached: 0.0,
             work: 0.0,
             last: None,
@@ -413,6 +416,7 @@ impl Tracer {
                         }
                         self.last = None;
                         self.record(&follower, &landing);
+                        self.power_slope = None;
                     }
                 }
             }
@@ -485,14 +489,24 @@ impl Tracer {
         self.last = Some((point.clone(), stable));
     }
 
-    /// Integrates the work of moving supports to a state beyond the last one.
+    /// Integrates the work of moving supports to a state beyond the last one, by the parabola through their power there and
+    /// at the two states before.
     fn integrate(&mut self, point: &ContinuationPoint<State>) {
+        /// Smallest length of an interval, relative to the next one, whose slope is not the error of its ends.
+        const RESOLVED: f64 = 0.1;
         if self.driven.is_none() {
             return;
         }
         let reactions = self.reactions(point);
         let power = supports_power(&self.problem, &reactions);
-        self.work += 0.5 * (point.factor - self.reached) * (self.power + power);
+        let length = point.factor - self.reached;
+        if length > 0.0 {
+            let slope = (power - self.power) / length;
+            let last = self.power_slope.filter(|[_, last]| *last > RESOLVED * length);
+            let curvature = last.map_or(0.0, |[before, last]| (slope - before) / (length + last));
+            self.work += 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
+            self.power_slope = Some([slope, length]);
+        }
         (self.power, self.reached) = (power, point.factor);
     }
 
