@@ -172,7 +172,7 @@ impl<'a> Choices<'a> {
                 }
                 _ => continue,
             };
-            if moves && text.ends_with("\"x\", \"y\"]\n") || moves && kind < 2 {
+            if moves && (text.ends_with("\"x\", \"y\"]\n") || kind < 2) {
                 text += &format!("displacement = {by:?}\n");
             }
         }
