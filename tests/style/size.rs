@@ -11,9 +11,9 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 30_448),
-    ("study", &["src/study"], 7_975),
+    ("study", &["src/study"], 7_989),
     ("model", &["src/model", "src/scene"], 3_578),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_542),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_545),
     ("simulation", &["src/simulation"], 3_021),
     ("assembly", &["src/assembly"], 2_981),
     ("cli", &["src/cli"], 2_818),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_038),
     ("the rest of src", &["src"], 5_214),
-    ("tests", &["tests"], 23_618),
+    ("tests", &["tests"], 23_625),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 68_532;
+const SRC: usize = 68_549;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 245;
 
