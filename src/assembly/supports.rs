@@ -319,18 +319,18 @@ impl Supports {
         nodes.flat_map(|&(node, own)| (0..2).filter(move |&axis| own[axis]).map(move |axis| (node, axis)))
     }
 
-    /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement to
-    /// their positions at a load factor (least squares; the angle in closed form, as that of a polar factor), and how well
-    /// it does: 1 for a rigid motion, 0 if the angle is not determined.
-    fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: &[Vector2<f64>]) -> (RigidMotion, f64) {
+    /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement, or from
+    /// rest, to their positions at a load factor (least squares; the angle in closed form, as that of a polar factor), and
+    /// how well it does: 1 for a rigid motion, 0 if the angle is not determined.
+    fn rigid_motion(&self, mesh: &Mesh, factor: f64, u: Option<&[Vector2<f64>]>) -> (RigidMotion, f64) {
         let mut increments: BTreeMap<u32, [Vector2<f64>; 2]> = BTreeMap::new();
         for (node, axis, target) in self.targets(mesh, factor, Kinematics::Corotated) {
-            let now = mesh.node(node) + u[node as usize];
+            let now = mesh.node(node) + u.map_or_else(Vector2::zeros, |u| u[node as usize]);
             increments.entry(node).or_insert([now; 2])[1][axis] = mesh.node(node)[axis] + target;
         }
         let points = self.all.iter().filter_map(|support| {
             let target = support.middle + support.take(support.middle, factor, Kinematics::Corotated);
-            let now = support.middle + support.mean(u);
+            let now = support.middle + u.map_or_else(Vector2::zeros, |u| support.mean(u));
             Some([now, now.zip_zip_map(&target, &support.point?.into(), |now, to, fixed| if fixed { to } else { now })])
         });
         let increments: Vec<[Vector2<f64>; 2]> = increments.into_values().chain(points).collect();
@@ -346,18 +346,22 @@ impl Supports {
         (RigidMotion { from, to, angle: if angle.is_finite() { angle } else { 0.0 } }, quality)
     }
 
-    /// Returns the rigid motion from rest of the supports' frame at a load factor; `rest` is the displacement at rest.
-    fn frame(&self, mesh: &Mesh, factor: f64, rest: &[Vector2<f64>]) -> RigidMotion {
-        let motion = self.rigid_motion(mesh, factor, rest).0;
+    /// Returns the rigid motion from rest of the supports' frame at a load factor.
+    fn frame(&self, mesh: &Mesh, factor: f64) -> RigidMotion {
+        let motion = self.rigid_motion(mesh, factor, None).0;
         RigidMotion { angle: if self.keeps_its_shape { motion.angle } else { factor * self.mean_rotation() }, ..motion }
     }
 
     /// Returns the rigid motion of the supports' frame from one load factor to another.
-    fn frame_motion(&self, mesh: &Mesh, factors: [f64; 2], rest: &[Vector2<f64>]) -> RigidMotion {
-        let [before, after] = factors.map(|factor| self.frame(mesh, factor, rest));
-        let angle = after.angle - before.angle;
-        let angle = angle + TAU * (((factors[1] - factors[0]) * self.mean_rotation() - angle) / TAU).round();
+    fn frame_motion(&self, mesh: &Mesh, factors: [f64; 2]) -> RigidMotion {
+        let [before, after] = factors.map(|factor| self.frame(mesh, factor));
+        let angle = self.with_full_turns(after.angle - before.angle, factors[1] - factors[0]);
         RigidMotion { from: before.to, to: after.to, angle }
+    }
+
+    /// Returns an angle with the full turns that bring it closest to the mean rotation over a step of the load factor.
+    fn with_full_turns(&self, angle: f64, step: f64) -> f64 {
+        angle + TAU * ((step * self.mean_rotation() - angle) / TAU).round()
     }
 
     /// Iterates over the prescribed rotations of edges that are fixed in both directions, rad.
@@ -373,34 +377,32 @@ impl Supports {
     /// Chooses the rotation of the frame, and the largest step in which no support rotates by more than [`LARGEST_TURN`]
     /// relative to it.
     fn set_frame(&mut self, mesh: &Mesh) {
-        /// Number of parts of the motion.
-        const PARTS: u32 = 64;
-        /// Number of them that are looked at: one and a half of the motion.
+        /// Steps of the load factor over one and a half of the motion.
+        const STEP: f64 = 1.0 / 64.0;
         const COUNT: u32 = 96;
         /// Ratio of the distances between supports, after and before, below which the line through them may turn suddenly.
         const CLOSE: f64 = 0.1;
-        let rest = vec![Vector2::zeros(); mesh.nodes().len()];
-        let factor = |part: u32| f64::from(part) / f64::from(PARTS);
-        self.keeps_its_shape = (0..=COUNT).all(|part| self.rigid_motion(mesh, factor(part), &rest).1 > CLOSE);
-        let turns = |part: u32| {
-            let frame = self.frame_motion(mesh, [factor(part), factor(part + 1)], &rest).angle * f64::from(PARTS);
+        let factors = || (0..=COUNT).map(|part| f64::from(part) * STEP);
+        self.keeps_its_shape = factors().all(|factor| self.rigid_motion(mesh, factor, None).1 > CLOSE);
+        let angles: Vec<f64> = factors().map(|factor| self.frame(mesh, factor).angle).collect();
+        let turns = angles.windows(2).map(|pair| {
+            let frame = self.with_full_turns(pair[1] - pair[0], STEP) / STEP;
             self.rotations().map(|rotation| (rotation - frame).abs()).fold(0.0, f64::max)
-        };
-        self.largest_load_step = (LARGEST_TURN / (0..COUNT).map(turns).fold(0.0, f64::max)).min(1.0);
+        });
+        self.largest_load_step = (LARGEST_TURN / turns.fold(0.0, f64::max)).min(1.0);
     }
 
     /// Moves the body with the supports' frame from one load factor to another. Only the rest of the supports' motion
     /// deforms it.
     pub(crate) fn carry_with_frame(&self, mesh: &Mesh, factors: [f64; 2], state: &mut State) {
         if factors[0] != factors[1] {
-            let rest = vec![Vector2::zeros(); mesh.nodes().len()];
-            self.frame_motion(mesh, factors, &rest).apply(mesh, state);
+            self.frame_motion(mesh, factors).apply(mesh, state);
         }
     }
 
     /// Returns the rotation of the supports' frame at a load factor.
     pub(crate) fn frame_rotation(&self, mesh: &Mesh, factor: f64) -> Rotation {
-        Rotation::from_angle(self.frame(mesh, factor, &vec![Vector2::zeros(); mesh.nodes().len()]).angle)
+        Rotation::from_angle(self.frame(mesh, factor).angle)
     }
 
     /// Moves the body by the rigid motion that best approximates the supports' motion to a load factor; the supports
@@ -408,11 +410,10 @@ impl Supports {
     pub(crate) fn carry(&self, mesh: &Mesh, factor: f64, state: &mut State) -> bool {
         /// Smallest angle, rad; smaller rotations are left to the solution of the equations.
         const SMALL: f64 = 1e-2;
-        let at_rest = self.are_at_rest(&state.displacement);
-        let mut motion = self.rigid_motion(mesh, factor, &state.displacement).0;
-        if at_rest {
+        let mut motion = self.rigid_motion(mesh, factor, Some(&state.displacement)).0;
+        if self.are_at_rest(&state.displacement) {
             // From rest the supports may make several full rotations; later steps are small.
-            motion.angle += TAU * ((factor * self.mean_rotation() - motion.angle) / TAU).round();
+            motion.angle = self.with_full_turns(motion.angle, factor);
         }
         let turns = motion.angle.abs() >= SMALL;
         if turns {
