@@ -208,7 +208,7 @@ impl Series {
     }
 }
 
-fn failed(path: &Path) -> impl Fn(std::io::Error) -> ExportError {
+pub(crate) fn failed(path: &Path) -> impl Fn(std::io::Error) -> ExportError {
     |source| ExportError::Write { path: path.display().to_string(), source }
 }
 

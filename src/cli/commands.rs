@@ -301,8 +301,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     text::print(&format!("{tuning}\n"))?;
     if let Some(path) = &write {
         let text = scene::edited(&source.text()?, &tuned(&scene, &tuning, &source, path))?;
-        let failed = |source| ExportError::Write { path: path.display().to_string(), source };
-        atomic_write::save(path, text.as_bytes()).map_err(failed)?;
+        atomic_write::save(path, text.as_bytes()).map_err(export::failed(path))?;
     }
     if tuning.is_partial {
         return Ok(ended(true, "finer meshes have not been measured"));
@@ -366,7 +365,7 @@ fn extent(out: &FolderArgs) -> Extent {
 
 /// Writes a table, a drawing and a summary into a folder, under one name.
 fn write_folder(out: &Path, name: &str, table: &str, drawing: &Drawing, summary: Option<&str>) -> Result<(), CliError> {
-    std::fs::create_dir_all(out).map_err(|source| ExportError::Write { path: out.display().to_string(), source })?;
+    std::fs::create_dir_all(out).map_err(export::failed(out))?;
     let file = |extension: &str| out.join(format!("{name}.{extension}"));
     export::write_text(&file("csv"), table)?;
     export::write_text(&file("svg"), &drawing.svg())?;
