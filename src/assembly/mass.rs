@@ -99,10 +99,9 @@ impl Mass {
     }
 
     /// Returns the acceleration of every node, m/s², under nodal forces, N; fixed unknowns and held points rest.
-    #[must_use]
     pub(crate) fn acceleration(&self, pattern: &Pattern, force: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         // Conjugate gradients, preconditioned by the lumped masses: the condition does not depend on the mesh (Wathen 1987).
-        const MOST: u32 = 200;
+        const MAX_ITERATIONS: u32 = 200;
         const TOLERANCE: f64 = 1e-13;
         let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let scaled = |residual: &[f64]| -> Vec<f64> {
@@ -114,7 +113,7 @@ impl Mass {
         let mut direction = scaled(&residual);
         let mut norm = product(&residual, &direction);
         let (goal, mut image) = (TOLERANCE * TOLERANCE * norm, residual.clone());
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             if norm.is_nan() || norm <= goal {
                 break;
             }

@@ -198,7 +198,7 @@ pub struct LoadPath {
     pub end: Option<PathEnd>,
 }
 
-/// Number of rows of a path: they are drawn, and the work of supports is integrated over them by the trapezoidal rule.
+/// Number of rows of a path, which are drawn and between which the work of supports is integrated.
 const ROWS: u32 = 60;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;

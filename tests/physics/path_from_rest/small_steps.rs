@@ -1,8 +1,8 @@
 //! Equilibria in small steps of the load factor: a judge of the path from rest that shares with it only the forces and
 //! the tangent of the elements. Each step extrapolates the last ones, and corrects that by full Newton steps at a constant
 //! load factor. Steps are halved where a correction is long or converges slowly, and where the number of unstable modes
-//! changes; where no step is short enough, the extrapolation starts anew, which leads round a sharp turn but not beyond a
-//! limit point.
+//! changes. Where no step is short enough, the next extrapolation ignores the earlier points: the steps then pass a sharp
+//! turn, but no limit point.
 
 use warpbeam::assembly::{Forces, Kinematics, Matrix, NodalSupport, Problem};
 use warpbeam::element::Tangent;
