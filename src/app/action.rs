@@ -8,9 +8,6 @@ use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
 
-/// Largest number of iterations per displayed frame.
-pub(crate) const MAX_ITERATIONS: u32 = 100;
-
 /// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
@@ -52,8 +49,8 @@ pub(crate) enum Action {
     Speed(f64),
     /// Show the same motion with another integrator; if it is shown, hide it.
     Compare(IntegratorKind),
-    /// Set the number of iterations per displayed frame.
-    Iterations(u32),
+    /// Make one iteration per displayed frame, or as many as the frame has time for.
+    SlowMotion,
     /// Fit the camera to the whole body.
     Fit,
     /// Show or hide a part of the display.
@@ -70,10 +67,6 @@ pub(crate) enum Action {
     Export(Box<Figure>, FigureFile),
     /// Save an image of the window.
     Screenshot,
-    /// Record the window from now on, or end the recording.
-    Record,
-    /// Record the scene from its start, or end the recording.
-    RecordScene,
     /// Copy the scene as TOML.
     Copy,
     /// Copy a link to the web page with the scene in it.
@@ -84,8 +77,8 @@ pub(crate) enum Action {
     Card(usize),
     /// Tell the story of the first start again.
     Story,
-    /// Use a measured setting: its scene, and its number of iterations per displayed frame.
-    Apply(Box<Scene>, u32),
+    /// Use the scene of a measured setting.
+    Apply(Box<Scene>),
     /// Cancel the background solve of a large model, and keep the previous model.
     Cancel,
 }
@@ -96,11 +89,10 @@ impl Action {
         self.exists_on(IS_PAGE)
     }
 
-    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): a page has links but no
-    /// recordings, a desktop the reverse.
+    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): only a page has
+    /// links.
     pub(crate) fn exists_on(&self, page: bool) -> bool {
         match self {
-            Self::Record | Self::RecordScene => !page,
             Self::CopyLink => page,
             _ => true,
         }

@@ -3,12 +3,16 @@
 use crate::app::action::Action;
 use crate::app::language::{count, fill, percent, said, sentence, tr};
 use crate::app::readout::Readout;
+use crate::app::session::live::first_probe;
 use crate::app::widgets::palette::Palette;
+use crate::app::widgets::text::UNKNOWN;
+use nalgebra::Vector2;
+
 use crate::exact_beam::error_percent;
 use crate::format::{self, engineering, number, three_digits, two_digits};
 use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support, limits};
 use crate::sentence::Sentence;
-use crate::simulation::{Simulation, Status, probe_results};
+use crate::simulation::{Simulation, Status};
 use crate::stress::strain_warning;
 use crate::study::{Advice, Claim, FOLDS, MovedPoint, ProbeReference, Reference, moved_points};
 
@@ -35,7 +39,6 @@ pub(crate) fn drift_text(drift: f64) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ErrorSource {
     Mesh,
-    Iteration,
     Theory,
     /// Mesh or iteration, of a result that was accepted before it converged.
     MeshOrIteration,
@@ -45,7 +48,6 @@ impl ErrorSource {
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Mesh => "mesh",
-            Self::Iteration => "iteration",
             Self::Theory => "theory",
             Self::MeshOrIteration => "mesh or iteration",
         }
@@ -79,18 +81,14 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let at_rest = simulation.is_at_rest() && simulation.mouse_spring().is_none();
     let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
     let Some(first) = reference.first() else { return Errors::default() };
-    let percent_of = |simulation: &Simulation| {
-        let probe = probe_results(simulation.problem(), simulation.state()).into_iter().next()?;
-        Some((first.error_percent(&probe)?, probe.u))
-    };
+    // A reference that is behind the load belongs to the body that it was asked for.
+    let behind = input.live.filter(|live| !live.is_of(input.scene)).map(|live| live.compared);
+    let percent_of = |u: Option<Vector2<f64>>| Some((error_percent(u?, first.displacement)?, u?));
     // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
     let is_elsewhere = input.path.is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
-    let diverges = matches!(simulation.status(), Status::Diverged(_));
-    let own = percent_of(simulation).filter(|_| !input.shows_converged && !is_elsewhere && !diverges);
+    let own = percent_of(behind.map_or_else(|| first_probe(simulation), |behind| behind.own))
+        .filter(|_| !input.is_fallback && !is_elsewhere);
     let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
-        if !simulation.status().is_success() {
-            return ErrorSource::Iteration;
-        }
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
             theory.map_or([0.0, 1.0], |fine| [(fine - first.displacement).norm(), (u - fine).norm()]);
@@ -102,7 +100,8 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
             _ => ErrorSource::Mesh,
         }
     });
-    let linear = input.linear.and_then(percent_of).map(|(error, _)| error);
+    let linear = behind.map_or_else(|| input.linear.and_then(first_probe), |behind| behind.linear);
+    let linear = percent_of(linear).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
     let accepted = input.from_rest.filter(|_| *simulation.status() == Status::Accepted);
     let from_rest = accepted.and_then(|solve| error_percent(solve.displacement?, first.displacement));
@@ -164,6 +163,12 @@ pub(crate) fn coarse_text(own: f64, reference: &ProbeReference) -> Option<String
     is_coarse.then(|| fill!("reference ± %{own}", own = percent(reference.own_error_percent)))
 }
 
+/// Formats the error of a result, percent: about, while the reference follows the load.
+pub(crate) fn error_text(own: Option<f64>, is_live: bool) -> String {
+    let about = if is_live { "≈ " } else { "" };
+    own.map_or_else(|| UNKNOWN.to_owned(), |own| format!("{about}{}", percent(own)))
+}
+
 /// Returns `true` for an error, percent, that needs a remedy.
 pub(crate) fn is_large(error: f64) -> bool {
     error > LARGE_ERROR
@@ -184,23 +189,12 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
     }
 }
 
-/// Returns `true` if the state that is drawn belongs to another load than the one that is set: the scene was edited
-/// while paused.
-pub(crate) fn is_stale(input: &Readout<'_>) -> bool {
+/// Returns the status as a sentence, and `true` if it reports a failure.
+pub(crate) fn status_text(input: &Readout<'_>) -> (String, bool) {
     let simulation = input.simulation;
-    !input.running
-        && simulation.motion().is_none()
-        && *simulation.status() == Status::Running
-        && simulation.iterations() == 0
-        && simulation.displacement().iter().any(|u| u.norm() > 0.0)
-}
-
-/// Returns the status as a sentence, and `true` if it reports a failure. `shows_converged` is `true` if the last
-/// equilibrium is drawn, which has a label of its own.
-pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converged: bool) -> (String, bool) {
     let moves = simulation.motion().is_some();
     match simulation.status() {
-        Status::Running | Status::Finished if !running => (tr("Paused").to_owned(), false),
+        Status::Running | Status::Finished if !input.running => (tr("Paused").to_owned(), false),
         // The duration applies to runs without a window; in the window a motion continues.
         Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
@@ -208,10 +202,7 @@ pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converge
         Status::Converged => (tr("Converged").to_owned(), false),
         Status::Accepted => (tr("Accepted").to_owned(), false),
         Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
-        Status::Diverged(reason) if shows_converged => (fill!("Diverged: %{reason}.", reason = said(reason)), true),
-        Status::Diverged(reason) => {
-            (fill!("Diverged: %{reason}. Showing the last finite state.", reason = said(reason)), true)
-        }
+        Status::Diverged(reason) => (fill!("Diverged: %{reason}.", reason = said(reason)), true),
         Status::Stopped(reason) => {
             (fill!("Stopped: %{reason}. Showing the last finite state.", reason = said(reason)), true)
         }
@@ -222,12 +213,9 @@ pub(crate) fn status_text(simulation: &Simulation, running: bool, shows_converge
 /// `remedy` stands beside it: its sentence is not repeated.
 pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, bool) {
     let simulation = input.simulation;
-    let (mut text, bad) = status_text(simulation, input.running, input.shows_converged);
+    let (mut text, bad) = status_text(input);
     if bad {
         return (text, true);
-    }
-    if is_stale(input) {
-        return (tr("Paused: not solved for the present load yet").to_owned(), false);
     }
     let mut add = |part: String| {
         text.push_str(" · ");
@@ -250,6 +238,9 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
         Some(solve) if solve.iterations > 0 => add(count(solve.iterations, "iteration")),
         None if simulation.iterations() > 0 => add(count(simulation.iterations(), "iteration")),
         _ => {}
+    }
+    if *simulation.status() == Status::Running && simulation.iterations() > 0 {
+        add(fill!("residual %{residual}", residual = format!("{:.1e}", simulation.residual())));
     }
     if runs_away(input) {
         add(tr("diverges if it runs on").to_owned());
@@ -282,8 +273,8 @@ fn runs_away(input: &Readout<'_>) -> bool {
     is_accepted && is_warped && rho(input).is_some_and(|rho| rho > 1.0)
 }
 
-/// Describes the last equilibrium that is drawn in place of a state that diverges: its load, and the load that was
-/// asked for; or its method, if the loads are equal.
+/// Describes the equilibrium that is drawn in place of one that was not found: its load, and the load that was asked for; or
+/// its method, if the loads are equal.
 pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
     match (load_text(drawn), load_text(wanted)) {
         (Some(own), Some(asked)) if own != asked => {
@@ -298,10 +289,7 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
 
 /// Describes a drawn body that is not the result for the scene; `None` if it is.
 pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
-    match input.shows_converged {
-        true => Some(equilibrium_text(input.shown.scene(), input.scene)),
-        false => input.shows_iterate.then(|| fill!("iterate %{n}, no equilibrium", n = input.shown.iterations())),
-    }
+    input.is_fallback.then(|| equilibrium_text(input.shown.scene(), input.scene))
 }
 
 /// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or
@@ -330,7 +318,7 @@ pub(crate) fn is_without_reference(input: &Readout<'_>) -> bool {
 /// Explains the status, one sentence per entry.
 pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let simulation = input.simulation;
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = input.has_failed().then(|| status_text(input).0).into_iter().collect();
     let is_solved = match simulation.motion() {
         Some(_) => !matches!(simulation.status(), Status::Stopped(_)),
         None => simulation.status().is_success(),
@@ -362,8 +350,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     if *simulation.status() == Status::Accepted {
         let residual = number(two_digits(simulation.residual()));
         let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));
-        let displacement = probe_results(simulation.problem(), simulation.state()).first().map(|probe| probe.u);
-        let is_from_rest = input.from_rest.is_some_and(|solve| solve.displacement == displacement);
+        let is_from_rest = input.from_rest.is_some_and(|solve| solve.displacement == first_probe(simulation));
         lines.push(if is_from_rest {
             fill!(
                 "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \

@@ -1,6 +1,7 @@
 //! State of the model and of its results, as shown by bars, panel and cards.
 
 use crate::app::language::Language;
+use crate::app::session::live::Live;
 use crate::app::session::playback::Playback;
 use crate::app::task::quality::Quality;
 use crate::app::widgets::load_scale::OpeningLoads;
@@ -20,7 +21,7 @@ pub(crate) struct Readout<'a> {
     pub opening: OpeningLoads,
     pub scene_name: &'a str,
     pub simulation: &'a Simulation,
-    /// Drawn state: the last equilibrium in place of a state that diverges.
+    /// Drawn body: the last equilibrium, or the body at rest, in place of a search that has found no equilibrium.
     pub shown: &'a Simulation,
     /// Solution of the same scene with linear theory.
     pub linear: Option<&'a Simulation>,
@@ -30,18 +31,23 @@ pub(crate) struct Readout<'a> {
     pub playback: &'a Playback,
     /// Lowest natural frequency of a body in motion, Hz; `None` until it has been computed.
     pub frequency: Option<f64>,
-    /// Iterations per displayed frame.
-    pub iterations: u32,
+    /// `true` if a displayed frame makes one iteration.
+    pub is_slow: bool,
     /// Time of the iterations made for the last displayed frame.
     pub timings: &'a Timings,
     /// Time and result of a solve from rest; `None` until it has been measured.
     pub from_rest: Option<&'a SolveFromRest>,
+    /// Time and result at the load at which the hand rested last, during a press.
+    pub last_from_rest: Option<&'a SolveFromRest>,
     /// Residual after every iteration since the last change.
     pub residuals: &'a [f64],
     pub can_undo: bool,
     pub can_redo: bool,
-    /// Reference solution that errors are measured against; `None` until it has been computed.
+    /// Reference solution that errors are measured against, or the one that follows the load; `None` until it has been
+    /// computed.
     pub reference: Option<&'a Reference>,
+    /// Reference solution that follows the load, if errors are measured against it.
+    pub live: Option<&'a Live>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
     /// Load path from rest, compared with the state; `None` until it has been computed.
@@ -55,12 +61,17 @@ pub(crate) struct Readout<'a> {
     pub reference_progress: Option<f64>,
     /// Range of the displayed field's values in the drawn state.
     pub value_range: [f64; 2],
-    /// `true` if the last equilibrium is drawn in place of a state that diverges.
-    pub shows_converged: bool,
-    /// `true` if the drawn body is an iterate of a search for an equilibrium.
-    pub shows_iterate: bool,
+    /// `true` if another body than the simulation's is drawn.
+    pub is_fallback: bool,
     /// Measures of the reliability of the result.
     pub quality: &'a Quality,
     /// Language of the user interface.
     pub language: Language,
+}
+
+impl Readout<'_> {
+    /// Returns `true` if a search has ended without an equilibrium.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.simulation.motion().is_none() && self.simulation.status().failure().is_some()
+    }
 }

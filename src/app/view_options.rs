@@ -65,8 +65,6 @@ pub(crate) enum MotionPlot {
     Tip,
     /// Velocity of the first probe against its displacement.
     Phase,
-    /// Amplitude spectrum of the displacement of the first probe.
-    Spectrum,
 }
 
 /// Quantities that a load curve shows.
@@ -121,7 +119,7 @@ pub(crate) enum Toggle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Drawer {
-    /// Energy, tip, phase and spectrum of a motion.
+    /// Energy, tip and phase of a motion.
     Motion,
     /// Stress along the sections of the scene, and N, V and M along its beam.
     Section,
@@ -145,7 +143,7 @@ impl Drawer {
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
             Self::Section => ("Sections", "Stress along the sections, and N, V and M along the beam (Q)"),
-            Self::Motion => ("Energy and tip", "Energy, tip, phase and spectrum of the motion (E)"),
+            Self::Motion => ("Energy and tip", "Energy, tip and phase of the motion (E)"),
         }
     }
 }

@@ -117,10 +117,9 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = format!("{RECORD_NOTES}\n{EXIT_CODES}"))]
     Record(RecordArgs),
-    /// List the graphics adapters in the order in which they are tried, and draw a small frame with each: name,
-    /// backend, driver, whether the adapter is usable or why not, and which one is used. An adapter of hardware is
-    /// preferred to software, and Vulkan, Metal and DirectX 12 to OpenGL. In a window, the adapter must also be able to
-    /// draw into it.
+    /// List the graphics adapters in the order in which they are tried: name, backend, driver, whether the adapter is
+    /// usable or why not, and which one is used. An adapter of hardware is preferred to software, and Vulkan, Metal and
+    /// DirectX 12 to OpenGL. In a window, the adapter must also be able to draw into it.
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Gpu(AdapterArgs),

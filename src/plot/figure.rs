@@ -1,6 +1,6 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
-use super::axes::{PlotMargins, SIZE, mark as element_mark};
+use super::axes::{PlotMargins, SIZE};
 use super::drawing::{Anchor, Color, Drawing, Outline, Shape, Stroke, solid};
 use crate::format::{number, prefix, ticks};
 use crate::study::color;
@@ -38,7 +38,7 @@ pub fn figure(figure: &Figure) -> Drawing {
         for series in &figure.series {
             let points = series.points.iter().filter_map(|p| figure.place(p));
             draw(drawing, series.ink, series.mark, points.map(|[x, y]| [place(x, 0), place(y, 1)]).collect(), size);
-            if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
+            if series.mark == Mark::Disc {
                 size = (size - 1.2).max(2.0);
             }
         }
@@ -62,22 +62,16 @@ fn shaped_corners(figure: &Figure, [width, height]: [f64; 2]) -> [[f64; 2]; 2] {
 
 fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
     const ROW: f64 = 21.0;
-    const ERRORS: f64 = 56.0;
-    let has_errors = figure.rows.iter().any(|row| !row.error.is_empty());
-    let values = if has_errors { right - ERRORS } else { right };
     let mut y = 66.0;
-    let put = |drawing: &mut Drawing, [name, value, error]: [&String; 3], y: f64| {
+    let put = |drawing: &mut Drawing, [name, value]: [&String; 2], y: f64| {
         drawing.text([left + 26.0, y], Anchor::Start, name);
-        drawing.text([values, y], Anchor::End, value);
-        if has_errors {
-            drawing.text([right, y], Anchor::End, error);
-        }
+        drawing.text([right, y], Anchor::End, value);
     };
-    let [name, value, error] = &figure.head;
-    put(drawing, [name, value, error], y);
+    let [name, value] = &figure.head;
+    put(drawing, [name, value], y);
     for row in &figure.rows {
         y += ROW;
-        put(drawing, [&row.name, &row.value, &row.error], y);
+        put(drawing, [&row.name, &row.value], y);
         let middle = y - 4.5;
         let line = || vec![[left, middle], [left + 20.0, middle]];
         let places = if row.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
@@ -103,8 +97,6 @@ fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size
         };
         match mark {
             Mark::Cross => [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]].into_iter().for_each(&mut cross),
-            Mark::Plus => [[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]].into_iter().for_each(&mut cross),
-            Mark::Element(element) => drawing.add(element_mark(place, element, color, size)),
             Mark::Ring => drawing.add(Shape::stroked(Outline::Circle(place, size), color, solid(1.5))),
             _ => drawing.add(Shape::filled(Outline::Circle(place, size), color)),
         }
@@ -113,7 +105,6 @@ fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size
 
 fn on_paper(ink: Ink) -> Color {
     match ink {
-        Ink::Exact => [0x00, 0x7d, 0x73],
         Ink::Method(method) => color(method.id(), false),
         Ink::Unstable => [0xbe, 0x14, 0x1e],
         Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],

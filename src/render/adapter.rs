@@ -1,17 +1,10 @@
-//! Choice of the graphics adapter: the best one that draws. A driver may offer an adapter whose device cannot compile a
-//! shader; an adapter is usable once it has drawn a small frame without an error.
+//! Choice of the graphics adapter: the best one with a device that makes the pipelines of the body. A driver may offer an
+//! adapter whose device cannot compile a shader.
 
 use std::fmt;
 
-use nalgebra::Vector2;
-
-use super::body::{BodyRenderer, Frame, View, Viewport};
-use super::camera::Camera;
-use super::colormap::ColorMap;
+use super::body::BodyRenderer;
 use super::{FORMAT, Gpu, RenderError};
-use crate::assembly::Kinematics;
-use crate::scene::Material;
-use crate::simulation::Field;
 
 /// Environment variable with the names of the backends to be used.
 const BACKEND: &str = "WGPU_BACKEND";
@@ -224,8 +217,7 @@ pub(crate) fn offscreen(
     AdapterSearch { name: wanted_name(name), instance, surface: |_: &wgpu::Instance| Ok(None) }
 }
 
-/// Returns the adapters of this machine in the order in which they are tried for an image without a window. Each of
-/// them draws a small frame. `name` is a part of the name of the adapter to be used; `None` stands for
+/// Returns the adapters of this machine in the order in which they are tried for an image without a window. `name` is a part of the name of the adapter to be used; `None` stands for
 /// `WGPU_ADAPTER_NAME`. Not for web pages, which cannot wait for a device.
 pub fn adapters(name: Option<&str>) -> Vec<AdapterReport> {
     let search = offscreen(name);
@@ -284,12 +276,11 @@ pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
 }
 
 impl Gpu {
-    /// Creates a device on this adapter, and draws a small frame with it.
+    /// Creates a device on this adapter, and tries the pipelines of the body with it.
     pub(crate) async fn usable(adapter: wgpu::Adapter) -> Result<Self, String> {
         let limits = Self::limits(&adapter);
         let gpu = Self::connect(adapter, limits).await?;
-        let mut renderer = gpu.pipelines(FORMAT).await?;
-        gpu.first_frame(&mut renderer).await?;
+        gpu.pipelines(FORMAT).await?;
         Ok(gpu)
     }
 
@@ -311,58 +302,6 @@ impl Gpu {
     async fn pipelines(&self, format: wgpu::TextureFormat) -> Result<BodyRenderer, String> {
         let made = self.without_error(|| BodyRenderer::new(self, format)).await;
         made.map_err(|reason| format!("no pipeline: {reason}"))
-    }
-
-    /// Draws a square into a small image and checks a pixel of it and a pixel beside it.
-    async fn first_frame(&self, renderer: &mut BodyRenderer) -> Result<(), String> {
-        const SIDE: u32 = 16;
-        const BODY: [u8; 3] = [40, 160, 220];
-        const BACKGROUND: [u8; 3] = [200, 60, 20];
-        let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(Vector2::from);
-        let frame = Frame {
-            stamp: 0,
-            positions: &corners,
-            triangles: &[[0, 1, 2], [0, 2, 3]],
-            field: Field::default(),
-            components: &[],
-            largest_component: 0.0,
-            material: Material::default(),
-            kinematics: Kinematics::Corotated,
-            absent_color: BODY,
-            range: [0.0, 1.0],
-            map: ColorMap::default(),
-            lines: &[[0, 1]],
-            triangles_of_lines: &[0],
-            pieces: 1,
-            line_color: [0, 0, 0, 255],
-            background: BACKGROUND,
-            surround: BACKGROUND,
-        };
-        let camera = Camera { center: Vector2::zeros(), scale: f64::from(SIDE) / 2.0 };
-        let view = View { viewport: Viewport { corner: [0, 0], size: [SIDE; 2] }, frame, camera };
-        let failed = |reason| format!("no first frame: {reason}");
-        let target = self.without_error(|| {
-            let target = self.target("first frame", FORMAT, [SIDE; 2], 1, wgpu::TextureUsages::COPY_SRC);
-            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let texture = target.create_view(&wgpu::TextureViewDescriptor::default());
-            renderer.draw(self, &mut encoder, (&texture, [SIDE; 2]), &[view], 1.0);
-            self.queue.submit([encoder.finish()]);
-            target
-        });
-        let target = target.await.map_err(failed)?;
-        // A page cannot wait for the pixels.
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            let picture = super::read_texture(self, &target).map_err(|error| failed(error.to_string()))?;
-            for (at, wanted) in [([SIDE / 2, SIDE / 3], BODY), ([1, 1], BACKGROUND)] {
-                let drawn = picture.rgba.chunks_exact(4).nth((at[1] * SIDE + at[0]) as usize).unwrap_or_default();
-                if drawn.len() != 4 || drawn.iter().zip(wanted).any(|(&drawn, wanted)| drawn.abs_diff(wanted) > 2) {
-                    return Err(failed(format!("the pixel at {at:?} is {drawn:?}, expected {wanted:?}")));
-                }
-            }
-        }
-        drop(target);
-        Ok(())
     }
 
     /// Returns the result of `make`, or the first error of the device in it.
@@ -390,7 +329,6 @@ mod tests {
     enum Fault {
         Device,
         Pipeline,
-        FirstFrame,
     }
 
     /// Opens an adapter, in which the device refuses this stage.
@@ -402,9 +340,7 @@ mod tests {
         let gpu = Gpu::connect(adapter, limits).await?;
         // A compressed texture cannot be drawn into.
         let format = if matches!(fault, Fault::Pipeline) { wgpu::TextureFormat::Bc1RgbaUnorm } else { FORMAT };
-        let mut renderer = gpu.pipelines(format).await?;
-        gpu.device.destroy();
-        gpu.first_frame(&mut renderer).await?;
+        gpu.pipelines(format).await?;
         Ok(gpu)
     }
 
@@ -415,9 +351,7 @@ mod tests {
 
     #[test]
     fn an_adapter_that_fails_at_any_stage_is_skipped() {
-        for (fault, stage) in
-            [(Fault::Device, "no device"), (Fault::Pipeline, "no pipeline"), (Fault::FirstFrame, "no first frame")]
-        {
+        for (fault, stage) in [(Fault::Device, "no device"), (Fault::Pipeline, "no pipeline")] {
             let search = offscreen(None);
             let mut failures = Failures::default();
             let mut opened = Vec::new();
@@ -446,7 +380,7 @@ mod tests {
 
     #[test]
     fn without_a_usable_adapter_the_error_has_a_line_per_adapter() {
-        for fault in [Fault::Device, Fault::Pipeline, Fault::FirstFrame] {
+        for fault in [Fault::Device, Fault::Pipeline] {
             let mut opened = Vec::new();
             let search = offscreen(None);
             let result = pollster::block_on(search.first_usable(async |candidate: Candidate| {

@@ -22,7 +22,6 @@ pub(crate) use adapter::{AdapterSearch, Candidate, NO_WINDOW, instance, wanted_n
 pub use body::{BodyRenderer, Frame, View, Viewport};
 pub use camera::{Camera, Margins};
 pub use offscreen::read_texture;
-pub(crate) use offscreen::to_rgba;
 
 /// Error of the renderer.
 #[derive(Debug, Error)]
@@ -38,14 +37,12 @@ pub enum RenderError {
         /// A line per adapter: name, backend, and the reason for which it is not usable.
         tried: String,
     },
-    /// Devices were lost one after the other.
+    /// A device was lost, and a second one too.
     #[error(
-        "the graphics device failed {times} times within a minute: {reason}.\nUpdate the driver of your GPU, or choose \
-         another adapter: `warpbeam gpu` lists them, --adapter NAME chooses one"
+        "the graphics device failed twice: {reason}.\nUpdate the driver of your GPU, or choose another adapter: \
+         `warpbeam gpu` lists them, --adapter NAME chooses one"
     )]
     Lost {
-        /// Number of failures.
-        times: usize,
         /// Reason of the last failure.
         reason: String,
     },

@@ -49,7 +49,7 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, Rende
 }
 
 /// Converts pixels of a texture to RGBA: those of a window can be BGRA.
-pub(crate) fn to_rgba(format: wgpu::TextureFormat, pixels: &mut [u8]) {
+fn to_rgba(format: wgpu::TextureFormat, pixels: &mut [u8]) {
     if matches!(format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
         pixels.as_chunks_mut().0.iter_mut().for_each(|pixel: &mut [u8; 4]| pixel.swap(0, 2));
     }

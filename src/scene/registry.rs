@@ -1,5 +1,5 @@
-//! Built-in scenes. Window, command line, tests and benches iterate over this list: to add a scene, add a file to
-//! `assets/scenes` and a line here.
+//! Built-in scenes. Window, command line, tests and benches iterate over this list: to add a scene, add a file and
+//! its picture to `assets/scenes` and a line here.
 
 /// Scene that is part of the library.
 #[derive(Clone, Copy, Debug)]
@@ -8,11 +8,19 @@ pub struct BuiltIn {
     pub id: &'static str,
     /// Text of the scene file.
     pub toml: &'static str,
+    /// PNG file of the result, for the gallery.
+    #[cfg(feature = "app")]
+    pub(crate) picture: &'static [u8],
 }
 
 macro_rules! built_in {
     ($($id:literal),* $(,)?) => {
-        &[$(BuiltIn { id: $id, toml: include_str!(concat!("../../assets/scenes/", $id, ".toml")) }),*]
+        &[$(BuiltIn {
+            id: $id,
+            toml: include_str!(concat!("../../assets/scenes/", $id, ".toml")),
+            #[cfg(feature = "app")]
+            picture: include_bytes!(concat!("../../assets/scenes/", $id, ".png")),
+        }),*]
     };
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::export::csv_field;
-use crate::scene::{ElementKind, Load, MethodKind, Scene};
+use crate::scene::{Load, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
 
 /// A quantity that every point of a figure has.
@@ -31,9 +31,7 @@ impl FigureQuantity {
 /// Colour of a series, by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The reference solution.
-    Exact,
-    /// Beam theory, which may differ from the reference solution.
+    /// Beam theory.
     BeamTheory,
     /// A method.
     Method(MethodKind),
@@ -52,16 +50,12 @@ pub enum Mark {
     Dashes,
     /// A dotted line.
     Dots,
-    /// The mark of an element at every point.
-    Element(ElementKind),
     /// A filled circle at every point.
     Disc,
     /// A hollow circle at every point.
     Ring,
     /// A cross at every point.
     Cross,
-    /// A plus at every point.
-    Plus,
 }
 
 impl Mark {
@@ -77,8 +71,6 @@ impl Mark {
 pub struct FigurePoint {
     /// Value of each quantity of the figure; `None` where the point has none.
     pub values: Vec<Option<f64>>,
-    /// Error of the displacement, percent of the exact one, where that is known.
-    pub error_percent: Option<f64>,
     /// Status in a word, such as `stable`; may be empty.
     pub state: String,
     /// `true` if it belongs to the present load.
@@ -119,8 +111,6 @@ pub struct FigureRow {
     pub mark: Mark,
     /// Present value with its unit; may be empty.
     pub value: String,
-    /// Error with its unit; empty if it is not known.
-    pub error: String,
     /// `true` if the value is a status without result, such as `diverged`.
     pub is_bad: bool,
 }
@@ -134,14 +124,10 @@ pub struct Figure {
     pub quantities: Vec<FigureQuantity>,
     /// Indices of the quantities along the horizontal and the vertical axis.
     pub axes: [usize; 2],
-    /// Lower left and upper right corner of the picture; `None` shows all points.
-    pub bounds: Option<[[f64; 2]; 2]>,
     /// The series.
     pub series: Vec<FigureSeries>,
-    /// Headings of the table: name, value and error.
-    pub head: [String; 3],
-    /// Heading of the column of errors in CSV.
-    pub error_name: String,
+    /// Headings of the table: name and value.
+    pub head: [String; 2],
     /// Rows of the table.
     pub rows: Vec<FigureRow>,
 }
@@ -174,9 +160,6 @@ impl Figure {
         const LEAVES: f64 = 0.35;
         /// Margin around the points, as a fraction of the picture.
         const SPACE: f64 = 0.05;
-        if let Some(corners) = self.bounds {
-            return corners;
-        }
         let places = |may_leave: bool| {
             let own = self.series.iter().filter(move |series| series.may_leave == may_leave);
             own.flat_map(|series| &series.points).filter_map(|point| self.place(point))
@@ -215,12 +198,9 @@ impl Figure {
     /// Formats the series as CSV, a row per point, in the units of the headings.
     #[must_use]
     pub fn csv(&self) -> String {
-        let points = || self.series.iter().flat_map(|series| &series.points);
-        let (has_errors, has_states) =
-            (points().any(|p| p.error_percent.is_some()), points().any(|p| !p.state.is_empty()));
+        let has_states = self.series.iter().flat_map(|series| &series.points).any(|p| !p.state.is_empty());
         let mut head = vec!["series".to_owned()];
         head.extend(self.quantities.iter().map(FigureQuantity::heading));
-        head.extend(has_errors.then(|| format!("{} (%)", self.error_name)));
         head.extend(has_states.then(|| "state".to_owned()));
         let mut text = csv_row(&head);
         // Adding 0 turns −0 into 0.
@@ -229,7 +209,6 @@ impl Figure {
             for point in &series.points {
                 let mut row = vec![series.name.clone()];
                 row.extend(point.values.iter().copied().map(value));
-                row.extend(has_errors.then(|| value(point.error_percent)));
                 row.extend(has_states.then(|| point.state.clone()));
                 text.push_str(&csv_row(&row));
             }

@@ -142,11 +142,7 @@ pub(super) fn fine(
     effort: Effort,
     observe: Observer<'_>,
 ) -> Result<Fine, StudyError> {
-    let mut scene = scene.clone();
-    scene.set_element(element(&scene));
-    scene.solver.method = MethodKind::Newton;
-    scene.solver.max_iterations = MAX_ITERATIONS;
-    scene.solver.accept_after = 0;
+    let mut scene = prepared(scene);
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = has_point(&scene);
@@ -232,6 +228,16 @@ pub(super) fn fine(
     })
 }
 
+/// Returns a scene with element and method of fine solutions.
+pub(super) fn prepared(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.set_element(element(&scene));
+    scene.solver.method = MethodKind::Newton;
+    scene.solver.max_iterations = MAX_ITERATIONS;
+    scene.solver.accept_after = 0;
+    scene
+}
+
 /// Returns `true` if a solution is so far from the one it was started from that it may be another equilibrium.
 fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
     /// Distance relative to the largest displacement.
@@ -241,7 +247,7 @@ fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
 }
 
 /// Returns the displacement of every probe, m.
-fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
+pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
     let u = simulation.displacement();
     simulation.problem().probes().iter().map(|probe| probe.mean(u)).collect()
 }
@@ -285,7 +291,7 @@ fn element(scene: &Scene) -> ElementKind {
 }
 
 /// Returns the bounds of the errors of the last solution, m, for each probe.
-fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
+pub(super) fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
     let probes = solutions.last().map_or(0, Vec::len);
     let of = |probe: usize| solutions.iter().filter_map(|u| u.get(probe).copied()).collect::<Vec<_>>();
     (0..probes).map(|probe| remaining_error(&of(probe), has_point)).collect()
@@ -302,7 +308,7 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
 }
 
 /// Returns `true` if a force or a support acts on a single point.
-fn has_point(scene: &Scene) -> bool {
+pub(super) fn has_point(scene: &Scene) -> bool {
     let at = |place: &Place| matches!(place, Place::At(_));
     scene.supports.iter().any(|s| at(&s.place))
         || scene.loads.iter().any(|load| matches!(load, Load::Force { place, .. } if at(place)))
@@ -339,7 +345,7 @@ impl FineSearch<'_> {
 }
 
 /// Sequence of meshes, each with every element of the previous one cut into four.
-struct Meshes {
+pub(super) struct Meshes {
     /// Mesh before the beam is bent to its arch; the mesh itself if there is no arch.
     straight: Mesh,
     /// Arch that the beam is bent to.
@@ -348,7 +354,11 @@ struct Meshes {
 
 impl Meshes {
     /// Returns the coarsest mesh of a scene. Points of the scene without a node are moved to the nearest one.
-    fn of(scene: &mut Scene, near: Option<&Simulation>, effort: Effort) -> Result<(Self, Vec<MovedPoint>), StudyError> {
+    pub(super) fn of(
+        scene: &mut Scene,
+        near: Option<&Simulation>,
+        effort: Effort,
+    ) -> Result<(Self, Vec<MovedPoint>), StudyError> {
         match scene.beam.clone() {
             Some(beam) => {
                 let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
@@ -381,7 +391,7 @@ impl Meshes {
     }
 
     /// Returns the current mesh.
-    fn mesh(&self) -> Result<Mesh, StudyError> {
+    pub(super) fn mesh(&self) -> Result<Mesh, StudyError> {
         match &self.arch {
             None => Ok(self.straight.clone()),
             Some(beam) => {
@@ -391,7 +401,7 @@ impl Meshes {
     }
 
     /// Refines the mesh; returns a displacement of the previous mesh interpolated to it.
-    fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+    pub(super) fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         let carried = self.straight.prolonged(displacement);
         self.straight = self.straight.refined();
         carried
@@ -537,7 +547,7 @@ fn on_lines(lines: &[f64], part: f64) -> f64 {
 }
 
 /// Returns `true` if no side of the outline is curved.
-fn has_straight_sides(mesh: &Mesh) -> bool {
+pub(super) fn has_straight_sides(mesh: &Mesh) -> bool {
     const STRAIGHT: f64 = 1e-9;
     mesh.outline().iter().all(|side| {
         let [a, b] = side.ends().map(|n| mesh.node(n));
@@ -546,7 +556,7 @@ fn has_straight_sides(mesh: &Mesh) -> bool {
 }
 
 /// Returns the closed outlines of a body at rest and in its state, m, node by node.
-fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
+pub(super) fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
     let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
     let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
     for side in mesh.outline() {

@@ -8,6 +8,8 @@ pub mod extremes;
 pub mod figure;
 mod fine;
 pub mod limits;
+#[cfg(feature = "app")]
+mod live;
 mod load_curve;
 mod load_path;
 pub mod motion;
@@ -28,6 +30,8 @@ pub(crate) use claim::driven_texts;
 pub use claim::{Advice, Claim};
 pub use colors::color;
 pub use fine::{Effort, MovedPoint, moved_points};
+#[cfg(feature = "app")]
+pub(crate) use live::LiveReference;
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
     CriticalLoad, Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text,

@@ -85,20 +85,10 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
     let mut rows: Vec<FigureRow> = Vec::new();
     for FigureSeries { name, ink, mark, .. } in &series {
         if !rows.iter().any(|row| row.name == *name) {
-            let (value, error) = (String::new(), String::new());
-            rows.push(FigureRow { name: name.clone(), ink: *ink, mark: *mark, value, error, is_bad: false });
+            rows.push(FigureRow { name: name.clone(), ink: *ink, mark: *mark, value: String::new(), is_bad: false });
         }
     }
-    Figure {
-        title: format!("{}: load path", path.scene),
-        quantities,
-        axes,
-        bounds: None,
-        series,
-        head: Default::default(),
-        error_name: String::new(),
-        rows,
-    }
+    Figure { title: format!("{}: load path", path.scene), quantities, axes, series, head: Default::default(), rows }
 }
 
 /// The quantity that grows along the path.

@@ -279,6 +279,16 @@ impl Reference {
         }
     }
 
+    /// Returns the reference of a fine solution that follows the scene's load.
+    #[cfg(feature = "app")]
+    pub(super) fn of_live(scene: &Scene, fine: Fine) -> Self {
+        let beam = ExactBeam::of(scene);
+        match beam.and_then(|beam| beam.tip_displacement()) {
+            Some(tip) => Self::confirmed(scene, beam, tip, fine),
+            None => Self::of_fine(scene, fine),
+        }
+    }
+
     fn of_fine(scene: &Scene, fine: Fine) -> Self {
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
         let probes = fine.probes.iter().zip(&fine.errors).map(|(&u, error)| probe(u, (*error)?, source));

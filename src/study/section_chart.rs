@@ -121,7 +121,7 @@ fn stress_of(
         axes: [0, 1],
         series,
         rows,
-        head: [String::new(), render(&"in the cut (of the drawn stress)".into()), String::new()],
+        head: [String::new(), render(&"in the cut (of the drawn stress)".into())],
         ..Figure::default()
     }
 }
@@ -172,7 +172,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
 }
 
 fn row(name: String, ink: Ink, mark: Mark, value: String) -> FigureRow {
-    FigureRow { name, ink, mark, value, error: String::new(), is_bad: false }
+    FigureRow { name, ink, mark, value, is_bad: false }
 }
 
 #[cfg(test)]

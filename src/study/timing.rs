@@ -50,12 +50,19 @@ pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromR
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
     // Without a load there is no iteration.
     let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop().unwrap_or_default();
-    Some(SolveFromRest {
-        timings,
-        iterations: simulation.iterations(),
-        is_solved: simulation.status().is_success(),
-        displacement: first_probe(&simulation).ok(),
-    })
+    Some(SolveFromRest { timings, ..SolveFromRest::of(&simulation) })
+}
+
+impl SolveFromRest {
+    /// Returns time and result of a simulation that has been solved from rest.
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        Self {
+            timings: *simulation.timings(),
+            iterations: simulation.iterations(),
+            is_solved: simulation.status().is_success(),
+            displacement: first_probe(simulation).ok(),
+        }
+    }
 }
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,

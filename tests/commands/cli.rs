@@ -19,8 +19,11 @@ fn scenes_lists_every_scene_with_its_sentence() {
 
 #[test]
 fn every_scene_file_is_in_the_registry() {
-    let files = fs::read_dir("assets/scenes").unwrap().count();
-    assert_eq!(files, registry::BUILT_IN.len());
+    for extension in ["toml", "png"] {
+        let files = fs::read_dir("assets/scenes").unwrap().map(|file| file.unwrap().path());
+        let count = files.filter(|file| file.extension().is_some_and(|e| e == extension)).count();
+        assert_eq!(count, registry::BUILT_IN.len(), "{extension}");
+    }
 }
 
 /// The keys are compared with `docs/reference/results.md` in `docs.rs`.

@@ -2,7 +2,7 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test registry -- picture` redraws the golden pictures; look at them before committing.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use libtest_mimic::Trial;
 use nalgebra::Vector2;
@@ -16,8 +16,12 @@ use crate::common::{stderr, warpbeam};
 use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
-    ("the_picture_is_golden_on_dark", |id| the_picture_is_golden(id, "dark")),
-    ("the_picture_is_golden_on_light", |id| the_picture_is_golden(id, "light")),
+    ("the_picture_is_golden_on_dark", |id| is_golden(id, ["640x400", "dark"], &format!("tests/golden/{id}-dark.png"))),
+    ("the_picture_is_golden_on_light", |id| {
+        is_golden(id, ["640x400", "light"], &format!("tests/golden/{id}-light.png"))
+    }),
+    // The gallery shows it at half of its size.
+    ("the_small_picture_is_golden", |id| is_golden(id, ["208x126", "dark"], &format!("assets/scenes/{id}.png"))),
     ("the_body_is_drawn_where_the_solver_says", the_body_is_drawn_where_the_solver_says),
 ];
 
@@ -27,21 +31,19 @@ pub fn trials() -> Vec<Trial> {
 
 /// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose
 /// times differ from run to run).
-fn the_picture_is_golden(id: &'static str, theme: &str) {
+fn is_golden(id: &str, [size, theme]: [&str; 2], golden: &str) {
     const TOLERANCE: f64 = 2e-3;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shot.png");
     let to = path.to_str().unwrap();
-    let mut args = vec!["shot", id, "-o", to, "--size", "640x400", "--no-panel", "--theme", theme];
+    let mut args = vec!["shot", id, "-o", to, "--size", size, "--no-panel", "--theme", theme];
     args.extend(for_picture(id).iter().flat_map(|set| ["--set", set]));
     let output = warpbeam(&args);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let golden = PathBuf::from(format!("tests/golden/{id}-{theme}.png"));
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::create_dir_all("tests/golden").unwrap();
-        std::fs::copy(&path, &golden).unwrap();
+        std::fs::copy(&path, golden).unwrap();
     }
-    let difference = difference(&read_png(&path), &read_png(&golden));
+    let difference = difference(&read_png(&path), &read_png(Path::new(golden)));
     assert!(difference < TOLERANCE, "{:.2} % of the pixels differ", 100.0 * difference);
 }
 

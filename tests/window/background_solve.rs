@@ -26,7 +26,10 @@ fn harness(id: &str) -> Harness<'static, Lab> {
             lab.advance(ui.input(|i| i.time));
             let before = body(lab);
             lab.ui(ui);
-            is_of_one_state(lab, &before);
+            // The window lays such a frame out again, with the result of its edit.
+            if !lab.take_mixed() {
+                is_of_one_state(lab, &before);
+            }
         },
         lab,
     );
@@ -130,21 +133,18 @@ fn a_body_solved_in_the_background_is_paused_and_stepped() {
     harness.key_press(Key::N);
     settle(&mut harness);
     assert_eq!(harness.state().simulation().iterations(), 2);
-    // While paused, an edit does not change the body.
-    let u = harness.state().simulation().displacement().to_vec();
-    type_into(&mut harness, "Force", "12000");
-    settle(&mut harness);
-    assert_eq!(harness.state().simulation().displacement(), u);
-    assert_eq!(harness.state().simulation().scene(), harness.state().scene());
     harness.get_by_label("Reset").click();
     settle(&mut harness);
     assert!(harness.state().simulation().displacement().iter().all(|u| *u == Vector2::zeros()));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    settle(&mut harness);
     harness.get_by_label("Run").click();
     harness.step();
     settle(&mut harness);
     assert_eq!(harness.state().simulation().iterations(), iterations);
+    // An edit after a step goes on to equilibrium.
+    harness.key_press(Key::N);
+    settle(&mut harness);
+    type_into(&mut harness, "Force", "12000");
+    settle(&mut harness);
     agrees_with_solve(harness.state());
 }
 

@@ -446,7 +446,11 @@ fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
 #[test]
 fn steps_walk_through_the_pseudocode() {
     let mut harness = at_card(5);
-    let lit = |harness: &Harness<'_, Lab>| text(harness, "line ");
+    // Rows of the wrapped text may begin with the word, too.
+    let all_lit = |harness: &Harness<'_, Lab>| -> Vec<String> {
+        texts(harness).into_iter().filter(|text| text.starts_with("line ") && text.contains(": ")).collect()
+    };
+    let lit = |harness: &Harness<'_, Lab>| all_lit(harness).swap_remove(0);
     assert!(lit(&harness).starts_with("line 1: Ke = stiffness of each triangle at rest; 10 matrices"));
     for (line, iterations) in
         [(2, 0), (5, 0), (6, 0), (7, 0), (8, 1), (9, 1), (10, 1), (5, 1), (6, 1), (7, 1), (8, 2), (9, 2), (10, 2)]
@@ -461,7 +465,7 @@ fn steps_walk_through_the_pseudocode() {
         assert_eq!(simulation.iterations(), iterations, "line {line}");
         let words = lit(&harness);
         assert!(words.starts_with(&format!("line {line}: ")), "{words}");
-        assert_eq!(texts(&harness).iter().filter(|text| text.starts_with("line ")).count(), 1);
+        assert_eq!(all_lit(&harness).len(), 1);
         let r = minus(&format!("{:.1e}", simulation.residual()));
         let numbers = match line {
             5 => {

@@ -9,6 +9,7 @@ mod background_solve;
 mod compare;
 #[cfg(target_os = "linux")]
 mod desktop;
+mod drag;
 mod figures;
 mod golden;
 mod language;

@@ -16,7 +16,8 @@ use warpbeam::study::{Extent, Study};
 use warpbeam::{MethodKind, Scene, Status};
 
 /// Texts of the window.
-struct Shown(Vec<String>);
+#[derive(Debug)]
+pub struct Shown(pub Vec<String>);
 
 fn harness_of(lab: Lab) -> Harness<'static, Lab> {
     let mut harness = window([1280.0, 2000.0], lab);
@@ -25,7 +26,7 @@ fn harness_of(lab: Lab) -> Harness<'static, Lab> {
 }
 
 /// Returns the numbers of `solve` for a scene.
-fn solve(scene: &Scene) -> Value {
+pub fn solve(scene: &Scene) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene.to_toml().unwrap()).unwrap();
@@ -50,19 +51,19 @@ impl Shown {
         Self::with_role(harness, &|_| true)
     }
 
-    fn with_role(harness: &Harness<'_, Lab>, has: &dyn Fn(Role) -> bool) -> Self {
+    pub fn with_role(harness: &Harness<'_, Lab>, has: &dyn Fn(Role) -> bool) -> Self {
         let nodes = harness.get_all_by(|node| has(node.role())).map(|node| node.accesskit_node());
         Self(nodes.filter_map(|node| node.value().or(node.label())).collect())
     }
 
     /// Returns the value of a row of Details.
-    fn row(&self, name: &str) -> &str {
+    pub fn row(&self, name: &str) -> &str {
         let at = self.0.iter().position(|text| text == name);
         let value = at.and_then(|at| self.0.get(at + 1));
         value.map_or_else(|| panic!("no row {name:?}: {:?}", self.0), String::as_str)
     }
 
-    fn starting_with(&self, start: &str) -> Option<&str> {
+    pub fn starting_with(&self, start: &str) -> Option<&str> {
         self.0.iter().map(String::as_str).find(|text| text.starts_with(start))
     }
 

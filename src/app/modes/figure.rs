@@ -5,15 +5,15 @@ use crate::app::view_options::CurvePlot;
 use std::path::{Path, PathBuf};
 
 use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, PlotResponse, Points, VLine};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 use thiserror::Error;
 
-use crate::app::language::{fill, tr};
+use crate::app::language::tr;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
-use crate::app::widgets::plot::{marker, segments, still};
+use crate::app::widgets::plot::{segments, still};
 use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
 
@@ -64,8 +64,8 @@ impl Parts {
     }
 }
 
-/// Draws the plot. If the horizontal axis is the load, a line marks the current load.
-pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>) -> PlotResponse<()> {
+/// Draws the plot.
+pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
     let palette = Palette::new(ui.visuals());
     let corners = figure.corners();
     let [x, y] = [0, 1].map(|axis| figure.quantity(axis).map_or(("", ""), |q| (q.name.as_str(), q.unit)));
@@ -80,11 +80,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
         let slack = [0, 1].map(|i| 1e-9 * (corners[1][i] - corners[0][i]));
         (0..2).all(|i| p[i] >= corners[0][i] - slack[i] && p[i] <= corners[1][i] + slack[i])
     };
-    let response = plot.show(ui, |plot| {
-        if let Some(load) = present.filter(|_| figure.axes[0] == 0) {
-            let now = VLine::new(tr("now"), load).color(palette.load.gamma_multiply(0.7)).width(1.0);
-            plot.vline(now.allow_hover(false));
-        }
+    plot.show(ui, |plot| {
         let mut smaller = 0.0;
         for series in &figure.series {
             let color = color(&palette, series.ink);
@@ -117,7 +113,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
                 // Marks at the same position get different sizes, so that all are visible.
                 plot.points(points.radius((radius - step * smaller as f32).max(2.4)));
             }
-            if matches!(series.mark, Mark::Element(_) | Mark::Disc) {
+            if series.mark == Mark::Disc {
                 smaller += 1.0;
             }
         }
@@ -128,7 +124,6 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure, present: Option<f64>)
         ui.data_mut(|data| data.insert_temp(id, corners));
         ui.ctx().request_repaint();
     }
-    response
 }
 
 /// Returns the part of a line inside the corners, from its first point inside; `None` if the line is outside.
@@ -167,7 +162,6 @@ fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]
 
 fn color(palette: &Palette, ink: Ink) -> Color32 {
     match ink {
-        Ink::Exact => palette.exact,
         Ink::Method(method) => palette.method(method),
         Ink::Unstable => palette.error,
         Ink::BeamTheory | Ink::Scene => palette.text,
@@ -176,10 +170,8 @@ fn color(palette: &Palette, ink: Ink) -> Color32 {
 
 fn marker_shape(mark: Mark) -> (MarkerShape, bool) {
     match mark {
-        Mark::Element(element) => (marker(element).0, true),
         Mark::Ring => (MarkerShape::Circle, false),
         Mark::Cross => (MarkerShape::Cross, true),
-        Mark::Plus => (MarkerShape::Plus, true),
         _ => (MarkerShape::Circle, true),
     }
 }
@@ -219,86 +211,43 @@ pub(crate) fn export_menu(ui: &mut Ui, figure: &Figure, actions: &mut Vec<Action
 pub(crate) fn table(ui: &mut Ui, figure: &Figure) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ScrollArea::vertical().id_salt("table").auto_shrink([false, false]).show(ui, |ui| {
-        let errors = figure.rows.iter().any(|row| !row.error.is_empty());
-        let columns = Columns::new(ui, errors);
         if figure.head.iter().any(|text| !text.is_empty()) {
-            head(ui, &columns, figure);
+            head(ui, figure);
         }
         for row in &figure.rows {
-            show_row(ui, &columns, row);
+            show_row(ui, row);
         }
     });
 }
 
-/// Widths of the table's columns, points.
-struct Columns {
-    mark: f32,
-    error: f32,
-}
-
-impl Columns {
-    fn new(ui: &Ui, errors: bool) -> Self {
-        /// In a table narrower than this, points, the column of errors is omitted; the panes show the errors, too.
-        const NARROW: f32 = 250.0;
-        Self { mark: 22.0, error: if errors && ui.available_width() >= NARROW { 54.0 } else { 0.0 } }
-    }
-}
-
-fn head(ui: &mut Ui, columns: &Columns, figure: &Figure) {
+fn head(ui: &mut Ui, figure: &Figure) {
     let palette = Palette::new(ui.visuals());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-    let [name, value, error] = &figure.head;
-    let font = FontId::proportional(SMALL);
-    let put = |x: f32, align: Align2, text: &str, color| {
-        ui.painter().text(pos2(x, rect.center().y), align, text, font.clone(), color);
-    };
-    put(rect.left(), Align2::LEFT_CENTER, name, palette.load);
-    put(rect.right() - columns.error, Align2::RIGHT_CENTER, value, palette.secondary);
-    if columns.error > 0.0 {
-        put(rect.right(), Align2::RIGHT_CENTER, error, palette.secondary);
-    }
-    let spoken = [name, value, error].map(String::as_str).join(" ");
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, spoken.trim()));
-    if error.is_empty() {
-        return;
-    }
-    let measure = fill!(
-        "%{error}: relative error of the displacement vector, compared with the reference solution",
-        error = figure.error_name
-    );
-    response.on_hover_text(format!("{}\n{measure}", tr("Click in the plot to set the load")));
+    let [name, value] = &figure.head;
+    let put =
+        |at, align: Align2, text, color| _ = ui.painter().text(at, align, text, FontId::proportional(SMALL), color);
+    put(rect.left_center(), Align2::LEFT_CENTER, name, palette.load);
+    put(rect.right_center(), Align2::RIGHT_CENTER, value, palette.secondary);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name} {value}").trim()));
 }
 
-fn show_row(ui: &mut Ui, columns: &Columns, row: &FigureRow) {
+fn show_row(ui: &mut Ui, row: &FigureRow) {
+    /// Width of the column of marks, points.
+    const MARK: f32 = 22.0;
     let palette = Palette::new(ui.visuals());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
     let painter = ui.painter();
     paint_mark(ui, rect.left_center() + vec2(8.0, 0.0), row.mark, color(&palette, row.ink));
     let ink = if row.is_bad { palette.error } else { palette.text };
-    let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
-    let mut right = rect.right();
-    let mut put = |text: &str, color, width: f32| {
-        let galley = small(text, color);
-        let at = Align2::RIGHT_CENTER.anchor_size(pos2(right, rect.center().y), galley.size());
-        right -= width.max(galley.size().x);
-        painter.galley(at.min, galley, color);
-    };
-    if columns.error > 0.0 {
-        put(&row.error, palette.text, columns.error);
-    }
-    put(&row.value, ink, 0.0);
-    let room = (right - rect.left() - columns.mark - 8.0).max(0.0);
+    let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, &row.value, FontId::proportional(SMALL), ink);
+    let room = (right.left() - rect.left() - MARK - 8.0).max(0.0);
     let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(BODY), palette.text);
     job.wrap = egui::text::TextWrapping::truncate_at_width(room);
     let galley = painter.layout_job(job);
-    let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(columns.mark, 0.0), galley.size());
+    let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(MARK, 0.0), galley.size());
     painter.galley(at.min, galley, palette.text);
-    let mut spoken = row.name.clone();
-    for (separator, text) in [(": ", &row.value), (", ", &row.error)] {
-        if !text.is_empty() {
-            spoken = format!("{spoken}{separator}{text}");
-        }
-    }
+    let separator = if row.value.is_empty() { "" } else { ": " };
+    let spoken = format!("{}{separator}{}", row.name, row.value);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     response.on_hover_text(spoken);
 }
@@ -316,21 +265,7 @@ fn paint_mark(ui: &Ui, center: egui::Pos2, mark: Mark, color: Color32) {
         Mark::Dots => _ = painter.add(egui::Shape::dotted_line(&ends, color, 4.0, 1.2)),
         Mark::Ring => _ = painter.circle_stroke(center, 4.0, Stroke::new(1.5, color)),
         Mark::Cross => [vec2(4.0, 4.0), vec2(4.0, -4.0)].into_iter().for_each(across),
-        Mark::Plus => [vec2(4.5, 0.0), vec2(0.0, 4.5)].into_iter().for_each(across),
         Mark::Disc => _ = painter.circle_filled(center, 4.5, color),
-        Mark::Element(element) => {
-            let corners: &[(f32, f32)] = match marker(element).0 {
-                MarkerShape::Up => &[(0.0, -5.0), (5.0, 4.0), (-5.0, 4.0)],
-                MarkerShape::Square => &[(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)],
-                MarkerShape::Diamond => &[(0.0, -5.5), (5.5, 0.0), (0.0, 5.5), (-5.5, 0.0)],
-                _ => &[],
-            };
-            if corners.is_empty() {
-                painter.circle_filled(center, 4.5, color);
-            }
-            let corners = corners.iter().map(|&(x, y)| center + vec2(x, y)).collect();
-            painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
-        }
     }
 }
 

@@ -2,5 +2,4 @@
 
 pub(crate) mod painter;
 pub(crate) mod record;
-pub(crate) mod recorder;
 pub(crate) mod shot;

@@ -3,14 +3,13 @@
 use crate::app::session::has_mesh_of;
 use egui::Ui;
 
-use crate::app::action::MAX_ITERATIONS;
 use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::{Action, NumberRow, PanelState, number_rows};
 use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
 use crate::format::{engineering, number, three_digits};
-use crate::scene::{Analysis, Beam, Material, Plane, Scene, limits};
+use crate::scene::{Beam, Material, Plane, Scene, limits};
 
 /// Named material.
 struct MaterialPreset {
@@ -235,20 +234,5 @@ pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
             }
             actions.push(Action::Edit(label, scene));
         }
-    }
-    if scene.analysis == Analysis::Dynamic {
-        return;
-    }
-    let field = NumberField {
-        label: "Iterations/frame",
-        tooltip: "Iterations per displayed frame: with more, the solve takes fewer frames, but each frame takes \
-                  longer.",
-        limit: limits::Limit { unit: "", min: 1.0, max: f64::from(MAX_ITERATIONS) },
-        slider: 1.0..=20.0,
-        scale: SliderScale::Linear,
-        whole: true,
-    };
-    if let Some(new) = field.show(ui, &mut state.messages, f64::from(input.iterations)) {
-        actions.push(Action::Iterations(new as u32));
     }
 }

@@ -56,7 +56,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         "Iterations",
         {
             let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
-            match input.shows_converged {
+            match input.is_fallback {
                 true => fill!("%{n} to the state that is drawn, residual %{residual}", n = n, residual = residual),
                 false => fill!("%{n} since the last change, residual %{residual}", n = n, residual = residual),
             }
@@ -89,12 +89,12 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if method == MethodKind::Warped {
         let own = || search.certificate()?.fixed_point_rho;
-        let known = if input.shows_converged { own() } else { rho(input) };
+        let known = if input.is_fallback { own() } else { rho(input) };
         let text = known.filter(|_| simulation.status().is_success()).map_or_else(
             || UNKNOWN.to_owned(),
             |rho| {
                 let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
-                let load = load_text(input.shown.scene()).filter(|_| input.shows_converged);
+                let load = load_text(input.shown.scene()).filter(|_| input.is_fallback);
                 load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load = load, text = text))
             },
         );

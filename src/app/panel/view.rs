@@ -162,20 +162,18 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     joined(std::iter::once(field).chain(shown))
 }
 
-/// Shows the buttons that open, save, record and copy.
+/// Shows the buttons that open, save and copy.
 pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
             ("Open…", "Open a scene file; one can also be dropped on the window (Ctrl+O)", Action::OpenFile),
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
-            ("Save as…", "Save the scene to another file (Ctrl+Shift+S)", Action::SaveAs),
-            ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),
-            ("Record", "Record the window as a GIF in the current folder; again: stop (V)", Action::Record),
             (
-                "Record scene",
-                "Record the scene from its start as a GIF in the current folder; again: stop (Shift+V)",
-                Action::RecordScene,
+                "Save as…",
+                "Save the scene to another file; `warpbeam record FILE -o FILE.gif` makes a GIF of it (Ctrl+Shift+S)",
+                Action::SaveAs,
             ),
+            ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
             ("Copy link", "Copy the address of this page with the whole scene in it (U)", Action::CopyLink),
         ] {

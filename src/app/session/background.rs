@@ -440,7 +440,7 @@ impl Session {
         let Some(rollback) = self.background.work.take_rollback() else { return };
         let Rollback { version, depth, snapshot, quality, .. } = *rollback;
         self.undo.take_back(depth);
-        Version { document: self.document, scene: self.scene, iterations: self.iterations } = version;
+        Version { document: self.document, scene: self.scene } = version;
         self.note_size();
         if let Some(Snapshot { bodies, geometry, residuals }) = snapshot {
             let scene = self.simulation.scene().clone();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use web_time::{Duration, Instant};
 
+use crate::app::session::fallback::is_lost;
 use crate::app::session::has_mesh_of;
 use crate::app::task::background_solve::BackgroundSolve;
 use crate::app::task::quality::Quality;
@@ -88,8 +89,8 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
 /// Conditions of a solve in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameConditions {
-    /// `true` while the pointer moves: a dragged load gets one iteration per frame.
-    pub moves: bool,
+    /// `true` if the frame makes one iteration.
+    pub is_slow: bool,
     /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
     pub holds: bool,
     /// `true` if iterations are made at all.
@@ -168,9 +169,10 @@ impl ComparedSolve {
         matches!(self.body, ComparedBody::Away(_))
     }
 
-    /// Returns `true` if the solve from rest found no equilibrium.
+    /// Returns `true` if the solve from rest found no equilibrium; while a load is held, the one from the state before.
     pub(crate) fn has_failed(&self) -> bool {
-        self.end.as_ref().is_some_and(|end| end.status.failure().is_some())
+        let is_lost = || self.displayed().is_some_and(is_lost);
+        self.end.as_ref().map_or_else(is_lost, |end| end.status.failure().is_some())
     }
 
     /// Returns `true` if the displayed state is a result for its load.
@@ -326,7 +328,7 @@ impl ComparedSolve {
         }
         while !self.is_large && !has_ended(simulation, most) {
             simulation.step();
-            if frame.moves || Instant::now() >= frame.until {
+            if frame.is_slow || Instant::now() >= frame.until {
                 break;
             }
         }
@@ -431,9 +433,9 @@ mod tests {
         scene
     }
 
-    /// Returns the conditions of a frame without time for more than one iteration.
+    /// Returns the conditions of a frame in slow motion.
     fn frame(holds: bool) -> FrameConditions {
-        FrameConditions { moves: holds, holds, runs: true, until: Instant::now() }
+        FrameConditions { is_slow: true, holds, runs: true, until: Instant::now() }
     }
 
     /// Advances until no work is left; returns the number of frames.

@@ -7,7 +7,9 @@ pub(crate) mod compared_motion;
 pub(crate) mod compared_solve;
 pub(crate) mod document;
 pub(crate) mod facts;
+pub(crate) mod fallback;
 pub(crate) mod history;
+pub(crate) mod live;
 pub(crate) mod past;
 pub(crate) mod playback;
 pub(crate) mod recovery;
@@ -28,6 +30,8 @@ use crate::app::session::background::Background;
 use crate::app::session::compared_solve::Equations;
 use crate::app::session::document::{Document, SaveError};
 use crate::app::session::facts::{Facts, ShownFacts};
+use crate::app::session::fallback::{Fallback, is_lost};
+use crate::app::session::live::{Compared, Follower, Live, first_probe};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
@@ -39,7 +43,7 @@ use crate::scene::{Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError
 use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Reference, StudyError, is_known_unstable};
+use crate::study::{Reference, SolveFromRest, StudyError, is_known_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.
@@ -53,8 +57,6 @@ const MAX_CERTIFIED_HERE: usize = 2000;
 pub(crate) enum Edit {
     /// Change the scene with the control of this label. Edits with one control during one press are one undo step.
     Scene(&'static str, Box<Scene>),
-    /// Use the scene of a measured setting, with its number of iterations per displayed frame.
-    Setting(Box<Scene>, u32),
     /// Open a scene in place of the current one.
     Open(Source),
     /// Replace the document by this one, with a scene that may have been edited since the document was saved.
@@ -138,8 +140,20 @@ pub(crate) struct Session {
     geometry: Arc<DisplayGeometry>,
     background: Background,
     running: bool,
-    /// Iterations per displayed frame.
-    iterations: u32,
+    /// `true` if a displayed frame makes one iteration: slow motion of the method.
+    is_slow: bool,
+    /// Time of iterations after which a displayed frame makes no more.
+    frame_work: Duration,
+    /// Part of this time that is left in the current frame.
+    frame_left: Duration,
+    /// `true` while the pointer is pressed.
+    is_held: bool,
+    /// `true` if the scene has been edited since the last [`Self::follow_edit`].
+    is_edited_now: bool,
+    /// `true` if the frame before, in which there was such an edit, has left the search unfinished.
+    was_edited: bool,
+    /// `true` if this frame iterates once it is known that there is no edit.
+    is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
     timings: Timings,
     /// Residual after every iteration since the last change.
@@ -148,16 +162,22 @@ pub(crate) struct Session {
     quality: Quality,
     /// Certification of a copy of the displayed body.
     certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
-    /// Last equilibrium, displayed in place of a state that diverges.
-    converged: Option<Simulation>,
+    /// Bodies drawn in place of a search that has found no equilibrium.
+    fallback: Fallback,
     /// Equilibrium before the body was grabbed, which its release restores.
     before_grab: Option<BeforeGrab>,
     facts: Facts,
+    live: Follower,
+    /// Body that is solved from rest to measure the time of a dragged load, and the last such solve with its scene.
+    timed: Option<(Simulation, SolveFromRest)>,
     /// `true` if the scene's file has changed on disk since it was read or saved.
     is_outdated: bool,
     changed: Changed,
     notices: Vec<Notice>,
 }
+
+/// Relative residual above which the iterate of a dragged body is not drawn.
+pub(crate) const WILD: f64 = 0.1;
 
 impl Session {
     /// Creates a session with `scene` that iterates from rest.
@@ -172,19 +192,28 @@ impl Session {
             simulation,
             background: Background::default(),
             running: true,
-            iterations: 1,
+            is_slow: false,
+            frame_work: MAX_FRAME_WORK,
+            frame_left: MAX_FRAME_WORK,
+            is_held: false,
+            is_edited_now: false,
+            was_edited: false,
+            is_postponed: false,
             timings: Timings::default(),
             residuals: Vec::new(),
             playback: Playback::default(),
             quality: Quality::default(),
             certifying: None,
-            converged: None,
+            fallback: Fallback::default(),
             before_grab: None,
             facts: Facts::default(),
+            live: Follower::default(),
+            timed: None,
             is_outdated: false,
             changed: Changed::default(),
             notices: Vec::new(),
         };
+        session.fallback.keep(&session.simulation);
         session.note_size();
         session
     }
@@ -239,6 +268,25 @@ impl Session {
         facts.failure(&self.scene).map(Err).or_else(|| facts.get(&self.scene).map(Ok))
     }
 
+    /// Returns the reference solution that follows the load, until that of [`Self::reference`] is known. Scenes without an
+    /// error at rest have none.
+    pub(crate) fn live(&self) -> Option<&Live> {
+        let has_error = |reference: &Reference| reference.first().is_some();
+        let is_wanted = self.reference().is_none() && self.facts.reference.latest().is_some_and(has_error);
+        self.live.known().filter(|live| is_wanted && live.reference.first().is_some())
+    }
+
+    /// Returns time and result of a solve from rest; `None` if they are not known for the present load.
+    pub(crate) fn from_rest(&self) -> Option<&SolveFromRest> {
+        let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.scene).map(|(_, solve)| solve);
+        self.facts.time.get(&self.scene).or(own)
+    }
+
+    /// Returns time and result at the load at which the hand rested last, during a press.
+    pub(crate) fn last_from_rest(&self) -> Option<&SolveFromRest> {
+        self.facts.time.latest().filter(|_| self.is_held)
+    }
+
     pub(crate) fn timings(&self) -> &Timings {
         &self.timings
     }
@@ -248,13 +296,19 @@ impl Session {
         &self.residuals
     }
 
-    /// Returns the number of iterations per displayed frame.
-    pub(crate) fn iterations(&self) -> u32 {
-        self.iterations
+    /// Returns `true` if a displayed frame makes one iteration.
+    pub(crate) fn is_slow(&self) -> bool {
+        self.is_slow
     }
 
-    pub(crate) fn set_iterations(&mut self, iterations: u32) {
-        self.iterations = iterations;
+    /// Makes one iteration per displayed frame, or as many as the frame has time for.
+    pub(crate) fn set_slow(&mut self, is_slow: bool) {
+        self.is_slow = is_slow;
+    }
+
+    /// Sets the time of iterations after which a displayed frame makes no more.
+    pub(crate) fn set_frame_work(&mut self, time: Duration) {
+        self.frame_work = time;
     }
 
     pub(crate) fn can_undo(&self) -> bool {
@@ -290,9 +344,22 @@ impl Session {
         self.scene != self.document.original
     }
 
-    /// Returns the last equilibrium on the displayed mesh.
-    pub(crate) fn converged(&self) -> Option<&Simulation> {
-        self.converged.as_ref().filter(|kept| Arc::ptr_eq(kept.system(), self.simulation.system()))
+    /// Returns the body drawn in place of the simulation, whose search has found no equilibrium; `None` if the simulation
+    /// is drawn.
+    pub(crate) fn fallback(&self) -> Option<&Simulation> {
+        // An iterate that was asked for, or of a body that is not dragged, is drawn however far it is from equilibrium.
+        let is_wild = self.running && self.is_held && !self.is_slow && self.simulation.residual() > WILD;
+        let is_hidden = match self.simulation.status() {
+            Status::Running => is_wild && !self.is_motion(),
+            _ => is_lost(&self.simulation),
+        };
+        self.fallback.of(&self.simulation).filter(|_| is_hidden)
+    }
+
+    /// Returns the drawn body: the simulation, or the last equilibrium or the body at rest in place of a search that has
+    /// found none.
+    pub(crate) fn drawn(&self) -> &Simulation {
+        self.fallback().unwrap_or(&self.simulation)
     }
 
     /// Returns the parts that have changed since the last call.
@@ -312,6 +379,7 @@ impl Session {
 
     /// Records the presses of the pointer: edits during one press are one undo step.
     pub(crate) fn record_press(&mut self, press: Press) {
+        self.is_held = press.goes_on;
         self.undo.record_press(press);
     }
 
@@ -329,11 +397,6 @@ impl Session {
                 self.set_scene(*scene)?;
                 self.record(before, Some(label));
                 self.name_edit(label);
-            }
-            Edit::Setting(scene, iterations) => {
-                self.set_scene(*scene)?;
-                self.iterations = iterations;
-                self.record(before, None);
             }
             Edit::Open(source) => {
                 let document = Document::open(source)?;
@@ -365,7 +428,7 @@ impl Session {
 
     /// Returns the session as the undo history stores it.
     fn version(&self) -> Version {
-        Version { document: self.document.clone(), scene: self.scene.clone(), iterations: self.iterations }
+        Version { document: self.document.clone(), scene: self.scene.clone() }
     }
 
     fn record(&mut self, before: Version, label: Option<&'static str>) {
@@ -375,14 +438,8 @@ impl Session {
     }
 
     fn go_to(&mut self, step: Option<Version>) -> Result<(), SimulationError> {
-        let Some(Version { document, scene, iterations }) = step else { return Ok(()) };
-        if document.source == self.document.source {
-            self.set_scene(scene)?;
-        } else {
-            self.replace(document, scene)?;
-        }
-        self.iterations = iterations;
-        Ok(())
+        let Some(Version { document, scene }) = step else { return Ok(()) };
+        if document.source == self.document.source { self.set_scene(scene) } else { self.replace(document, scene) }
     }
 
     /// Changes the scene of the body, which continues from its current state if possible.
@@ -404,6 +461,7 @@ impl Session {
             self.geometry = Arc::new(DisplayGeometry::new(self.simulation.system().mesh()));
         }
         self.scene = scene;
+        (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
         self.note_size();
         self.scene_changed(&before);
         let known = self.linear.take();
@@ -418,6 +476,7 @@ impl Session {
     /// Updates everything that depends on the simulation's scene after it has changed from `before`.
     fn scene_changed(&mut self, before: &Scene) {
         self.changed.scene = true;
+        self.fallback.keep(&self.simulation);
         let scene = self.simulation.scene();
         if scene == before {
             return;
@@ -457,14 +516,15 @@ impl Session {
         self.running = true;
         self.playback = Playback::default();
         self.facts.curve.clear();
-        self.iterations = 1;
+        self.live = Follower::default();
+        self.is_slow = false;
     }
 
     /// Makes the current scene the unedited scene of a document; the undo history is cleared.
     pub(crate) fn rebase(&mut self, source: Source) {
         self.document = Document::new(source, self.scene.clone());
         self.undo = UndoHistory::default();
-        self.iterations = 1;
+        self.is_slow = false;
     }
 
     /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
@@ -529,10 +589,11 @@ impl Session {
         self.running = false;
     }
 
-    /// Makes the iterations of one displayed frame, fewer if they take long, or the time steps that are due at `now`, s
-    /// (any clock that runs in real time). Returns `true` if it has iterated.
+    /// Makes the iterations of one displayed frame, or the time steps that are due at `now`, s (any clock that runs in real
+    /// time). Returns `true` if it has iterated.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         self.poll();
+        self.frame_left = self.frame_work;
         if self.is_in_background() || !self.iterates() {
             self.rest();
             return false;
@@ -542,15 +603,36 @@ impl Session {
             self.timings = *self.simulation.last_iteration();
             return false;
         }
+        // The edit that a drag makes in this frame comes first.
+        self.is_postponed = std::mem::take(&mut self.was_edited) && !self.is_slow;
+        if !self.is_postponed {
+            self.search();
+        }
+        true
+    }
+
+    /// Iterates until the search ends or the frame has no more time; once in slow motion.
+    fn search(&mut self) {
         self.timings = Timings::default();
         let since = Instant::now();
-        for _ in 0..self.iterations {
+        while *self.simulation.status() == Status::Running {
             self.iterate_once();
-            if since.elapsed() >= MAX_FRAME_WORK {
+            if self.is_slow || since.elapsed() >= self.frame_left {
                 break;
             }
         }
-        true
+        self.frame_left = self.frame_left.saturating_sub(since.elapsed());
+    }
+
+    /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
+    pub(crate) fn follow_edit(&mut self) -> bool {
+        let is_edited = std::mem::take(&mut self.is_edited_now) && !self.is_motion();
+        self.was_edited |= is_edited;
+        let has_news = std::mem::take(&mut self.is_postponed) || is_edited;
+        if has_news && self.iterates() && !self.is_slow && !self.is_in_background() {
+            self.search();
+        }
+        has_news
     }
 
     /// Stops the clock of a motion until the next [`Self::advance`].
@@ -574,6 +656,7 @@ impl Session {
             self.simulation.step();
             self.timings.add(self.simulation.last_iteration());
             note_residual(&self.simulation, &mut self.residuals);
+            self.fallback.keep(&self.simulation);
         }
     }
 
@@ -631,10 +714,9 @@ impl Session {
 
     fn certify(&mut self) {
         self.simulation.certify();
-        // The last equilibrium is drawn in place of a state that is none.
+        self.fallback.keep(&self.simulation);
         let mut quality = std::mem::take(&mut self.quality);
-        let kept = self.converged().filter(|_| !self.simulation.status().is_success());
-        quality.update(kept.unwrap_or(&self.simulation));
+        quality.update(self.drawn());
         self.quality = quality;
     }
 
@@ -652,6 +734,7 @@ impl Session {
                         && own.mouse_spring().is_none();
                     if is_current && simulation.status().is_success() {
                         (self.simulation, self.quality) = (simulation, quality);
+                        self.fallback.keep(&self.simulation);
                     } else if is_current {
                         self.simulation = simulation;
                         self.certify();
@@ -684,8 +767,8 @@ impl Session {
         self.certifying.is_some()
     }
 
-    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Results
-    /// of a motion are not requested during a press, so that dragging a slider stays smooth.
+    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
+    /// press only those that a frame has time for are requested, and the reference that follows the load.
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
         if self.is_motion() {
             let facts = &mut self.facts;
@@ -697,8 +780,50 @@ impl Session {
         }
         // A background solve has certified its result.
         let certifies = !self.is_in_background() && self.request_certificate();
+        let follows = self.follow_reference();
+        if is_pressed {
+            self.time_in_frame();
+            return follows || certifies;
+        }
         let shown = self.with_rho(shown);
-        self.facts.request_at_rest(&self.scene, shown) || certifies
+        self.facts.request_at_rest(&self.scene, shown) || follows || certifies
+    }
+
+    /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
+    /// when a drag begins. Returns `true` while it is pending.
+    fn follow_reference(&mut self) -> bool {
+        let is_compared = self.simulation.status().is_success() && self.simulation.mouse_spring().is_none();
+        if !is_compared || self.simulation.system().dofs() > MAX_CERTIFIED_HERE {
+            return false;
+        }
+        let linear = self.linear.as_ref().and_then(first_probe);
+        let compared = Compared { own: first_probe(&self.simulation), linear };
+        self.live.request(&self.scene, compared)
+    }
+
+    /// Returns `true` while the reference that follows the load is being computed.
+    pub(crate) fn is_following(&self) -> bool {
+        self.live.is_running()
+    }
+
+    /// Measures the time of a solve from rest, if it was short at the last rest.
+    fn time_in_frame(&mut self) {
+        /// Largest time of a solve in a frame.
+        const SHORT: Duration = Duration::from_millis(2);
+        let is_short = self.facts.time.latest().is_some_and(|solve| solve.timings.total() < SHORT);
+        if !is_short || self.from_rest().is_some() {
+            return;
+        }
+        let timed = self.timed.take().map(|(timed, _)| timed);
+        let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.simulation.system()));
+        let timed = timed.or_else(|| Simulation::with_system(&self.scene, self.simulation.system().clone()).ok());
+        let Some(mut timed) = timed.filter(|_| !IS_PAGE) else { return };
+        if timed.change_scene(&self.scene).is_ok() {
+            timed.reset();
+            timed.solve();
+            let solve = SolveFromRest::of(&timed);
+            self.timed = Some((timed, solve));
+        }
     }
 
     /// Cancels the computation of limits, unless it is for this scene.
@@ -729,15 +854,6 @@ impl Session {
     /// Computes ρ at the equilibrium, and waits for it.
     pub(crate) fn wait_for_rho(&mut self) {
         self.facts.rho.wait(&self.scene);
-    }
-
-    /// Stores a copy of an equilibrium, to be displayed when a later state diverges. If the first state diverges, the
-    /// last equilibrium is the body at rest without load.
-    pub(crate) fn keep_converged(&mut self) {
-        let fails = matches!(self.simulation.status(), Status::Diverged(_));
-        if let Some(found) = equilibrium_to_keep(&self.simulation, self.converged.as_ref(), fails) {
-            self.converged = Some(found);
-        }
     }
 
     /// Displays `state`; returns `false` if it does not fit the mesh.
@@ -835,32 +951,6 @@ impl Session {
     pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
         self.playback.take_unstable()
     }
-}
-
-/// Returns a copy of an equilibrium that is to be displayed when a later state on its mesh diverges, in place of the one
-/// that is `kept`; if the first state `fails`, the last equilibrium is the body at rest without load. Returns `None` if the
-/// one that is kept stays.
-pub(crate) fn equilibrium_to_keep(
-    simulation: &Simulation,
-    kept: Option<&Simulation>,
-    fails: bool,
-) -> Option<Simulation> {
-    let kept = kept.filter(|kept| Arc::ptr_eq(kept.system(), simulation.system()));
-    if *simulation.status() == Status::Converged {
-        let is_kept = kept.is_some_and(|kept| is_same_state(kept, simulation));
-        return simulation.equilibrium().filter(|_| !is_kept).map(Equilibrium::snapshot);
-    }
-    if !fails || kept.is_some() {
-        return None;
-    }
-    let mut scene = simulation.scene().clone();
-    scene.scale_loads(0.0);
-    Simulation::with_system(&scene, simulation.system().clone()).ok()
-}
-
-/// Returns `true` if both have the same state of the same scene.
-pub(crate) fn is_same_state(one: &Simulation, other: &Simulation) -> bool {
-    one.state() == other.state() && one.scene() == other.scene()
 }
 
 /// Returns `true` if two scenes have the same mesh.

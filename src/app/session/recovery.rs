@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use web_time::{Duration, Instant};
 
-use crate::app::platform::copies::CopyPlace;
+use crate::app::language::fill;
+use crate::app::platform::settings::{self, CopyPlace};
 use crate::app::session::document::Document;
 use crate::scene::{Scene, SceneError, Source};
 
@@ -58,7 +59,7 @@ struct Copy {
 ///
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
-fn write(document: &Document, scene: &Scene, place: &CopyPlace) -> io::Result<()> {
+fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
     // On a page there are no absolute paths.
     let absolute = document.path().and_then(|_| std::path::absolute(name).ok());
@@ -70,13 +71,13 @@ fn write(document: &Document, scene: &Scene, place: &CopyPlace) -> io::Result<()
         scene: document.relocated(scene, &name).to_toml().map_err(io::Error::other)?,
         file: document.text().map(str::to_owned),
     };
-    place.write(&toml::to_string(&copy).map_err(io::Error::other)?)
+    settings::write(file, &toml::to_string(&copy).map_err(io::Error::other)?)
 }
 
 impl Unsaved {
     /// Reads edits from a copy.
-    fn read(place: &CopyPlace) -> Result<Self, CopyError> {
-        let copy: Copy = toml::from_str(&place.read()?)?;
+    fn read(file: &Path) -> Result<Self, CopyError> {
+        let copy: Copy = toml::from_str(&settings::read(file)?)?;
         let name = PathBuf::from(copy.name);
         let folder = name.parent().unwrap_or(Path::new("")).to_owned();
         let original = Scene::from_toml_in(&copy.original, &folder)?;
@@ -96,10 +97,8 @@ pub struct RecoveryCopies {
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
     left: Option<CopyPlace>,
-    /// Copies that cannot be read, and the reasons. They are kept: the user may repair them by hand.
-    unreadable: Vec<(PathBuf, String)>,
-    /// `true` if the copy of the crashed window is no longer needed.
-    discards_left: bool,
+    /// Messages about copies that cannot be read. They are kept: the user may repair them by hand.
+    pub(crate) unreadable: Vec<String>,
 }
 
 impl RecoveryCopies {
@@ -111,24 +110,21 @@ impl RecoveryCopies {
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
         let (mut left, mut unreadable) = (None, Vec::new());
         for number in 0..PLACES {
-            let Some(place) = CopyPlace::lock(folder, number)? else { continue };
-            if place.is_empty() {
-                let (left, edits) = left.unzip();
-                return Ok((Self { place, written: None, last: None, left, unreadable, discards_left: false }, edits));
-            }
-            if left.is_none() {
-                match Unsaved::read(&place) {
-                    Ok(edits) => left = Some((place, edits)),
-                    Err(error) => unreadable.push((place.file().to_owned(), error.to_string())),
+            let Some(place) = settings::lock(folder, number)? else { continue };
+            match Unsaved::read(&place.file) {
+                Err(CopyError::File(error)) if error.kind() == io::ErrorKind::NotFound => {
+                    let (left, edits) = left.unzip();
+                    return Ok((Self { place, written: None, last: None, left, unreadable }, edits));
                 }
+                Ok(edits) => left = left.or(Some((place, edits))),
+                Err(reason) => unreadable.push(fill!(
+                    "%{file} has unsaved changes, but cannot be read: %{reason}",
+                    file = place.file.display(),
+                    reason = reason
+                )),
             }
         }
         Err(io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display())))
-    }
-
-    /// Returns the copies that cannot be read, and the reasons.
-    pub(crate) fn unreadable(&self) -> &[(PathBuf, String)] {
-        &self.unreadable
     }
 
     /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
@@ -145,32 +141,31 @@ impl RecoveryCopies {
             // After a failure the next attempt waits.
             self.last = Some(Instant::now() + AFTER_FAILURE);
             match edits {
-                Some((document, scene)) => write(document, scene, &self.place)?,
-                None => self.place.remove()?,
+                Some((document, scene)) => write(document, scene, &self.place.file)?,
+                None => settings::remove(&self.place.file)?,
             }
             self.last = Some(Instant::now());
             self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
         }
-        if self.discards_left
-            && let Some(place) = self.left.take()
-        {
-            place.remove()?;
-        }
         Ok(None)
     }
 
-    /// Writes the edits without a pause since the last write.
+    /// Writes the edits, if there are any, without a pause since the last write.
     ///
     /// # Errors
     /// Error of the operating system.
-    pub(crate) fn keep_at_once(&mut self, edits: (&Document, &Scene)) -> io::Result<()> {
+    pub(crate) fn keep_at_once(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<()> {
         self.last = None;
-        self.keep(Some(edits)).map(drop)
+        self.keep(edits).map(drop)
     }
 
-    /// Lets the next [`Self::keep`] remove the copy left by a crashed window, once this window's own edits are written.
-    pub fn discard_left(&mut self) {
-        self.discards_left = true;
+    /// Removes the copy left by a crashed window, once this window's own edits are written.
+    ///
+    /// # Errors
+    /// Error of the operating system; the copy is still there.
+    pub(crate) fn discard_left(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<()> {
+        self.keep_at_once(edits)?;
+        self.left.take().map_or(Ok(()), |left| settings::remove(&left.file))
     }
 }
 
@@ -209,8 +204,7 @@ mod tests {
         assert_eq!(left, Some(edits("article", -3.0)));
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None, "another window offers it");
-        next.discard_left();
-        next.keep(edits("article", -3.0).parts()).unwrap();
+        next.discard_left(edits("article", -3.0).parts()).unwrap();
         next.keep(None).unwrap();
         drop(next);
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
@@ -223,13 +217,14 @@ mod tests {
         let (mut window, _) = RecoveryCopies::open(folder.path()).unwrap();
         window.keep(edits("article", -3.0).parts()).unwrap();
         assert!(window.keep(edits("article", -4.0).parts()).unwrap().is_some());
-        let file = window.place.file().to_owned();
-        assert_eq!(Unsaved::read(&window.place).unwrap(), edits("article", -3.0));
+        let file = window.place.file.clone();
+        assert_eq!(Unsaved::read(&file).unwrap(), edits("article", -3.0));
         drop(window);
         std::fs::write(&file, "name = 3").unwrap();
         let (window, left) = RecoveryCopies::open(folder.path()).unwrap();
         assert_eq!(left, None);
-        assert!(file.exists() && window.place.file() != file);
-        assert!(window.unreadable[0].0 == file && window.unreadable[0].1.contains("name"), "{:?}", window.unreadable);
+        assert!(file.exists() && window.place.file != file);
+        let [message] = window.unreadable.as_slice() else { panic!("{:?}", window.unreadable) };
+        assert!(message.contains(file.to_str().unwrap()) && message.contains("name"), "{message}");
     }
 }

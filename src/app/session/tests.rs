@@ -1,7 +1,7 @@
 //! Tests of the session without user interface: edits, undo history, background solves, files, motions and grabs.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector2;
 
@@ -253,7 +253,10 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
         "the body is not at rest yet"
     );
     session.solve(ShownFacts { curve: true, ..ShownFacts::default() });
-    assert!(!session.request_facts(ShownFacts { curve: true, ..ShownFacts::default() }, false));
+    // The reference that follows a load is prepared in the background.
+    while session.request_facts(ShownFacts { curve: true, ..ShownFacts::default() }, false) {
+        std::thread::yield_now();
+    }
     let (facts, scene) = (session.facts(), session.scene());
     assert!(facts.reference.get(scene).is_some() && facts.curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
@@ -341,9 +344,59 @@ fn restored_edits_know_what_their_file_contained() {
         next.apply(Edit::Restore(Box::new((document, scene)))).unwrap();
         assert!(next.scene() == crashed.scene() && next.is_edited());
         assert_eq!((next.is_outdated(), next.document().has_changed()), (is_changed, is_changed));
-        recovery.discard_left();
-        recovery.keep(None).unwrap();
+        recovery.discard_left(None).unwrap();
     }
+}
+
+/// Where nothing more can be written, the scene's file and the copy of unsaved edits keep their content.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_file_and_copy_as_they_were() {
+    const FOLDER: &str = "WARPBEAM_TEST_FULL_DISK";
+    let edited = |folder: &Path, force: f64| {
+        let source = Source { name: folder.join("scene.toml"), assignments: Vec::new() };
+        let scene = crate::scene::open(&source).unwrap();
+        let mut session = Session::new(source, scene.clone(), Simulation::new(&scene).unwrap());
+        session.apply(with_force(&session, force)).unwrap();
+        session
+    };
+    let copy = |session: &Session, folder: &Path| {
+        let (mut recovery, left) = recovery::RecoveryCopies::open(&folder.join("unsaved")).unwrap();
+        (recovery.keep_at_once(Some((session.document(), session.scene()))), left)
+    };
+    if let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) {
+        let mut session = edited(&folder, -300.0);
+        assert!(session.save(&folder.join("scene.toml")).is_err() && session.is_edited());
+        let (kept, left) = copy(&session, &folder);
+        assert!(kept.is_err() && left.is_some());
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), cantilever(-100.0).to_toml().unwrap()).unwrap();
+    copy(&edited(folder.path(), -200.0), folder.path()).0.unwrap();
+    let files = || -> Vec<_> {
+        let entries =
+            [folder.path().to_owned(), folder.path().join("unsaved")].map(|folder| fs::read_dir(folder).unwrap());
+        let paths = entries.into_iter().flatten().map(|entry| entry.unwrap().path());
+        let mut files: Vec<_> =
+            paths.filter(|path| path.is_file()).map(|path| (fs::read(&path).unwrap(), path)).collect();
+        files.retain(|(_, path)| path.extension().is_none_or(|extension| extension != "lock"));
+        files.sort();
+        files
+    };
+    let before = files();
+    assert_eq!(before.len(), 2);
+    // A process whose files may have no byte; pipes are not limited.
+    let name = "app::session::tests::a_full_disk_leaves_file_and_copy_as_they_were";
+    let output = std::process::Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 0; exec \"$0\" --exact \"$1\""])
+        .args([std::env::current_exe().unwrap().as_os_str(), name.as_ref()])
+        .env(FOLDER, folder.path())
+        .output()
+        .unwrap();
+    let out = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && out.contains("1 passed"), "{out}");
+    assert_eq!(files(), before);
 }
 
 /// A document whose body is too large to be displayed at once starts over, also where an edit makes the body small first.
@@ -426,7 +479,6 @@ fn a_large_mesh_is_made_in_the_background() {
 #[test]
 fn a_frame_makes_as_many_iterations_as_it_has_time_for() {
     let mut session = session(large(12));
-    session.set_iterations(100);
     assert!(session.advance(0.0));
     let made = session.simulation().iterations();
     assert!((1..100).contains(&made) && session.iterates(), "{made} iterations");

@@ -13,8 +13,6 @@ const MAX_STEPS: usize = 200;
 pub(crate) struct Version {
     pub document: Document,
     pub scene: Scene,
-    /// Iterations per displayed frame.
-    pub iterations: u32,
 }
 
 /// State of the pointer in one frame.
@@ -126,7 +124,7 @@ mod tests {
     fn snapshot(force: f64) -> Version {
         let scene = Scene::beam(3.0, 1.0).clamp("left").force("right", [force, 0.0]);
         let source = Source { name: "article".into(), assignments: Vec::new() };
-        Version { document: Document::new(source, scene.clone()), scene, iterations: 1 }
+        Version { document: Document::new(source, scene.clone()), scene }
     }
 
     #[test]

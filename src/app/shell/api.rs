@@ -4,12 +4,12 @@ use std::path::Path;
 
 use egui::Rect;
 use nalgebra::Vector2;
+use web_time::Duration;
 
 use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, tr};
 use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
 use crate::app::modes::learn::{self};
-use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Magnification, Mode, ViewOptions};
 use crate::app::viewport::handle::Handle;
@@ -37,11 +37,6 @@ impl Lab {
     /// Sets the factor of the drawn displacement in the mode Explore.
     pub fn magnify(&mut self, magnification: Magnification) {
         self.desk.view.magnification = magnification;
-    }
-
-    /// Animates the growth of the load when the window opens. It delays nothing, and any input ends it.
-    pub(crate) fn introduce(&mut self) {
-        self.intro = Intro::new(self.desk.session.simulation());
     }
 
     /// Shows the load curve in the mode Limits.
@@ -111,13 +106,6 @@ impl Lab {
         self.desk.motions.panes()
     }
 
-    /// Returns the equilibria that the comparison has traced under the current kind of load. Each has its setting, and
-    /// three numbers: the load, and both components of the first probe's displacement, m.
-    #[must_use]
-    pub fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
-        self.desk.compare.traced()
-    }
-
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
@@ -130,10 +118,9 @@ impl Lab {
         self.desk.budget.motion_study()
     }
 
-    /// Returns the number of iterations per displayed frame.
-    #[must_use]
-    pub fn iterations(&self) -> u32 {
-        self.desk.session.iterations()
+    /// Sets the time of iterations after which a displayed frame makes no more.
+    pub fn set_frame_work(&mut self, time: Duration) {
+        self.desk.session.set_frame_work(time);
     }
 
     /// Displays a state; returns `false` if it does not fit the mesh.
@@ -228,6 +215,12 @@ impl Lab {
         format!("{}{edited}{file} \u{2013} warpbeam", tr(&session.scene().name))
     }
 
+    /// Returns `true` while the reference that follows a dragged load is being computed.
+    #[must_use]
+    pub fn is_following(&self) -> bool {
+        self.desk.session.is_following()
+    }
+
     /// Returns `true` if there is an edit to undo.
     #[must_use]
     pub fn can_undo(&self) -> bool {
@@ -288,11 +281,7 @@ impl Lab {
     pub fn is_computing(&self) -> bool {
         let Desk { session, view, limits, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
-        let plots = match view.drawer {
-            Some(Drawer::Motion) => facts.frequency.is_pending(scene),
-            Some(Drawer::Section) => self.desk.sections.is_pending(),
-            _ => false,
-        };
+        let plots = view.drawer == Some(Drawer::Section) && self.desk.sections.is_pending();
         let limits = match view.mode {
             Mode::Limits if view.shows_curve(scene) => facts.curve.is_pending(scene),
             Mode::Limits => limits.base().is_none_or(|base| facts.limits.is_pending(base)),
@@ -370,10 +359,5 @@ impl Lab {
             Mode::Compare => compare.views(view.wireframe, pixels_per_point),
             _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
         }
-    }
-
-    /// Shows the progress of the scene's recording; `None` when it has ended.
-    pub(crate) fn show_recording(&mut self, progress: Option<String>) {
-        self.recording = progress;
     }
 }

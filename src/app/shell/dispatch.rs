@@ -1,6 +1,6 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
-use crate::app::action::{Action, MAX_ITERATIONS};
+use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::figure;
@@ -24,7 +24,6 @@ impl Lab {
             return;
         }
         if changed.scene {
-            self.intro = None;
             let scene = session.simulation().scene();
             view.drawer = view.drawer.filter(|drawer| drawer.suits(scene));
         }
@@ -105,9 +104,7 @@ impl Lab {
                     self.desk.panel.choose_force(added);
                 }
             }
-            Action::Apply(scene, iterations) => {
-                self.apply(ctx, Edit::Setting(scene, iterations.clamp(1, MAX_ITERATIONS)));
-            }
+            Action::Apply(scene) => _ = self.apply(ctx, Edit::Scene("Method", scene)),
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
                 // A body that has reached its end cannot be paused.
@@ -148,7 +145,7 @@ impl Lab {
                 self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
-            Action::Iterations(iterations) => self.desk.session.set_iterations(iterations.clamp(1, MAX_ITERATIONS)),
+            Action::SlowMotion => self.desk.session.set_slow(!self.desk.session.is_slow()),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
                 self.desk.viewport.fit();
@@ -159,11 +156,6 @@ impl Lab {
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
             // A motion has no load curve.
             Action::Toggle(Toggle::Curve) if self.desk.session.is_motion() => {}
-            // Compare has a load curve of its own.
-            Action::Toggle(Toggle::Curve) if self.desk.view.mode == Mode::Compare => {
-                self.desk.compare.toggle_trace();
-                ctx.request_repaint();
-            }
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();
@@ -196,8 +188,6 @@ impl Lab {
                 ctx.request_repaint();
             }
             Action::Screenshot => requests.push(Request::Screenshot),
-            Action::Record => requests.push(Request::Record),
-            Action::RecordScene => requests.push(Request::RecordScene),
             Action::Copy => self.copy(ctx),
             Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {

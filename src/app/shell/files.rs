@@ -41,24 +41,19 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to its file, after a question if another program has changed it. If the scene has no file, shows
-    /// the file dialog.
+    /// Saves the scene to its file. If it has none, or another program has changed it, shows the file dialog.
     pub(super) fn save_here(&mut self, ctx: &egui::Context) {
-        if self.desk.session.document().has_changed() {
-            let departure = match std::mem::take(&mut self.question) {
-                Question::Saving(departure) => Some(departure),
-                _ => None,
-            };
-            return self.ask(ctx, Question::Changed(departure));
-        }
-        self.overwrite(ctx);
-    }
-
-    /// Saves the scene to its file; if it has none, shows the file dialog.
-    pub(super) fn overwrite(&mut self, ctx: &egui::Context) {
-        match self.desk.session.document().path().map(Path::to_owned) {
-            Some(path) => self.save_there(ctx, &path),
-            None => self.ask_where_to_save(ctx),
+        let document = self.desk.session.document();
+        let has_changed = document.has_changed();
+        match document.path().map(Path::to_owned) {
+            Some(path) if !has_changed => self.save_there(ctx, &path),
+            path => {
+                self.ask_where_to_save(ctx);
+                if let (Some(path), Some(dialog)) = (path, &mut self.dialog) {
+                    dialog.refuse(fill!("%{file} has changed on disk.", file = path.display()));
+                    self.desk.session.check_file();
+                }
+            }
         }
     }
 

@@ -51,20 +51,10 @@ fn scroll_by_keys(ui: &egui::Ui) {
 
 /// Shows the list over everything; sets `open` to `false` when it is closed.
 pub(crate) fn show(ctx: &Context, open: &mut bool) {
-    /// Width of the window, points, below which an entry has its keys above its text.
-    const TWO_COLUMNS: f32 = 900.0;
-    /// Width from which the list is in two parts side by side, and the largest width of a text in it, points.
-    const TWO_LISTS: f32 = 1230.0;
-    const WIDEST: f32 = 390.0;
-    /// Height of the list in two parts, points.
-    const HIGHEST: f32 = 600.0;
-    /// Space left and right of the list in a narrow window, points.
-    const SIDE: f32 = 40.0;
     if !*open {
         return;
     }
-    let (width, height) = (ctx.content_rect().width(), ctx.content_rect().height() - 80.0);
-    let is_one_list = width < TWO_LISTS;
+    let size = ctx.content_rect().size() - egui::vec2(40.0, 80.0);
     egui::Window::new(tr("Keys and mouse"))
         .id(egui::Id::unique("help"))
         .open(open)
@@ -72,37 +62,20 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .resizable(false)
         // The list is higher than a small window.
         .vscroll(true)
-        .default_size(if is_one_list { [600.0, height] } else { [TWO_LISTS - 60.0, height.min(HIGHEST)] })
-        .max_height(height)
+        .default_size(size.min(egui::vec2(640.0, 640.0)))
+        .max_height(size.y)
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             scroll_by_keys(ui);
             let of_shortcuts = shortcuts().map(|shortcut| (with_keys(ctx, &shortcut.text()), tr(shortcut.does)));
             let of_gestures = FOCUS_KEYS.iter().chain(MOUSE);
             let rows = of_shortcuts.chain(of_gestures.map(|(gesture, does)| (tr(gesture).to_owned(), tr(does))));
-            if width < TWO_COLUMNS {
-                ui.set_max_width(width - 2.0 * SIDE);
+            let list = egui::Grid::new("shortcuts").num_columns(2).max_col_width(0.6 * size.x);
+            list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {
                 for (keys, does) in rows {
-                    ui.add(egui::Label::new(egui::RichText::new(keys).strong()).wrap());
-                    ui.indent(does, |ui| ui.add(egui::Label::new(does).wrap()));
-                }
-                return;
-            }
-            let rows: Vec<_> = rows.collect();
-            let widest = if is_one_list { width } else { WIDEST };
-            let halves = rows.chunks(if is_one_list { rows.len() } else { rows.len().div_ceil(2) });
-            ui.spacing_mut().interact_size.y = 18.0;
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 32.0;
-                for (i, half) in halves.enumerate() {
-                    let list = egui::Grid::new(("shortcuts", i)).num_columns(2).max_col_width(widest);
-                    list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {
-                        for (keys, does) in half {
-                            ui.strong(keys);
-                            ui.label(*does);
-                            ui.end_row();
-                        }
-                    });
+                    ui.strong(keys);
+                    ui.label(does);
+                    ui.end_row();
                 }
             });
         });

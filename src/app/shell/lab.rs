@@ -15,10 +15,9 @@ use crate::app::session::recovery::Unsaved;
 use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
-use crate::app::shell::intro::Intro;
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
-use crate::app::viewport::view::{BodyView, CardContent, Content, is_lost};
+use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source};
 use crate::simulation::{Simulation, Status};
@@ -32,10 +31,6 @@ pub enum Request {
     Close,
     /// Remove the copy of unsaved edits left by a crashed window.
     DiscardCopy,
-    /// Record the window, or end the recording.
-    Record,
-    /// Record the scene from its start, or end that recording.
-    RecordScene,
 }
 
 /// Model with its view and tools. The mode Learn has a desk of its own.
@@ -94,8 +89,8 @@ impl Desk {
             direction: panel.force_direction(),
             opening: OpeningLoads::of(&session.document().opened),
             eases,
+            last: session.fallback(),
             own: session.equations(),
-            last: session.converged().filter(|_| is_lost(session.simulation())),
         }
     }
 }
@@ -148,10 +143,6 @@ pub(super) enum Question {
     None,
     /// Unsaved edits would be lost.
     Unsaved(UnsavedDeparture),
-    /// The window is to close while the scene is recorded.
-    Recording,
-    /// The scene is to be saved to its file, which another program has changed. A departure may follow.
-    Changed(Option<UnsavedDeparture>),
     /// "Save" was answered, and the dialog asks for a file.
     Saving(UnsavedDeparture),
 }
@@ -165,7 +156,6 @@ pub struct Lab {
     pub(super) card: usize,
     /// Measurements of the last lesson.
     pub(super) card_study: Budget,
-    pub(super) intro: Option<Intro>,
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
@@ -180,9 +170,9 @@ pub struct Lab {
     /// Warnings, and the number of them that the user has closed.
     pub(super) warnings: Vec<String>,
     pub(super) closed_warnings: usize,
-    /// Progress of the scene's recording; `None` if there is none.
-    pub(super) recording: Option<String>,
     pub(super) gallery: Gallery,
+    /// `true` if parts of the last frame show the scene before an edit.
+    pub(super) is_mixed: bool,
 }
 
 impl Lab {
@@ -194,7 +184,6 @@ impl Lab {
             lesson: None,
             card: 0,
             card_study: Budget::default(),
-            intro: None,
             story: None,
             dialog: None,
             question: Question::None,
@@ -204,9 +193,15 @@ impl Lab {
             toast: None,
             warnings: Vec::new(),
             closed_warnings: 0,
-            recording: None,
             gallery: Gallery::default(),
+            is_mixed: false,
         }
+    }
+
+    /// Returns `true` if an edit during the last [`Self::ui`] has left parts that show the scene before it, which are to be
+    /// laid out again before they are displayed.
+    pub fn take_mixed(&mut self) -> bool {
+        std::mem::take(&mut self.is_mixed)
     }
 
     /// Creates a lab that shows the first built-in scene until `scene`, which is large, has been meshed in the
@@ -228,8 +223,8 @@ impl Lab {
         self.desk.view.mode == Mode::Compare && self.desk.session.is_motion()
     }
 
-    /// Makes the iterations of one displayed frame if the lab runs, or the time steps that are due at `now`, s (any
-    /// clock that runs in real time). Returns `true` if more remain.
+    /// Iterates to equilibrium, or as far as a displayed frame has time, if the lab runs; or makes the time steps that are due
+    /// at `now`, s (any clock that runs in real time). Returns `true` if more remain.
     pub fn advance(&mut self, now: f64) -> bool {
         if self.story.is_some() {
             self.advance_story(now);
@@ -309,14 +304,14 @@ impl Lab {
 
     /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
-        let Self { desk: Desk { session, view, panel, .. }, intro, lesson, .. } = self;
-        content(session, view, panel, intro.as_ref(), lesson.as_deref())
+        let Self { desk: Desk { session, view, panel, .. }, lesson, .. } = self;
+        content(session, view, panel, lesson.as_deref())
     }
 
     /// Returns the view of the body, and its content.
     pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
-        let Self { desk: Desk { session, viewport, view, panel, .. }, intro, lesson, .. } = self;
-        (viewport, content(session, view, panel, intro.as_ref(), lesson.as_deref()))
+        let Self { desk: Desk { session, viewport, view, panel, .. }, lesson, .. } = self;
+        (viewport, content(session, view, panel, lesson.as_deref()))
     }
 
     /// Returns the state that bars, panel and cards show.
@@ -324,7 +319,8 @@ impl Lab {
         let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
         let (facts, reference) = (session.facts(), session.reference());
         Readout {
-            reference: reference.and_then(Result::ok),
+            reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
+            live: session.live(),
             reference_failure: reference.and_then(Result::err),
             // Only an equilibrium is the end of a path, or of another one.
             path: (facts.path.get(session.scene()))
@@ -338,14 +334,13 @@ impl Lab {
             quality: session.quality(),
             reference_progress: facts.reference.progress(),
             value_range: viewport.body().value_range(),
-            shows_converged: viewport.shows_converged(),
-            shows_iterate: viewport.shows_search(session),
+            is_fallback: session.fallback().is_some(),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),
             scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
-            shown: viewport.shown_of(session),
+            shown: session.drawn(),
             linear: session.linear(),
             running: session.is_running(),
             ended: match view.mode {
@@ -355,9 +350,10 @@ impl Lab {
             },
             playback: session.playback(),
             frequency: facts.frequency.latest().copied(),
-            iterations: session.iterations(),
+            is_slow: session.is_slow(),
             timings: session.timings(),
-            from_rest: facts.time.get(session.scene()),
+            from_rest: session.from_rest(),
+            last_from_rest: session.last_from_rest(),
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),
@@ -370,14 +366,12 @@ fn content<'a>(
     session: &'a Session,
     options: &'a ViewOptions,
     panel: &PanelState,
-    intro: Option<&'a Intro>,
     lesson: Option<&'a Lesson>,
 ) -> Content<'a> {
     Content {
         session,
         options,
         direction: panel.force_direction(),
-        animation: intro.map(|intro| (intro.simulation(), intro.linear())),
         card: lesson
             .map(|lesson| CardContent { is_apart: lesson.learn.is_apart(), reach: lesson.learn.reach.as_ref() }),
     }

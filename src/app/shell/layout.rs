@@ -1,5 +1,7 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
+use web_time::Duration;
+
 use egui::{CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo};
 
 use crate::app::action::Action;
@@ -16,12 +18,14 @@ use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::menu;
-use crate::app::viewport::view::STATUS_VIEW;
 use crate::app::viewport::{overlay, time_line};
 use crate::app::widgets::palette::{self, Palette};
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
-const NARROW: f32 = 900.0;
+const NARROW: f32 = 960.0;
+
+/// Time between two polls of the reference that follows a dragged load.
+const SOON: Duration = Duration::from_millis(10);
 
 /// Height of the status bar, points.
 const STATUS_BAR_HEIGHT: f32 = 42.0;
@@ -32,12 +36,8 @@ const DRAWER_HEIGHT: f32 = 270.0;
 const LIMITS_HEIGHT: f32 = 350.0;
 const DRAWER_SHARE: f32 = 0.45;
 
-/// Height of the status under a low view, points.
+/// Height of the line with the status under the body, points.
 const STATUS_LINE: f32 = 34.0;
-/// In a view narrower than this, points, the status is not beside the body.
-const STATUS_WIDTH: f32 = 640.0;
-/// Height of a view under a card of Learn, points, below which the card shows a good status.
-const LESSON_VIEW: f32 = 300.0;
 
 impl Lab {
     /// Shows the user interface and performs the user's actions. The body itself is drawn by another pass, under the
@@ -52,9 +52,8 @@ impl Lab {
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
         self.desk.budget.poll(ui.ctx());
-        self.continue_intro(ui.ctx());
         self.show_notices(ui.ctx());
-        self.desk.view.narrow = ui.available_width() < NARROW;
+        self.desk.view.narrow = ui.ctx().content_rect().width() < NARROW;
         // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
         let was_typing = ui.ctx().text_edit_focused();
         if self.desk.view.bars {
@@ -67,7 +66,7 @@ impl Lab {
         match self.desk.view.mode {
             Mode::Explore => self.plots(ui, &mut actions),
             Mode::Learn => self.card_row(ui, &mut actions),
-            Mode::Compare => self.comparison_bars(ui, &mut actions),
+            Mode::Compare => self.comparison_bars(ui),
             Mode::Budget => {
                 let Desk { session, budget, .. } = &mut self.desk;
                 drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
@@ -86,18 +85,19 @@ impl Lab {
         }
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
-            Mode::Compare => {
-                self.desk.viewport.show_last_equilibrium(&self.desk.session);
-                self.comparison(ui, &mut actions, &mut requests);
-            }
+            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
             _ => self.body_view(ui, &mut actions, &mut requests),
         });
         let view = &self.desk.view;
-        if view.bars && view.narrow && view.sheet && self.view_rect().width() >= 160.0 {
+        if view.bars && view.narrow && view.sheet {
             self.sheet(ui, &mut actions);
         }
         for action in actions {
             self.act(ui.ctx(), action, &mut requests);
+        }
+        if self.desk.session.follow_edit() {
+            self.is_mixed = true;
+            ui.ctx().request_repaint();
         }
         help::show(ui.ctx(), &mut self.desk.view.help);
         self.show_question(ui.ctx());
@@ -107,7 +107,7 @@ impl Lab {
             ui.ctx().request_repaint_after(POLL);
         } else if let Some(story) = &self.story {
             ui.ctx().request_repaint_after(story.delay());
-        } else if self.iterates() || self.intro.is_some() {
+        } else if self.iterates() {
             ui.ctx().request_repaint();
         }
         requests
@@ -126,26 +126,7 @@ impl Lab {
         let learns_rho = self.learns_rho();
         let (session, shown) = self.desk.shown_facts(learns_rho);
         if session.request_facts(shown, is_pressed) {
-            ctx.request_repaint_after(POLL);
-        }
-    }
-
-    /// Continues the opening animation, until it ends or the user does something.
-    fn continue_intro(&mut self, ctx: &egui::Context) {
-        if self.intro.is_none() {
-            return;
-        }
-        let (now, touched) = ctx.input(|i| {
-            let idle = |event: &egui::Event| {
-                matches!(event, egui::Event::PointerMoved(_) | egui::Event::WindowFocused(_) | egui::Event::PointerGone)
-            };
-            (i.time, i.events.iter().any(|event| !idle(event)))
-        });
-        // The camera is fitted to the end of the animation, so the equilibrium must be known first.
-        let waits = self.iterates() || self.desk.session.facts().reference.is_pending(self.desk.session.scene());
-        let goes_on = waits || self.intro.as_mut().is_some_and(|intro| intro.advance(now));
-        if touched || !goes_on {
-            self.intro = None;
+            ctx.request_repaint_after(if session.is_following() { SOON } else { POLL });
         }
     }
 
@@ -153,16 +134,12 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
-        let top = Panel::top("toolbar")
-            .exact_size(toolbar::height(ui.ctx().content_rect().width()))
-            .resizable(false)
-            .frame(bar(ui));
+        let top = Panel::top("toolbar").exact_size(toolbar::height(&self.desk.view)).resizable(false).frame(bar(ui));
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
         self.gallery = gallery;
-        // Compared panes have a status each; over a card of Learn a low window has no room for the status bar.
-        let is_low_card = self.lesson.is_some() && learn::is_low(ui.ctx());
-        if self.desk.view.mode != Mode::Compare && !is_low_card {
+        // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
+        if self.desk.view.mode != Mode::Compare && !(self.lesson.is_some() && self.desk.view.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
             bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
         }
@@ -212,32 +189,30 @@ impl Lab {
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.desk.view.drawer else { return };
         let state = diagnosis::state_text(&self.readout());
-        let Desk { session, view, viewport, sections, .. } = &mut self.desk;
-        let facts = session.facts();
+        let Desk { session, view, sections, .. } = &mut self.desk;
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => {
-                let shown = viewport.shown_of(session);
+                let shown = session.drawn();
                 if sections.request(shown) {
                     ui.ctx().request_repaint_after(POLL);
                 }
                 sections.show(ui, session.scene(), (shown, state.as_deref()), actions);
             }
             Drawer::Motion => {
-                let frequency = facts.frequency.get(session.scene()).copied();
                 let integrator = session.scene().dynamics.integrator;
-                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator, frequency);
+                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator);
             }
         });
     }
 
-    /// Shows the presets over the compared panes, and the load curve under them.
-    fn comparison_bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    /// Shows the presets over the compared panes.
+    fn comparison_bars(&mut self, ui: &mut Ui) {
         if self.desk.session.is_motion() {
             let (motions, input) = self.compared_motions();
             return motions.bars(ui, &input);
         }
         let (compare, input) = self.compared();
-        compare.bars(ui, &input, actions);
+        compare.bars(ui, &input);
     }
 
     /// Shows the compared panes in place of the body.
@@ -249,7 +224,8 @@ impl Lab {
             motions.show(ui, &input)
         } else {
             // The reference solution does not depend on the iteration of the panel's own setting.
-            if !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
+            let is_pressed = ui.input(|i| i.pointer.any_down());
+            if !is_pressed && !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
                 ui.ctx().request_repaint_after(POLL);
             }
             let (compare, input) = self.compared();
@@ -258,7 +234,6 @@ impl Lab {
         self.edit_loads(ui.ctx(), &interaction, requests);
         let painter = ui.painter_at(rect);
         self.show_work(ui, rect, actions);
-        self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 
@@ -267,10 +242,12 @@ impl Lab {
         let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
         let input = CompareInput {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
-            reference: session.facts().reference.get(session.scene()),
+            reference: session.facts().reference.get(session.scene()).or(session.live().map(|live| &live.reference)),
+            live: session.live(),
             reference_failure: session.facts().reference.failure(session.scene()),
-            from_rest: session.facts().time.get(session.scene()),
+            from_rest: session.from_rest(),
             running: session.is_running(),
+            is_slow: session.is_slow(),
             chosen: budget.chosen(session.scene()),
         };
         (compare, input)
@@ -298,17 +275,11 @@ impl Lab {
 
     /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
-        let (width, height) = (ui.available_width(), ui.available_height());
-        let is_small = match self.lesson {
-            None => height < STATUS_VIEW + STATUS_LINE,
-            Some(_) => width < STATUS_WIDTH && height >= LESSON_VIEW,
-        };
-        let has_line = self.desk.view.bars && is_small;
-        if has_line {
+        if self.desk.view.bars {
             self.status_line(ui, actions);
-        }
-        if self.desk.view.bars && self.desk.view.why {
-            self.explanation(ui);
+            if self.desk.view.why {
+                self.explanation(ui);
+            }
         }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
@@ -317,12 +288,11 @@ impl Lab {
         actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction, requests);
-        self.desk.session.keep_converged();
         let (viewport, content) = self.viewport_and_content();
         viewport.update(ui.visuals(), &content);
         if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.displace(|points| lesson.learn.place(session.simulation(), session.geometry(), points));
+            viewport.displace(|points| lesson.learn.place(session.drawn(), session.geometry(), points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -332,32 +302,24 @@ impl Lab {
         let painter = ui.painter_at(rect);
         let readout = self.readout();
         let errors = diagnosis::errors(&readout);
-        let (status, is_bad) = diagnosis::status_text(readout.simulation, true, readout.shows_converged);
-        // If there is a status bar, it shows the status.
-        let status = (is_bad && !self.desk.view.bars).then_some(status);
-        let label = if self.content().shows_iterate() {
-            Some(tr("last iterate, no equilibrium").to_owned())
-        } else {
-            diagnosis::state_text(&readout)
-        };
+        // Without bars, the note has the status of a motion that has stopped.
+        let stopped = || Some(diagnosis::status_text(&readout)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
+        let label = diagnosis::state_text(&readout).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
-        let color = if status.is_some() { visuals.error_fg_color } else { Palette::new(visuals).text };
-        let note = status.iter().chain(&label).map(String::as_str).collect::<Vec<_>>().join("\n");
-        let note = (!note.is_empty()).then_some((note.as_str(), color));
+        let note = label.as_deref().map(|note| (note, Palette::new(visuals).text));
         self.desk.viewport.paint(&painter, visuals, &self.content(), errors, note);
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
-            let taken =
-                (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend_below(rect.size()));
+            let taken = (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend(rect.size()));
             let now = self.simulation().state().time();
             time_line::show(ui, rect, taken, (self.desk.session.playback(), now), actions);
         }
         if let Some(lesson) = &mut self.lesson {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::CardView {
-                simulation: session.simulation(),
+                simulation: session.drawn(),
                 geometry: session.geometry(),
                 points: viewport.body().points(),
                 camera: viewport.camera(),
@@ -373,20 +335,10 @@ impl Lab {
         let kept = viewport.show_values(ui, &painter, &content);
         actions.extend(kept.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.paint_story(ui, &painter, rect);
-        if self.desk.view.bars && self.intro.is_none() {
-            let mut free = rect;
-            if self.desk.view.narrow && self.desk.view.sheet && rect.width() > 1.5 * PANEL_WIDTH {
-                free.max.x -= PANEL_WIDTH;
-            }
-            if free.width() >= 160.0 && free.height() >= 90.0 {
-                if !has_line {
-                    self.status(ui, free, &errors, actions);
-                }
-                self.show_work(ui, free, actions);
-            }
+        if self.desk.view.bars {
+            self.show_work(ui, rect, actions);
         }
         self.report_crossing(ui);
-        self.paint_recording(ui, &painter, rect);
         self.paint_toast(ui, &painter, rect);
     }
 
@@ -403,44 +355,28 @@ impl Lab {
         });
     }
 
-    /// Shows the status in a line under a low view, with a remedy.
+    /// Shows the status in a line under the body, with a remedy.
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
-        let (status, bad) = diagnosis::summary(&input, None);
-        let reasoned = remedy.as_ref().map(|remedy| {
-            let (status, _) = diagnosis::summary(&input, Some(remedy));
-            format!("{} {status}", remedy.text)
-        });
+        let (status, bad) = diagnosis::summary(&input, remedy.as_ref());
         let color = if bad { palette.error } else { palette.text };
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                self.status_buttons(ui, &input, actions);
-                if let Some(remedy) = remedy {
-                    actions.extend(remedy_button(ui, &remedy));
-                }
+                explain_link(ui, actions);
+                actions.extend(remedy.as_ref().and_then(|remedy| remedy_button(ui, remedy)));
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let font = egui::TextStyle::Body.resolve(ui.style());
-                    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), color).size().x;
-                    // The button has the reason too.
-                    let reasoned = reasoned.filter(|text| width(text.clone()) <= ui.available_width());
-                    let text = egui::RichText::new(reasoned.unwrap_or(status)).color(color);
-                    ui.add(egui::Label::new(text).truncate());
+                    // The remedy of a failure says what has failed.
+                    let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
+                    let reason = remedy.map(|remedy| (remedy.text, palette.error));
+                    for (text, color) in reason.into_iter().chain(status) {
+                        ui.add(egui::Label::new(egui::RichText::new(text).color(color)).truncate());
+                    }
                 });
             });
         });
-    }
-
-    /// Shows the buttons beside the status.
-    fn status_buttons(&self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
-        if diagnosis::is_stale(input) && ui.button(tr("Step now")).clicked() {
-            actions.push(Action::Step);
-        }
-        if ui.link(tr("explain")).clicked() {
-            actions.push(Action::Toggle(Toggle::Why));
-        }
     }
 
     /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
@@ -449,57 +385,13 @@ impl Lab {
         diagnosis::remedy(input, errors).filter(|_| offers)
     }
 
-    /// Shows the status and a remedy beside the body.
-    fn status(&self, ui: &Ui, rect: Rect, errors: &Errors, actions: &mut Vec<Action>) {
-        const WIDEST: f32 = 460.0;
-        /// Width next to a small body.
-        const WIDEST_NARROW: f32 = 250.0;
-        let input = self.readout();
-        let palette = Palette::new(ui.visuals());
-        let narrow = rect.width() < STATUS_WIDTH;
-        let remedy = self.remedy(&input, errors);
-        let (text, bad) = diagnosis::summary(&input, remedy.as_ref());
-        // A card that leaves the body little room shows a good status itself.
-        let is_tight = self.lesson.is_some() && rect.height() < LESSON_VIEW;
-        let is_good = !(bad || diagnosis::is_stale(&input));
-        if is_tight && is_good {
-            return;
-        }
-        let above = if narrow { overlay::LEGEND_HEIGHT + 10.0 } else { 44.0 };
-        let chip = |tint| egui::Frame::new().fill(tint).corner_radius(6.0).inner_margin(egui::Margin::symmetric(10, 5));
-        let id = egui::Id::unique("status");
-        let widest = if is_tight { WIDEST_NARROW } else { WIDEST }.min(rect.width() - 28.0);
-        let (pivot, at, width) = self.desk.viewport.message_place(&self.content(), rect, above, widest);
-        let area = egui::Area::new(id).order(egui::Order::Middle).fixed_pos(at).pivot(pivot).constrain_to(rect);
-        area.show(ui.ctx(), |ui| {
-            ui.set_max_width(width);
-            if let Some(remedy) = remedy {
-                chip(palette.error_chip).show(ui, |ui| {
-                    ui.horizontal_wrapped(|ui| {
-                        ui.colored_label(palette.error, &remedy.text);
-                        actions.extend(remedy_button(ui, &remedy));
-                    });
-                });
-            }
-            let tint = if bad { palette.error_chip } else { palette.panel };
-            chip(tint).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(if bad { palette.error } else { palette.text }, text);
-                    self.status_buttons(ui, &input, actions);
-                });
-            });
-        });
-    }
-
     /// Shows the progress of the background solve, with a button that cancels it.
     fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
-        /// Half of the usual width, points.
-        const HALF_WIDTH: f32 = 140.0;
         let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
         let palette = Palette::new(ui.visuals());
         let area = egui::Area::new(egui::Id::unique("work"))
             .order(egui::Order::Middle)
-            .fixed_pos(rect.center_top() + egui::vec2(-HALF_WIDTH, 52.0))
+            .fixed_pos(rect.left_top() + egui::vec2(14.0, 52.0))
             .constrain_to(rect);
         area.show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
@@ -513,6 +405,13 @@ impl Lab {
                 });
             });
         });
+    }
+}
+
+/// Shows the link beside the status that explains it.
+fn explain_link(ui: &mut Ui, actions: &mut Vec<Action>) {
+    if ui.link(tr("explain")).clicked() {
+        actions.push(Action::Toggle(Toggle::Why));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
-use crate::app::modes::learn::{self, CardStart, Learn};
+use crate::app::modes::learn::{self, Learn};
 use crate::app::session::Session;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
 use crate::app::view_options::{Mode, ViewOptions};
@@ -31,7 +31,6 @@ impl Lab {
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
         let aside = std::mem::replace(own, desk);
-        self.intro = None;
         self.lesson = Some(Box::new(Lesson { learn: Learn::new(self.card), aside }));
         self.set_card_up();
     }
@@ -76,13 +75,14 @@ impl Lab {
         }
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
+        session.set_slow(setup.waits);
         panel.clear();
         view.color_with(setup.field);
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
         viewport.fit();
-        session.set_running(setup.start != CardStart::Waiting);
-        if setup.start != CardStart::Now {
+        session.set_running(!setup.waits);
+        if setup.waits {
             self.reset();
             let (viewport, content) = self.viewport_and_content();
             viewport.expect_bending(&content);

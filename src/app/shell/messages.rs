@@ -1,4 +1,4 @@
-//! Messages over the view: notices of the session, and the progress of a recording.
+//! Messages over the view: notices of the session, warnings and offers.
 
 use std::time::Duration;
 
@@ -8,7 +8,6 @@ use crate::app::action::Action;
 use crate::app::language::{fill, said, sentence, tr};
 use crate::app::session::Notice;
 use crate::app::shell::lab::{Lab, Request};
-use crate::app::task::thread::POLL;
 use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
@@ -90,22 +89,12 @@ impl Lab {
 
     /// Reports the first self-intersection of the body's outline of a document.
     pub(super) fn report_crossing(&mut self, ui: &Ui) {
-        let is_animated = self.intro.is_some() || self.story.is_some();
-        let is_shown = self.desk.view.bars && self.lesson.is_none() && !is_animated && self.toast.is_none();
+        let is_shown = self.desk.view.bars && self.lesson.is_none() && self.story.is_none() && self.toast.is_none();
         let now = ui.input(|i| i.time);
         let (viewport, content) = self.viewport_and_content();
         if is_shown && viewport.finds_crossing(&content, now) {
             self.say(ui.ctx(), tr("The body passes through itself: contact is not modelled").to_owned());
         }
-    }
-
-    /// Paints the progress of the scene's recording.
-    pub(super) fn paint_recording(&self, ui: &Ui, painter: &Painter, rect: Rect) {
-        let Some(progress) = &self.recording else { return };
-        let place = rect.center_bottom() - egui::vec2(0.0, 48.0);
-        let color = ui.visuals().strong_text_color();
-        boxed_text(painter, place, Align2::CENTER_BOTTOM, progress, ui.visuals(), color, 400.0);
-        ui.ctx().request_repaint_after(POLL);
     }
 
     /// Paints the message, while it is shown.

@@ -6,7 +6,6 @@ pub(crate) mod file_dialog;
 mod files;
 pub(crate) mod gallery;
 pub(crate) mod help;
-pub(crate) mod intro;
 pub mod lab;
 mod layout;
 mod learning;

@@ -3,8 +3,7 @@
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use serde::de::IntoDeserializer;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use crate::app::ThemeChoice;
@@ -32,7 +31,7 @@ pub struct Settings {
     /// `true` if the panel is shown.
     pub panel: bool,
     /// Drawer that is open under the body.
-    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "known_drawer")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) drawer: Option<Drawer>,
     /// Name of the field that colours the body.
     color: String,
@@ -69,50 +68,42 @@ impl Settings {
         platform::settings::read(file).is_err_and(|error| error.kind() == ErrorKind::NotFound)
     }
 
-    /// Reads the settings from a file; returns the defaults if there is none. If the file cannot be read, it is renamed
-    /// and the message of the second value says so.
+    /// Reads the settings from a file; returns the defaults if there is none, and with a message if it cannot be read.
     #[must_use]
     pub fn load(file: &Path) -> (Self, Option<String>) {
         let read = match platform::settings::read(file) {
             Ok(text) => toml::from_str(&text).map_err(|error| error.message().to_owned()),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Table::new()),
             Err(error) => Err(error.to_string()),
         };
         match read {
-            Ok(settings) => (settings, None),
+            Ok(table) => (Self::of(table), None),
             Err(reason) => {
-                let name = file.display();
-                let message = match platform::settings::set_aside(file) {
-                    Ok(kept) => fill!(
-                        "The settings could not be read and are now in %{kept}: %{reason}",
-                        kept = kept.display(),
-                        reason = reason
-                    ),
-                    Err(_) => fill!("%{file} could not be read: %{reason}", file = name, reason = reason),
-                };
+                let message = fill!("%{file} could not be read: %{reason}", file = file.display(), reason = reason);
                 (Self::default(), Some(message))
             }
         }
     }
 
+    /// Takes the valid values of a table.
+    fn of(mut table: Table) -> Self {
+        table.retain(|key, value| Table::from_iter([(key.to_owned(), value.clone())]).try_into::<Self>().is_ok());
+        Self::deserialize(table).unwrap_or_default()
+    }
+
     /// Writes the settings that differ from `before` to a file, whose other settings stay: another window may have
-    /// changed them in the meantime. Creates the folder of the file if necessary.
+    /// changed them in the meantime.
     ///
     /// # Errors
-    /// Error of the operating system, or the file cannot be read any more. The file is unchanged.
+    /// Error of the operating system, or the file cannot be read. The file is unchanged.
     pub fn save(&self, before: &Self, file: &Path) -> std::io::Result<()> {
         let table = |settings: &Self| Table::try_from(settings).map_err(Error::other);
-        let _lock = platform::settings::lock(file)?;
         let mut stored: Table = match platform::settings::read(file) {
             Ok(text) => toml::from_str(&text).map_err(Error::other)?,
             Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
             Err(error) => return Err(error),
         };
-        let mut own = self.clone();
-        let theirs = stored.clone().try_into().map(|theirs: Self| theirs.recent).unwrap_or_default();
-        own.recent.extend(theirs.into_iter().filter(|path| !self.recent.contains(path)));
-        own.recent.truncate(MAX_RECENT);
-        let (own, before) = (table(&own)?, table(before)?);
+        let (own, before) = (table(self)?, table(before)?);
         for key in own.keys().chain(before.keys()).filter(|key| own.get(*key) != before.get(*key)) {
             match own.get(key) {
                 Some(value) => stored.insert(key.clone(), value.clone()),
@@ -164,13 +155,6 @@ impl Settings {
     }
 }
 
-/// Reads the name of a drawer; `None` if another version of the program wrote it.
-fn known_drawer<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Drawer>, D::Error> {
-    let name = String::deserialize(deserializer)?;
-    let drawer: Result<Drawer, serde::de::value::Error> = Drawer::deserialize(name.into_deserializer());
-    Ok(drawer.ok())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,43 +182,38 @@ mod tests {
     }
 
     #[test]
-    fn invalid_settings_are_replaced_by_defaults_and_kept_under_another_name() {
+    fn invalid_settings_get_their_defaults_and_a_file_that_cannot_be_read_stays() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
-        for text in ["theme = 3", "not toml at all [", "size = [0.0, nan]", "color = \"smell\"\nsize = [1e9, 2.0]"] {
+        for text in ["theme = 3\npanel = false", "size = [0.0, nan]\npanel = false", "color = \"smell\"\npanel = false"]
+        {
             std::fs::write(&file, text).unwrap();
             let (settings, message) = Settings::load(&file);
             assert_eq!((settings.size(), settings.color()), ([1280.0, 800.0], Field::VonMises), "{text}");
-            assert_eq!(message.is_none(), file.exists(), "{message:?}");
-            if let Some(message) = message {
-                let kept = folder.path().join("settings.unreadable.toml");
-                assert!(message.contains(kept.to_str().unwrap()), "{message}");
-                assert_eq!(std::fs::read_to_string(kept).unwrap(), text);
-            }
+            assert_eq!((settings.theme, settings.panel, message), (None, false, None), "{text}");
         }
+        std::fs::write(&file, "panel = ").unwrap();
+        let (settings, message) = Settings::load(&file);
+        assert!(settings == Settings::default() && message.unwrap().contains(file.to_str().unwrap()));
+        let changed = Settings { panel: false, ..Settings::default() };
+        assert!(changed.save(&settings, &file).is_err());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "panel = ");
     }
 
     /// Two windows change different settings. Settings of another version of the program stay.
     #[test]
-    fn settings_of_two_windows_are_merged() {
+    fn two_windows_change_different_settings() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
         std::fs::write(&file, "theme = \"light\"\nfrom_another_version = 1").unwrap();
         let (before, _) = Settings::load(&file);
         let [mut first, mut second] = [before.clone(), before.clone()];
         (first.theme, first.language) = (None, Language::Chinese);
-        first.add_recent(Path::new("/first.toml"));
         second.panel = false;
-        second.add_recent(Path::new("/second.toml"));
         first.save(&before, &file).unwrap();
         second.save(&before, &file).unwrap();
         let (merged, _) = Settings::load(&file);
         assert_eq!((merged.theme, merged.language, merged.panel), (None, Language::Chinese, false));
-        assert_eq!(merged.recent(), [Path::new("/second.toml"), Path::new("/first.toml")]);
         assert!(std::fs::read_to_string(&file).unwrap().contains("from_another_version = 1"));
-        // A file that a user has broken in the meantime is not overwritten.
-        std::fs::write(&file, "panel = ").unwrap();
-        assert!(first.save(&before, &file).is_err());
-        assert_eq!(std::fs::read_to_string(&file).unwrap(), "panel = ");
     }
 }

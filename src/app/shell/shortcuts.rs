@@ -67,7 +67,7 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
         Action::Toggle(Toggle::Drawer(Drawer::Section))
     }),
-    key(Key::E, "Energy, tip and spectrum of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
+    key(Key::E, "Energy, tip and phase of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
     key(Key::M, "Limits: up to which load each method and element holds, on or off", || {
@@ -79,8 +79,6 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::P, "Panel on or off", || Action::Toggle(Toggle::Panel)),
     key(Key::T, "Light or dark", || Action::ToggleTheme),
     key(Key::S, "Save a screenshot (PNG) in the current folder", || Action::Screenshot),
-    key(Key::V, "Record the window as a GIF in the current folder; again: stop", || Action::Record),
-    with(Modifiers::SHIFT, Key::V, "Record the scene from its start as a GIF; again: stop", || Action::RecordScene),
     key(Key::C, "Copy the scene as TOML, with the command that solves it", || Action::Copy),
     key(Key::U, "Copy the address of this page with the whole scene in it", || Action::CopyLink),
     with(Modifiers::COMMAND, Key::O, "Open a scene file", || Action::OpenFile),

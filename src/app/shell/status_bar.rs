@@ -1,8 +1,8 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
 use crate::app::diagnosis::{
-    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_tip, is_large, is_without_reference, load_text,
-    rho, rho_number,
+    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_text, error_tip, is_large, is_without_reference,
+    load_text, rho, rho_number,
 };
 use crate::app::widgets::text::{UNKNOWN, semibold};
 use std::borrow::Cow;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use egui::{Align, Color32, FontId, Galley, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::action::Action;
-use crate::app::language::{fill, filled, percent, tr};
+use crate::app::language::{fill, filled, tr};
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
@@ -26,9 +26,6 @@ use crate::scene::Scene;
 /// changes.
 const ERROR: &str = "ERROR";
 const ERROR_REMARK: f32 = 178.0;
-
-/// In a status bar narrower than this, points, the numbers have no bars.
-const BARS: f32 = 820.0;
 
 /// Number with its name.
 struct BarNumber {
@@ -45,7 +42,8 @@ struct BarNumber {
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
-    let wide = ui.available_width() >= BARS;
+    // In a narrow window the numbers have no bars.
+    let wide = !view.narrow;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {
@@ -85,7 +83,10 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Vec<BarNumber> {
     let simulation = input.simulation;
     let solve = input.from_rest.filter(|_| simulation.status().is_success());
-    let time = solve.filter(|solve| solve.is_solved);
+    // While a load is dragged, a longer solve is not repeated.
+    let is_last = solve.is_none() && simulation.status().is_success();
+    let shown = if is_last { input.last_from_rest } else { solve };
+    let time = shown.filter(|solve| solve.is_solved);
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
@@ -105,7 +106,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     let mut entries = vec![
         BarNumber {
             name: ERROR,
-            value: errors.own.map_or_else(|| UNKNOWN.to_owned(), percent),
+            value: error_text(errors.own, input.live.is_some()),
             word: match (doubt, errors.source) {
                 // A large error has a source, whatever else is to be doubted.
                 (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
@@ -136,7 +137,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
                  theory factors its matrix once for all loads: that time is not in it.",
             )
             .to_owned(),
-            color: palette.text,
+            color: if is_last { palette.secondary } else { palette.text },
             ratio: None,
         },
     ];

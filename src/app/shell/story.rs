@@ -9,7 +9,6 @@ use crate::app::modes::learn;
 use crate::app::platform::page;
 use crate::app::shell::lab::{Desk, Lab, Story};
 use crate::app::view_options::ViewOptions;
-use crate::app::widgets::legend;
 use crate::app::widgets::palette::{HEADLINE, Palette};
 use crate::render::{Camera, Margins};
 use crate::scene::{ElementKind, MethodKind};
@@ -71,10 +70,8 @@ const PARTS: [Part; 5] = [
 const BEYOND: Vector2<f64> = Vector2::new(0.6, 4.0);
 /// Distance of the caption from the top of the view, points: below the line key and the note of a diverged load.
 const CAPTION: f32 = 80.0;
-/// Margins around the bodies; the caption is above them.
-const MARGINS: Margins = Margins { sides: 76.0, top: 124.0, bottom: 165.0 };
-/// Margins in a low view, whose caption is below the bodies.
-const LOW_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 130.0 };
+/// Margins around the bodies, as parts of the height of the view; the caption is above them.
+const MARGINS: [f64; 2] = [0.2, 0.16];
 
 /// Moves from one load to another, with zero velocity at both ends.
 fn between(from: f64, to: f64, t: f64) -> f64 {
@@ -207,8 +204,9 @@ impl Lab {
         let (low, high) = session.simulation().system().mesh().bounds();
         let (low, high) = (low - Vector2::new(0.0, BEYOND.y), high + Vector2::new(BEYOND.x, 0.0));
         let rect = viewport.rect();
-        let margins = if legend::has_bar_on_top(rect.height()) { LOW_MARGINS } else { MARGINS };
-        viewport.set_camera(Camera::fit(low, high, [rect.width(), rect.height()].map(f64::from), margins));
+        let size @ [_, height] = [rect.width(), rect.height()].map(f64::from);
+        let [top, bottom] = MARGINS.map(|part| part * height);
+        viewport.set_camera(Camera::fit(low, high, size, Margins { sides: 76.0, top, bottom }));
     }
 
     /// Paints the caption, and in the last part a ring around the tip of the arrow.
@@ -224,11 +222,7 @@ impl Lab {
         let caption = tr(caption);
         let font = FontId::proportional(HEADLINE);
         let galley = painter.layout(caption.to_owned(), font, palette.text, (rect.width() - 48.0).max(40.0));
-        let area = if legend::has_bar_on_top(rect.height()) {
-            Align2::CENTER_BOTTOM.anchor_size(rect.center_bottom() - vec2(0.0, 12.0), galley.size())
-        } else {
-            Align2::CENTER_TOP.anchor_size(rect.center_top() + vec2(0.0, CAPTION), galley.size())
-        };
+        let area = Align2::CENTER_TOP.anchor_size(rect.center_top() + vec2(0.0, CAPTION), galley.size());
         painter.rect_filled(area.expand2(vec2(12.0, 5.0)), 6.0, palette.panel);
         painter.galley(area.min, galley, palette.text);
         // For screen readers.

@@ -10,28 +10,15 @@ use crate::app::readout::Readout;
 use crate::app::shell::gallery::Gallery;
 use crate::app::view_options::{MODES, Toggle, ViewOptions};
 
-/// In a window narrower than this, points, buttons have no words.
-const WORDS: f32 = 1050.0;
+/// Height of the toolbar in one row, and in the two rows of a narrow window, points.
+const HEIGHTS: [f32; 2] = [36.0, 68.0];
 
-/// In a window narrower than this, points, the modes have a row of their own.
-const ONE_ROW: f32 = 945.0;
-
-/// In a window narrower than this, points, the tools of the window have a row of their own, too.
-const TWO_ROWS: f32 = 490.0;
-
-/// Height of one row, and of each further row, points.
-const ROW: [f32; 2] = [36.0, 32.0];
-
-/// In a window narrower than this, points, the modes have little space around their names.
-const TIGHT: f32 = 530.0;
-
-/// Returns the height of the toolbar in a window of this width, points.
-pub(crate) fn height(width: f32) -> f32 {
-    let further = [ONE_ROW, TWO_ROWS].into_iter().filter(|least| width < *least).count();
-    ROW[0] + ROW[1] * further as f32
+/// Returns the height of the toolbar, points.
+pub(crate) fn height(view: &ViewOptions) -> f32 {
+    HEIGHTS[usize::from(view.narrow)]
 }
 
-/// Shows the bar.
+/// Shows the bar. In a narrow window the modes and the tools of the window have a row of their own, and buttons no words.
 pub(crate) fn show(
     ui: &mut Ui,
     input: &Readout<'_>,
@@ -39,40 +26,27 @@ pub(crate) fn show(
     view: &ViewOptions,
     actions: &mut Vec<Action>,
 ) {
-    let wide = ui.available_width() >= WORDS;
-    let width = ui.ctx().content_rect().width();
-    let one_row = width >= ONE_ROW;
-    let mut first = |ui: &mut Ui| {
+    let mut of_scene = |ui: &mut Ui, actions: &mut Vec<Action>| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        gallery.show(ui, input, wide, actions);
+        gallery.show(ui, input, actions);
         divide(ui);
-        run(ui, input, wide, actions);
-        divide(ui);
+        run(ui, input, !view.narrow, actions);
         history(ui, input, actions);
-        if one_row {
-            divide(ui);
-            modes(ui, view, actions);
-            window_tools(ui, view, input.language, actions);
-        }
     };
-    if one_row {
-        ui.horizontal_centered(first);
-        return;
-    }
-    ui.add_space(6.0);
-    ui.horizontal(&mut first);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        if ui.available_width() < TIGHT {
-            ui.spacing_mut().button_padding.x = 4.0;
-        }
+    let of_window = |ui: &mut Ui, actions: &mut Vec<Action>| {
         modes(ui, view, actions);
-        if width >= TWO_ROWS {
-            window_tools(ui, view, input.language, actions);
-        }
-    });
-    if width < TWO_ROWS {
-        ui.horizontal(|ui| window_tools(ui, view, input.language, actions));
+        window_tools(ui, view, input.language, actions);
+    };
+    if view.narrow {
+        ui.add_space(6.0);
+        ui.horizontal(|ui| of_scene(ui, actions));
+        ui.horizontal(|ui| of_window(ui, actions));
+    } else {
+        ui.horizontal_centered(|ui| {
+            of_scene(ui, actions);
+            divide(ui);
+            of_window(ui, actions);
+        });
     }
 }
 
@@ -113,8 +87,9 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
     let ended = input.ended;
     let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
         let (name, tip) = (tr(name), tr(tip));
-        let word = wide.then_some(name);
-        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));
+        let word = (wide && ![Icon::Slow, Icon::Reset].contains(&icon)).then_some(name);
+        let chosen = icon == Icon::Slow && input.is_slow;
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, chosen));
         if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
             actions.push(action);
         }
@@ -130,6 +105,10 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
         (false, false) => "One iteration (N)",
     };
     button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
+    if !moves {
+        let tip = "Slow motion: one iteration a frame, in place of all that it has time for";
+        button(Icon::Slow, "One iteration a frame", tip, true, Action::SlowMotion);
+    }
     button(
         Icon::Reset,
         "Reset",

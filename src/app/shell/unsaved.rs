@@ -1,5 +1,4 @@
-//! Questions before something is lost: unsaved edits, the rest of a recording, or the changes of another program. The offer to restore the edits left by a
-//! crashed window.
+//! Question before unsaved edits are lost, and the offer to restore the edits left by a crashed window.
 
 use egui::{Context, Event, Id, Key, Modal, RichText, Ui};
 
@@ -31,8 +30,8 @@ impl Lab {
         self.left.is_some()
     }
 
-    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits or
-    /// a recording, and [`Request::Close`] follows unless the answer is "Cancel".
+    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits,
+    /// and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
         self.end_story();
         if self.unsaved().is_some() && self.lesson.is_some() {
@@ -45,8 +44,7 @@ impl Lab {
 
     /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
-        self.dialog.is_some()
-            || matches!(self.question, Question::Unsaved(_) | Question::Recording | Question::Changed(_))
+        self.dialog.is_some() || matches!(self.question, Question::Unsaved(_))
     }
 
     /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
@@ -69,7 +67,6 @@ impl Lab {
 
     fn go(&mut self, ctx: &Context, departure: UnsavedDeparture) {
         match departure {
-            UnsavedDeparture::Close if self.recording.is_some() => self.ask(ctx, Question::Recording),
             UnsavedDeparture::Close => self.closes = true,
             UnsavedDeparture::Open(source) => self.open(ctx, source),
             UnsavedDeparture::AskForFile if IS_PAGE => files::choose(),
@@ -89,56 +86,23 @@ impl Lab {
 
     /// Shows the question, if there is one, and processes its answer.
     pub(crate) fn show_question(&mut self, ctx: &Context) {
-        match std::mem::take(&mut self.question) {
-            Question::Unsaved(departure) => {
-                let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
-                let answers = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
-                let text = match departure {
-                    UnsavedDeparture::Close => "Discarded changes are lost.",
-                    UnsavedDeparture::Open(_) | UnsavedDeparture::AskForFile => "Undo restores discarded changes.",
-                };
-                match dialog(ctx, &title, tr(text), &answers) {
-                    None => self.question = Question::Unsaved(departure),
-                    Some("Save") => {
-                        self.question = Question::Saving(departure);
-                        self.save_here(ctx);
-                    }
-                    Some("Discard") => self.go(ctx, departure),
-                    Some(_) => {}
-                }
+        let departure = match std::mem::take(&mut self.question) {
+            Question::Unsaved(departure) => departure,
+            other => return self.question = other,
+        };
+        let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
+        let text = match departure {
+            UnsavedDeparture::Close => "Discarded changes are lost.",
+            UnsavedDeparture::Open(_) | UnsavedDeparture::AskForFile => "Undo restores discarded changes.",
+        };
+        match dialog(ctx, &title, tr(text)) {
+            None => self.question = Question::Unsaved(departure),
+            Some("Save") => {
+                self.question = Question::Saving(departure);
+                self.save_here(ctx);
             }
-            // Once the recording is complete, there is nothing to ask.
-            Question::Recording if self.recording.is_some() => {
-                let text = tr("If the window closes now, the file has only the pictures recorded so far.");
-                let answers = [("Close", Key::Enter), ("Cancel", Key::Escape)];
-                match dialog(ctx, tr("The scene is being recorded."), text, &answers) {
-                    None => self.question = Question::Recording,
-                    Some("Close") => self.closes = true,
-                    Some(_) => {}
-                }
-            }
-            Question::Recording => {}
-            Question::Changed(departure) => {
-                let title = fill!("%{file} has changed on disk.", file = self.source().name.display());
-                let text = tr("Overwrite discards those changes. Reload discards your own; undo restores them.");
-                let answers =
-                    [("Save as…", Key::Enter), ("Overwrite", Key::O), ("Reload", Key::R), ("Cancel", Key::Escape)];
-                let answer = dialog(ctx, &title, text, &answers);
-                self.question = match departure {
-                    departure if answer.is_none() => Question::Changed(departure),
-                    Some(departure) if matches!(answer, Some("Save as…" | "Overwrite")) => {
-                        Question::Saving(departure)
-                    }
-                    _ => Question::None,
-                };
-                match answer {
-                    Some("Save as…") => self.ask_where_to_save(ctx),
-                    Some("Overwrite") => self.overwrite(ctx),
-                    Some("Reload") => self.open(ctx, self.source().clone()),
-                    _ => {}
-                }
-            }
-            other => self.question = other,
+            Some("Discard") => self.go(ctx, departure),
+            Some(_) => {}
         }
     }
 
@@ -170,8 +134,9 @@ impl Lab {
     }
 }
 
-/// Shows a question with these answers and their keys; returns the answer. The last one cancels.
-fn dialog(ctx: &Context, title: &str, text: &str, answers: &[(&'static str, Key)]) -> Option<&'static str> {
+/// Shows a question; returns the answer.
+fn dialog(ctx: &Context, title: &str, text: &str) -> Option<&'static str> {
+    const ANSWERS: [(&str, Key); 3] = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
     let mut answer = None;
     let modal = Modal::new(Id::unique("question")).show(ctx, |ui| {
         ui.set_width(ui.available_width().min(360.0));
@@ -180,16 +145,16 @@ fn dialog(ctx: &Context, title: &str, text: &str, answers: &[(&'static str, Key)
         ui.label(text);
         ui.add_space(10.0);
         ui.horizontal(|ui| {
-            for (i, (label, key)) in answers.iter().enumerate() {
+            for (i, (label, key)) in ANSWERS.into_iter().enumerate() {
                 let text = RichText::new(tr(label));
                 let button = ui.button(if i == 0 { text.strong() } else { text }).on_hover_text(key.name());
-                if button.clicked() || ui.input(|i| i.events.iter().any(|event| pressed(event, *key))) {
-                    answer = Some(*label);
+                if button.clicked() || ui.input(|i| i.events.iter().any(|event| pressed(event, key))) {
+                    answer = Some(label);
                 }
             }
         });
     });
-    answer.or_else(|| answers.last().filter(|_| modal.should_close()).map(|(label, _)| *label))
+    answer.or_else(|| modal.should_close().then_some("Cancel"))
 }
 
 /// Returns `true` if an event is the first press of a key.

@@ -181,11 +181,6 @@ impl BodyMesh {
         self.components.iter().flatten().any(|components| self.field.value(*components).is_some())
     }
 
-    /// Returns the values of the field at the drawn points.
-    pub(crate) fn values(&self) -> Vec<Option<f64>> {
-        self.components.iter().map(|components| self.field.value((*components)?)).collect()
-    }
-
     /// Returns the value of the field at a material point.
     pub(crate) fn value_at(&self, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
         self.field.at(mesh, point)

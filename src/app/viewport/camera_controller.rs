@@ -61,11 +61,6 @@ impl CameraController {
         self.whole
     }
 
-    /// Returns `true` while the camera fits the body instead of being set by the user.
-    pub(crate) fn shows_whole(&self) -> bool {
-        self.own.is_none()
-    }
-
     /// Returns to the camera that fits the whole body.
     pub(crate) fn fit(&mut self) {
         self.own = None;

@@ -1,12 +1,11 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::{boxed_text, text_size};
-use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
@@ -17,7 +16,7 @@ use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, ForceArrows};
 use crate::app::viewport::handle::HotHandle;
 use crate::app::viewport::moment_arrow::MomentArrow;
-use crate::app::widgets::legend::{LegendMark, has_bar_on_top};
+use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::assembly::{MouseSpring, System};
@@ -34,10 +33,8 @@ use crate::study::Reference;
 pub(crate) struct Overlay<'a> {
     /// Scene of the drawn body.
     pub scene: &'a Scene,
-    /// Scene that was asked for and whose state diverges; the last equilibrium is drawn in its place.
+    /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
-    /// `true` if the body is not the result for the scene: it is dimmed.
-    pub is_dimmed: bool,
     pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
@@ -84,26 +81,21 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         return;
     }
     let palette = Palette::new(visuals);
-    if overlay.is_dimmed {
+    if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
-    let names = key(painter, rect, overlay, &palette, visuals);
-    let legend = legend(painter, rect, names, overlay, &palette, visuals);
+    key(painter, rect, overlay, &palette, visuals);
+    let legend = legend(painter, rect, overlay, &palette, visuals);
     on_body(painter, rect, overlay, visuals, legend);
     scale_bar(painter, rect, &overlay.camera, &palette);
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
     }
     if let Some((note, color)) = overlay.note {
-        // In a low view the body begins at the top; the note is beside it.
-        let (at, align) = if has_bar_on_top(rect.height()) {
-            (rect.left_top() + vec2(14.0, 40.0), Align2::LEFT_TOP)
-        } else {
-            (rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP)
-        };
-        boxed_text(painter, at, align, note, visuals, color, rect.width() - 48.0);
+        let at = rect.center_top() + vec2(0.0, 46.0);
+        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 48.0);
     }
 }
 
@@ -115,7 +107,7 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 /// Paints the overlays that belong to the body: outlines, supports, loads.
 pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     let palette = Palette::new(visuals);
-    if overlay.is_dimmed {
+    if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
@@ -198,9 +190,7 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
         }
         supports(painter, &projection, overlay, &palette);
         loads(painter, &projection, overlay, &palette, visuals, legend);
-        let on_top = legend.filter(|_| has_bar_on_top(rect.height()));
-        let below = on_top.map_or(0.0, |legend| legend.bottom() - rect.top());
-        weights(painter, rect, below, overlay, &palette, visuals);
+        weights(painter, rect, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
         let named: Vec<(Pos2, &str)> = named_probes(&projection, overlay).collect();
         probes(painter, &named, visuals);
@@ -234,7 +224,7 @@ fn sections(
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
-    let is_roomy = projection.rect.width() >= LEGEND_VIEW.x && !has_bar_on_top(projection.rect.height());
+    let is_roomy = has_legend(projection.rect.size());
     if overlay.sections.is_empty() {
         return;
     }
@@ -499,11 +489,12 @@ fn loads(
 }
 
 /// Paints the arrows of gravity in a corner, under a colour bar that ends `below` points from the top.
-fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+fn weights(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     /// Length of the arrow, which shows the direction only, and its shortest length in a low view, points.
     const WEIGHT: f32 = 58.0;
     const SHORTEST: f32 = 18.0;
-    /// Height of the label and of the time line under the arrow, points.
+    /// Height above the arrow, and of the label and the time line under it, points.
+    const TOP: f32 = 30.0;
     const UNDER: f32 = 56.0;
     for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
@@ -512,9 +503,8 @@ fn weights(painter: &Painter, rect: Rect, below: f32, overlay: &Overlay<'_>, pal
             continue;
         }
         // An arrow that points up begins where one that points down ends.
-        let top = if below > 0.0 { below + 8.0 } else { 30.0 };
-        let vector = direction * WEIGHT.min(rect.height() - top - UNDER).max(SHORTEST);
-        let from = rect.right_top() + vec2(-64.0, top + (-vector.y).max(0.0));
+        let vector = direction * WEIGHT.min(rect.height() - TOP - UNDER).max(SHORTEST);
+        let from = rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
         let tip = arrow::paint_arrow(painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
         boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
@@ -555,33 +545,23 @@ fn moved_supports(
 /// Height that the colour bar takes at the bottom of the view, points.
 pub(crate) const LEGEND_HEIGHT: f32 = 66.0;
 
-/// Height that line key and colour bar take at the top of a low view, points.
-pub(crate) const TOP_ROWS_HEIGHT: f32 = 64.0;
-
 /// Width that the colour bar takes on the right of the view, points.
 pub(crate) const LEGEND_WIDTH: f32 = 300.0;
 
-/// Smallest size of a view with a colour bar, points.
-const LEGEND_VIEW: Vec2 = vec2(420.0, 120.0);
+/// Smallest size of a view with a colour bar, and smallest width of a view with line key and scale bar, points.
+const LEGEND_VIEW: Vec2 = vec2(420.0, 200.0);
+const KEY_WIDTH: f32 = 220.0;
 
-/// Returns `true` if a view of size `view`, points, has a colour bar at its bottom.
-pub(crate) fn has_legend_below(view: Vec2) -> bool {
-    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y && !has_bar_on_top(view.y)
+/// Returns `true` if a view of size `view`, points, has a colour bar.
+pub(crate) fn has_legend(view: Vec2) -> bool {
+    view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y
 }
 
-/// Paints the colour bar with its title and ticks in the lower right corner, or, in a low view, in one row at the top,
-/// and returns its area. `names` is the area of the line key.
-fn legend(
-    painter: &Painter,
-    rect: Rect,
-    names: Rect,
-    overlay: &Overlay<'_>,
-    palette: &Palette,
-    visuals: &Visuals,
-) -> Option<Rect> {
+/// Paints the colour bar with its title and ticks in the lower right corner, and returns its area.
+fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Option<Rect> {
     const MAX_TICKS: u32 = 5;
     const SIZE: Vec2 = vec2(240.0, 10.0);
-    if rect.width() < LEGEND_VIEW.x || rect.height() < LEGEND_VIEW.y {
+    if !has_legend(rect.size()) {
         return None;
     }
     let field = overlay.options.field;
@@ -596,87 +576,25 @@ fn legend(
         (true, None) => "",
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
-    let colors = |bar: Rect| {
-        color_bar(painter, bar, palette.map(field));
-        if overlay.is_dimmed {
-            dim(painter, bar, palette);
-        }
-    };
     let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| overlay.has_values).map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
         (((value - low) / (high - low)) as f32, text)
     });
     let font = FontId::proportional(SMALL);
-    let text = |text: String| painter.layout_no_wrap(text, font.clone(), palette.text);
-    if has_bar_on_top(rect.height()) {
-        let [low, high] = [low, high].map(|end| engineering(three_digits(end / 10f64.powi(power)), ""));
-        let ends = if overlay.has_values { [low, format!("{high} {symbol}{unit}")] } else { Default::default() };
-        let ends = ends.map(text);
-        let projection = Projection { camera: overlay.camera, rect };
-        let is_covered = |area: Rect| overlay.positions.iter().any(|&place| area.contains(projection.point(place)));
-        return legend_row(
-            painter,
-            (rect, names),
-            &is_covered,
-            (text(format!("{}{raw}{range}", tr(field.name()))), ends),
-            &colors,
-            visuals,
-        );
-    }
     let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));
     painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
-    painter.galley(corner, text(title), palette.text);
+    painter.text(corner, Align2::LEFT_TOP, title, font.clone(), palette.text);
     let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), SIZE);
-    colors(bar);
+    color_bar(painter, bar, palette.map(field));
+    if overlay.wanted.is_some() {
+        dim(painter, bar, palette);
+    }
     for (fraction, text) in ticks {
         let x = bar.left() + bar.width() * fraction;
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
         painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, text, font.clone(), palette.text);
     }
-    Some(frame)
-}
-
-/// Paints title, lowest value, colour bar and highest value in one row: beside the line key, or under it if there is no
-/// room and it does not cover the body, as `is_covered` tells of an area. Returns the area.
-fn legend_row(
-    painter: &Painter,
-    (rect, names): (Rect, Rect),
-    is_covered: &dyn Fn(Rect) -> bool,
-    (title, [low, high]): (Arc<Galley>, [Arc<Galley>; 2]),
-    colors: &dyn Fn(Rect),
-    visuals: &Visuals,
-) -> Option<Rect> {
-    const BAR: Vec2 = vec2(110.0, 10.0);
-    const GAP: f32 = 7.0;
-    const MARGIN: f32 = 14.0;
-    let text = Palette::new(visuals).text;
-    let scale = low.size().x + BAR.x + high.size().x + 2.0 * GAP;
-    let with_title = scale + title.size().x + 2.0 * GAP;
-    let has_title = with_title <= rect.width() - 2.0 * MARGIN;
-    let width = if has_title { with_title } else { scale };
-    let left = rect.right() - MARGIN - width;
-    let is_beside = names.right() + MARGIN <= left;
-    let middle = if is_beside { names.center().y } else { names.bottom() + MARGIN };
-    let frame = Rect::from_min_max(pos2(left, middle - 10.0), pos2(rect.right() - MARGIN, middle + 10.0)).expand(4.0);
-    if !is_beside && is_covered(frame) {
-        return None;
-    }
-    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
-    let mut x = left;
-    let mut put = |galley: Arc<Galley>, gap: f32| {
-        let size = galley.size();
-        painter.galley(pos2(x, middle - 0.5 * size.y), galley, text);
-        x += size.x + gap;
-        x
-    };
-    if has_title {
-        put(title, 2.0 * GAP);
-    }
-    let from = put(low, GAP);
-    colors(Rect::from_min_size(pos2(from, middle - 0.5 * BAR.y), BAR));
-    x += BAR.x + GAP;
-    painter.galley(pos2(x, middle - 0.5 * high.size().y), high, text);
     Some(frame)
 }
 
@@ -708,10 +626,13 @@ pub(crate) fn magnified(factor: f64) -> String {
     fill!("displacement × %{factor}", factor = number(three_digits(factor)))
 }
 
-/// Paints the line key with the error of each solution, and returns its area.
-fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Rect {
+/// Paints the line key with the error of each solution.
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
+    if rect.width() < KEY_WIDTH {
+        return;
+    }
     let with_error = |word: &str, error: Option<f64>| match error {
         Some(error) => format!("{word}  {}", percent(error)),
         None => word.to_owned(),
@@ -772,7 +693,6 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         }
         painter.galley(left + vec2(indent(mark), -0.5 * galley.size().y), galley, palette.text);
     }
-    frame
 }
 
 /// Space between the left side of the view and the scale bar, points.
@@ -791,7 +711,7 @@ pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
 
 /// Paints a scale bar of a round length.
 pub(crate) fn scale_bar(painter: &Painter, rect: Rect, camera: &Camera, palette: &Palette) {
-    if rect.width() < 220.0 || rect.height() < 100.0 {
+    if rect.width() < KEY_WIDTH || rect.height() < 100.0 {
         return;
     }
     let (length, bar) = scale(camera);

@@ -6,7 +6,6 @@ use egui::{
 use nalgebra::{Matrix2, Vector2};
 
 use crate::app::language::{fill, tr};
-use crate::app::widgets::legend;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::mesh::{MaterialPoint, Mesh};
@@ -51,54 +50,13 @@ fn matrix_rows(m: &Matrix2<f64>) -> String {
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
 }
 
-/// Arrangement of the values on the card of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
-    /// The value of the displayed field, and the displacement.
-    Short,
-    /// All values in one column.
-    Tall,
-    /// All values in two columns.
-    Wide,
-}
-
-impl Form {
-    /// Returns the form with all values that fits a view.
-    fn of_all(view: Rect) -> Self {
-        /// Height below which a view is low, and the smallest width of one for two columns, points.
-        const LOW: Vec2 = vec2(600.0, 520.0);
-        if view.height() < LOW.y && view.width() >= LOW.x { Form::Wide } else { Form::Tall }
-    }
-
-    /// Returns the size of a card while its matrices are folded, points.
-    fn size(self) -> Vec2 {
-        match self {
-            Form::Short => vec2(300.0, 88.0),
-            Form::Tall => vec2(300.0, 262.0),
-            Form::Wide => vec2(520.0, 148.0),
-        }
-    }
-
-    /// Returns the alignments of a card in a view.
-    fn alignments(self, view: Rect) -> impl Iterator<Item = Align2> {
-        let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-        let room = view.width() - self.beside().iter().sum::<f32>();
-        corners.into_iter().chain(Some(Align2::CENTER_BOTTOM).filter(|_| room >= self.size().x))
-    }
-
-    /// Returns the room left and right of a card at the lower side of a view for the status and the colour bar, points.
-    /// In a low view the status is in the bar below, and the scale alone is in the left corner.
-    fn beside(self) -> [f32; 2] {
-        const BAR: f32 = 290.0;
-        const SCALE: f32 = 96.0;
-        [if self == Form::Wide { SCALE } else { BAR }, BAR]
-    }
-
-    /// Returns the number of columns of values.
-    fn columns(self) -> usize {
-        if self == Form::Wide { 2 } else { 1 }
-    }
-}
+/// Sizes of a card while its matrices are folded, points: with the value of the displayed field and the displacement, and
+/// with all values.
+const FEW: Vec2 = vec2(340.0, 100.0);
+const ALL: Vec2 = vec2(300.0, 262.0);
+/// Room for the line key above a card, and for the scale and the colour bar below, points.
+const KEY: f32 = 44.0;
+const SCALE_AND_BAR: f32 = 84.0;
 
 /// Choices of the user on the cards of points.
 #[derive(Clone, Copy, Debug, Default)]
@@ -131,8 +89,6 @@ pub(crate) enum Axes {
 pub(crate) enum CardRequest {
     /// Closes the card.
     Close,
-    /// Copies the values as text.
-    Copy(String),
     /// Adds a probe to the scene at the point.
     Keep,
 }
@@ -246,14 +202,14 @@ pub(crate) struct PointCard {
     point: MaterialPoint,
     view: Rect,
     shows_all: bool,
-    form: Form,
+    size: Vec2,
     align: Align2,
 }
 
 impl PointCard {
     /// Places a card in a view where it hides least: not its point at `at`, as few of the points spread over a body as
-    /// possible, and the `tips` of arrows only for many of these. The form is short if all values would hide much of the
-    /// body and the user has not asked for them. All positions are in the window.
+    /// possible, and the `tips` of arrows only for many of these. It has few values if all would hide much of the body, or
+    /// are higher than the view, and the user has not asked for them. All positions are in the window.
     pub(crate) fn new(
         point: MaterialPoint,
         view: Rect,
@@ -265,9 +221,10 @@ impl PointCard {
         /// Part of a body that all values may hide.
         const HIDDEN: f32 = 0.1;
         let hidden = |points: &[Pos2], card: Rect| points.iter().filter(|at| card.contains(**at)).count() as f32;
-        let best = |form: Form| {
-            let card = PointCard { point, view, shows_all: choice.shows_all, form, align: Align2::RIGHT_TOP };
-            let aligned = form.alignments(view).map(|align| {
+        let best = |size: Vec2| {
+            let card = PointCard { point, view, shows_all: choice.shows_all, size, align: Align2::RIGHT_TOP };
+            let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
+            let aligned = corners.into_iter().map(|align| {
                 let card = PointCard { align, ..card };
                 let area = card.area();
                 let part = hidden(body, area) / body.len().max(1) as f32;
@@ -276,8 +233,9 @@ impl PointCard {
             let least = aligned.min_by(|a, b| (a.1 + a.2).total_cmp(&(b.1 + b.2)));
             least.map_or((card, 0.0), |(card, part, _)| (card, part))
         };
-        let (all, part) = best(Form::of_all(view));
-        if choice.shows_all || part <= HIDDEN { all } else { best(Form::Short).0 }
+        let (all, part) = best(ALL);
+        let fits = part <= HIDDEN && view.height() >= ALL.y + KEY + SCALE_AND_BAR;
+        if choice.shows_all || fits { all } else { best(FEW).0 }
     }
 
     /// Returns `true` if the card is of a point.
@@ -297,32 +255,16 @@ impl PointCard {
 
     /// Returns the position of the aligned point of the card, in the window.
     fn position(&self) -> Pos2 {
-        /// Room for the line key above, and for a colour bar under it in low views, points.
-        const KEY: f32 = 44.0;
-        const KEY_AND_BAR: f32 = 68.0;
-        /// Room for the scale in the lower left corner, and for it and a colour bar in both lower corners, points.
-        const SCALE: f32 = 50.0;
-        const SCALE_AND_BAR: f32 = 84.0;
         const SIDE: f32 = 14.0;
-        let (view, is_bar_above) = (self.view, legend::has_bar_on_top(self.view.height()));
-        let above = match self.form {
-            // All values that the user asks for hide the key and the bar rather than the body.
-            _ if self.shows_all => SIDE,
-            Form::Short if is_bar_above => KEY_AND_BAR,
-            _ => KEY,
-        };
-        let ([left, right], below) = match self.align {
-            _ if self.shows_all => ([SIDE; 2], SIDE),
-            Align2::CENTER_BOTTOM => (self.form.beside(), SIDE),
-            Align2::RIGHT_BOTTOM if is_bar_above => ([SIDE; 2], SIDE),
-            _ => ([SIDE; 2], if is_bar_above { SCALE } else { SCALE_AND_BAR }),
-        };
-        self.align.pos_in_rect(&Rect::from_min_max(view.min + vec2(left, above), view.max - vec2(right, below)))
+        // All values that the user asks for hide the key and the bar rather than the body.
+        let (above, below) = if self.shows_all { (SIDE, SIDE) } else { (KEY, SCALE_AND_BAR) };
+        self.align
+            .pos_in_rect(&Rect::from_min_max(self.view.min + vec2(SIDE, above), self.view.max - vec2(SIDE, below)))
     }
 
     /// Returns the area of the card in the window while its matrices are folded.
     fn area(&self) -> Rect {
-        self.align.anchor_size(self.position(), self.form.size())
+        self.align.anchor_size(self.position(), self.size)
     }
 }
 
@@ -355,13 +297,14 @@ pub(crate) fn show_card(
     painter.circle_filled(at, 1.5, color);
     paint_principal(painter, at, pinned.state, color);
     let area = Area::new(id).order(Order::Middle).pivot(card.align).fixed_pos(card.position()).constrain_to(card.view);
-    let shown = area
-        .show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| card_content(ui, card.form, pinned, choice)).inner);
+    let shown = area.show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| card_content(ui, card.size == FEW, pinned, choice)).inner
+    });
     shown.inner
 }
 
-fn card_content(ui: &mut Ui, form: Form, pinned: &Pinned<'_>, choice: &mut CardChoice) -> Option<CardRequest> {
-    let (point, columns, mut request) = (pinned.state, form.columns(), None);
+fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut CardChoice) -> Option<CardRequest> {
+    let (point, mut request) = (pinned.state, None);
     ui.spacing_mut().item_spacing.y = 3.0;
     let title = fill!("Point %{place}", place = metres(point.rest));
     let (kind, tip) = match point.values {
@@ -373,24 +316,6 @@ fn card_content(ui: &mut Ui, form: Form, pinned: &Pinned<'_>, choice: &mut CardC
     };
     let matrices = matrices_of(point);
     let rows = rows_of(point, choice.axes);
-    let buttons = |ui: &mut Ui, choice: &mut CardChoice| {
-        if ui.button(tr("Copy")).on_hover_text(tr("Copies all values as text")).clicked() {
-            return Some(CardRequest::Copy(copied_text(&title, point, choice.axes, &rows)));
-        }
-        let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
-        if !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
-            return Some(CardRequest::Keep);
-        }
-        if form == Form::Short || choice.shows_all {
-            let tip = "Shows all values, over the body too";
-            ui.toggle_value(&mut choice.shows_all, tr("All values")).on_hover_text(tr(tip));
-        }
-        if form != Form::Short {
-            let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
-            ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
-        }
-        None
-    };
     ui.horizontal(|ui| {
         ui.strong(&title);
         let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
@@ -399,14 +324,11 @@ fn card_content(ui: &mut Ui, form: Form, pinned: &Pinned<'_>, choice: &mut CardC
             request = Some(CardRequest::Close);
         }
         ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
-        if columns > 1 {
-            request = request.take().or(buttons(ui, choice));
-        }
     });
     let few = [(pinned.field.0.name(), field_text(pinned.field), "Value of the colour"), displacement_row(point)];
-    let shown: &[Row] = if form == Form::Short { &few } else { &rows };
+    let shown: &[Row] = if is_short { &few } else { &rows };
     // In linear theory the axes of the material do not rotate.
-    if form != Form::Short && !point.is_linear {
+    if !is_short && !point.is_linear {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
             for (own, name) in [(Axes::Space, "space x, y"), (Axes::Material, "material X, Y")] {
@@ -417,28 +339,34 @@ fn card_content(ui: &mut Ui, form: Form, pinned: &Pinned<'_>, choice: &mut CardC
     ui.scope(|ui| {
         // Rows of text need less height than those of controls.
         ui.spacing_mut().interact_size.y = 16.0;
-        let height = shown.len().div_ceil(columns);
-        Grid::new("probe values").num_columns(2 * columns).spacing([12.0, 1.0]).show(ui, |ui| {
-            for row in 0..height {
-                for (name, text, tip) in shown.iter().skip(row).step_by(height) {
-                    ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
-                    ui.label(text).on_hover_text(tr(tip));
-                }
+        Grid::new("probe values").num_columns(2).spacing([12.0, 1.0]).show(ui, |ui| {
+            for (name, text, tip) in shown {
+                ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
+                ui.label(text).on_hover_text(tr(tip));
                 ui.end_row();
             }
         });
     });
-    if columns == 1 {
-        ui.horizontal(|ui| request = request.take().or(buttons(ui, choice)));
-    }
-    if choice.shows_matrices && form != Form::Short {
+    ui.horizontal(|ui| {
+        let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
+        if !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
+            request = Some(CardRequest::Keep);
+        }
+        if is_short || choice.shows_all {
+            let tip = "Shows all values, over the body too";
+            ui.toggle_value(&mut choice.shows_all, tr("All values")).on_hover_text(tr(tip));
+        }
+        if !is_short {
+            let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+            ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
+        }
+    });
+    if choice.shows_matrices && !is_short {
         Grid::new("probe matrices").spacing([12.0, 3.0]).show(ui, |ui| {
             for (name, matrix, tip) in &matrices {
                 ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
                 ui.label(RichText::new(matrix_rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
-                if columns == 1 {
-                    ui.end_row();
-                }
+                ui.end_row();
             }
         });
     }
@@ -457,18 +385,6 @@ fn matrices_of(point: &PointState) -> Vec<(&'static str, Matrix2<f64>, &'static 
     matrices
 }
 
-/// Returns the values of a card as text, one on each line.
-fn copied_text(title: &str, point: &PointState, axes: Axes, rows: &[Row]) -> String {
-    let axes = match axes {
-        _ if point.is_linear => None,
-        Axes::Space => Some("space x, y"),
-        Axes::Material => Some("material X, Y"),
-    };
-    let axes = axes.map(|name| format!("{}\t{}", tr("Stress in the axes of"), tr(name)));
-    let rows = rows.iter().map(|(name, text, _)| format!("{}\t{text}", tr(name)));
-    std::iter::once(title.to_owned()).chain(axes).chain(rows).map(|line| line + "\n").collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -483,24 +399,9 @@ mod tests {
         let point = MaterialPoint { element: 0, at: [0.3; 2] };
         for &at in &nodes {
             let card = PointCard::new(point, view, CardChoice::default(), (&nodes, at, &[tip]));
-            assert_eq!(card.form, Form::Tall);
+            assert_eq!(card.size, ALL);
             let card = card.area();
             assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
-        }
-    }
-
-    /// In a low view a card hides the tip of an arrow rather than a part of the beam.
-    #[test]
-    fn a_card_in_a_low_view_hides_nothing_of_a_beam() {
-        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 456.0));
-        let nodes = (0..=40_u8).flat_map(|i| [196.0, 216.0, 236.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
-        let (nodes, tips) = (nodes.collect::<Vec<_>>(), [pos2(919.0, 290.0), pos2(490.0, 290.0)]);
-        let point = MaterialPoint { element: 0, at: [0.3; 2] };
-        for &at in &nodes {
-            let card = PointCard::new(point, view, CardChoice::default(), (&nodes, at, &tips));
-            assert_eq!(card.form, Form::Wide);
-            let card = card.area();
-            assert!(nodes.iter().all(|at| !card.contains(*at)), "{at:?}: {card:?}");
         }
     }
 }

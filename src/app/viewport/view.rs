@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
+use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
@@ -13,12 +13,11 @@ use crate::app::viewport::base::Bases;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::overlay::{self, Overlay, TOP_ROWS_HEIGHT};
+use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{CardChoice, CardRequest, Pinned, PointCard};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::app::viewport::{menu, probe};
-use crate::app::widgets::legend;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::Palette;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -29,19 +28,10 @@ use crate::simulation::{Field, Simulation, Status};
 use crate::state::largest;
 use crate::study::{Reference, section_chart};
 
-/// Margins around the body when the camera is fitted, points: they leave room for the load arrow, the line key above
-/// and the colour bar below.
-const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 152.0 };
-/// Height below which a view has the status under it, because it would cover the body, points.
-pub(crate) const STATUS_VIEW: f32 = 526.0;
-/// Margins above a card of Learn, which leaves less of the view.
-const CARD_MARGINS: Margins = Margins { sides: 76.0, top: 74.0, bottom: 44.0 };
-/// Margins above a card in a low view: room for the arrow of the largest load of its slider.
-const LOW_CARD_MARGINS: Margins = Margins { top: 50.0, bottom: 80.0, ..LOW_MARGINS };
-/// Width of a low view from which line key and colour bar share a row, points.
-const ONE_ROW: f64 = 560.0;
-/// Margins under the rows at the top of a low view.
-const LOW_MARGINS: Margins = Margins { sides: 60.0, top: TOP_ROWS_HEIGHT as f64, bottom: 30.0 };
+/// Largest margins around the body when the camera is fitted, points, and their largest part of the view: room for the
+/// load arrow, the line key above and the colour bar below.
+const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 92.0 };
+const FIT_SHARE: f64 = 0.16;
 
 /// Content of the view.
 #[derive(Clone, Copy)]
@@ -50,8 +40,6 @@ pub(crate) struct Content<'a> {
     pub options: &'a ViewOptions,
     /// Direction of a force of zero, degrees.
     pub direction: f64,
-    /// Body and linear solution of an animation, drawn in place of the session's.
-    pub animation: Option<(&'a Simulation, Option<&'a Simulation>)>,
     /// Card of Learn below the view.
     pub card: Option<CardContent<'a>>,
 }
@@ -83,37 +71,24 @@ impl<'a> Content<'a> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
-    /// Returns the reference solution if it is known for the displayed state.
+    /// Returns the drawn body.
+    fn drawn(&self) -> &'a Simulation {
+        self.session.drawn()
+    }
+
+    /// Returns the reference solution if it is known for the drawn state; one that follows a load may be of the load before.
     fn reference(&self) -> Option<&'a Reference> {
         let session = self.session;
         let is_at_rest = !session.is_motion() && !session.iterates() && session.simulation().mouse_spring().is_none();
-        session.reference().and_then(Result::ok).filter(|_| is_at_rest)
-    }
-
-    /// Returns the reference solution if it is known for the displayed state and its outline is not hidden.
-    fn exact(&self) -> Option<&'a Reference> {
-        self.reference().filter(|_| self.options.exact)
-    }
-
-    /// Returns `true` if a card of Learn shows the last iterate of a search that has found no equilibrium.
-    pub(crate) fn shows_iterate(&self) -> bool {
-        self.card.is_some() && self.animation.is_none() && is_lost(self.simulation())
+        let reference = session.reference().and_then(Result::ok).or(session.live().map(|live| &live.reference));
+        reference.filter(|_| is_at_rest && session.fallback().is_none())
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
         let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
-        let linear = match self.animation {
-            Some((_, linear)) => linear,
-            None => self.session.linear(),
-        };
-        linear.map(Simulation::displacement).filter(|_| is_wanted)
+        self.session.linear().map(Simulation::displacement).filter(|_| is_wanted)
     }
-}
-
-/// Returns `true` if a search has ended without an equilibrium.
-pub(crate) fn is_lost(simulation: &Simulation) -> bool {
-    matches!(simulation.status(), Status::Diverged(_) | Status::NotConverged(_))
 }
 
 /// State of the checks for self-intersections of the outline.
@@ -151,10 +126,6 @@ pub(crate) struct BodyView {
     choice: Magnification,
     /// Largest displacement of a motion so far, m.
     largest_displacement: f64,
-    /// `true` while the last equilibrium is drawn in place of a state that diverges.
-    shows_converged: bool,
-    /// Number of consecutive updates with a body that is not the result for the scene, but an iterate, or the one before.
-    late: u32,
     /// Bounding box of all states of a body in motion so far, m.
     swept: Option<[Vector2<f64>; 2]>,
     crossing: Crossing,
@@ -177,8 +148,6 @@ impl BodyView {
             magnification: 1.0,
             choice: Magnification::None,
             largest_displacement: 0.0,
-            shows_converged: false,
-            late: 0,
             swept: None,
             crossing: Crossing::default(),
         }
@@ -207,24 +176,6 @@ impl BodyView {
 
     pub(crate) fn body(&self) -> &BodyMesh {
         &self.body
-    }
-
-    /// Returns `true` while the last equilibrium is drawn in place of a state that diverges.
-    pub(crate) fn shows_converged(&self) -> bool {
-        self.shows_converged
-    }
-
-    /// Returns `true` if the drawn body is not the result for the scene: it is an iterate, or the body before a solve in
-    /// the background. A wait of few frames does not count, because the body would flicker.
-    fn is_late(&self, session: &Session) -> bool {
-        /// Number of frames of a short wait.
-        const SHORT: u32 = 12;
-        self.late > SHORT || self.late > 0 && !session.is_running()
-    }
-
-    /// Returns `true` if the drawn body is an iterate of a search for an equilibrium, which is paused or takes long.
-    pub(crate) fn shows_search(&self, session: &Session) -> bool {
-        self.is_late(session) && session.work().is_none()
     }
 
     /// Returns the pinned material point, whose values are shown.
@@ -305,29 +256,22 @@ impl BodyView {
 
     /// Updates the drawn mesh to the current state.
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
-        self.shows_converged = self.hides_divergence(content);
-        let simulation = self.drawn(content);
-        let is_still = content.card.is_none() && content.animation.is_none() && !content.session.is_motion();
-        let is_search = is_still && *simulation.status() == Status::Running && simulation.mouse_spring().is_none();
-        let is_late = is_search || content.session.work().is_some();
-        self.late = if is_late { self.late.saturating_add(1) } else { 0 };
+        let simulation = content.drawn();
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then(|| content.session.playback().played());
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        let is_own = !self.shows_converged && content.animation.is_none();
-        let shown = (content.options, content.reference().filter(|_| is_own));
+        let shown = (content.options, content.reference().filter(|_| content.session.live().is_none()));
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
 
-    /// Returns the factor of the drawn displacement: 1 under a card of Learn, in animations and while the body is
-    /// grabbed.
+    /// Returns the factor of the drawn displacement: 1 under a card of Learn and while the body is grabbed.
     fn magnification_of(&mut self, simulation: &Simulation, content: &Content<'_>) -> f64 {
         let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        if content.card.is_some() || is_grabbed || content.animation.is_some() {
+        if content.card.is_some() || is_grabbed {
             return 1.0;
         }
         let (choice, moves) = (content.options.magnification, content.session.is_motion());
@@ -350,30 +294,9 @@ impl BodyView {
         self.body.displace(place);
     }
 
-    /// Returns `true` if the last equilibrium is to be drawn in place of a state that diverges. Cards of Learn show the
-    /// diverging state.
-    fn hides_divergence(&self, content: &Content<'_>) -> bool {
-        let simulation = content.simulation();
-        if content.card.is_some() || content.session.converged().is_none() {
-            return false;
-        }
-        match simulation.status() {
-            Status::Diverged(_) => true,
-            // While a handle or the body is grabbed, the iteration may still converge.
-            Status::Running if !self.pointer.holds() || content.session.is_motion() => false,
-            Status::Running | Status::NotConverged(_) => {
-                let projection = self.projection();
-                let mut places = self.drawn_positions(simulation);
-                let leaves = |place| !self.rect.contains(projection.point(place));
-                simulation.residual() > 1.0 || self.camera.shows_whole() && places.any(leaves)
-            }
-            _ => false,
-        }
-    }
-
     /// Returns the drawn outline of the reference solution, m; empty while the drawn body has another load.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
-        let reference = content.exact().filter(|_| !self.shows_converged);
+        let reference = content.reference().filter(|_| content.options.exact);
         reference.map(|reference| overlay::magnified_outline(reference, self.magnification)).unwrap_or_default()
     }
 
@@ -381,27 +304,7 @@ impl BodyView {
     fn ghost<'a>(&self, content: &Content<'a>) -> Option<&'a [Vector2<f64>]> {
         // Linear theory does not have the force of the mouse spring.
         let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        content.ghost().filter(|_| !self.shows_converged && !is_grabbed)
-    }
-
-    /// Returns the drawn body; animations are ignored.
-    pub(crate) fn shown<'a>(&self, content: &Content<'a>) -> &'a Simulation {
-        self.shown_of(content.session)
-    }
-
-    /// Lets the panel beside other views than this one show the last equilibrium in place of a state that diverges.
-    pub(crate) fn show_last_equilibrium(&mut self, session: &Session) {
-        self.shows_converged = is_lost(session.simulation()) && session.converged().is_some();
-    }
-
-    /// Returns the drawn body of a session; animations are ignored.
-    pub(crate) fn shown_of<'a>(&self, session: &'a Session) -> &'a Simulation {
-        session.converged().filter(|_| self.shows_converged).unwrap_or(session.simulation())
-    }
-
-    /// Returns the drawn body.
-    fn drawn<'a>(&self, content: &Content<'a>) -> &'a Simulation {
-        content.animation.map_or_else(|| self.shown(content), |(simulation, _)| simulation)
+        content.ghost().filter(|_| content.session.fallback().is_none() && !is_grabbed)
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
@@ -423,7 +326,7 @@ impl BodyView {
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
     /// the background.
     fn bases<'a>(&'a self, content: &Content<'a>) -> Option<Bases<'a>> {
-        let is_fixed = content.card.is_some() || content.animation.is_some() || content.session.is_in_background();
+        let is_fixed = content.card.is_some() || content.session.is_in_background();
         (!is_fixed).then(|| Bases {
             scene: content.session.scene(),
             system: content.simulation().system(),
@@ -505,7 +408,7 @@ impl BodyView {
         if content.is_apart() {
             return None;
         }
-        let shown = self.shown(content);
+        let shown = content.session.drawn();
         if let Some((point, at)) = self.pointer.over_body()
             && !egui::Popup::is_any_open(ui.ctx())
             && let point = rounded(content, point)
@@ -537,7 +440,6 @@ impl BodyView {
         let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };
         match probe::show_card(ui, painter, card, &pinned, &mut self.card_choice)? {
             CardRequest::Close => self.probe = None,
-            CardRequest::Copy(text) => ui.ctx().copy_text(text),
             CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
         }
         None
@@ -552,14 +454,9 @@ impl BodyView {
         }
         let size = self.size();
         let (session, is_motion) = (content.session, content.session.is_motion());
-        let status = session.simulation().status();
-        let is_sound = match is_motion {
-            true => !matches!(status, Status::Stopped(_)),
-            // The outlines around it are hidden, which is no reason to come closer.
-            false => status.is_success() || self.shows_converged && !self.is_in_view(content),
-        };
-        let is_stepped = !is_motion && !session.is_running();
-        if is_sound || (content.shows_iterate() || is_stepped) && self.is_of_usual_size(content) {
+        let status = session.drawn().status();
+        let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
+        if is_sound {
             let (mut low, mut high) = content.mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
                 (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
@@ -570,19 +467,13 @@ impl BodyView {
                 }
             };
             include(&mut self.body.points().iter().copied());
-            if content.animation.is_some() {
-                // The animation ends at the session's body.
-                for body in std::iter::once(session.simulation()).chain(session.linear()) {
-                    include(&mut self.drawn_positions(body));
-                }
-            }
             include(&mut self.exact(content).iter().flatten().copied());
             if let Some(reach) = content.reach() {
                 include(&mut self.drawn_positions(reach));
             }
             self.swept = Some([low, high]).filter(|_| is_motion);
             self.camera.set_whole([low, high]);
-            let least = least_margins(content, size);
+            let least = least_margins(size);
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
         let [low, high] = self.camera.whole();
@@ -593,28 +484,12 @@ impl BodyView {
         }
     }
 
-    /// Returns `true` if the view has the drawn body and the arrows.
-    fn is_in_view(&self, content: &Content<'_>) -> bool {
-        let (projection, view) = (self.projection(), self.rect);
-        let tips = self.arrows(content).into_iter().map(|arrow| arrow.tip());
-        let points = self.body.points().iter().map(|point| projection.point(*point));
-        points.chain(tips).all(|point| view.contains(point))
-    }
-
-    /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
-    fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
-        const LARGEST: f64 = 10.0;
-        let (low, high) = content.mesh().bounds();
-        let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
-        (to - from).norm() < LARGEST * (high - low).norm()
-    }
-
     /// Leaves room for a beam that is going to bend, and for its arrow.
     pub(crate) fn expect_bending(&mut self, content: &Content<'_>) {
         let (low, high) = content.mesh().bounds();
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
-        let least = least_margins(content, self.size());
+        let least = least_margins(self.size());
         let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
@@ -669,17 +544,15 @@ impl BodyView {
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.whole_arrows(&projection));
         }
-        let on_top = legend::has_bar_on_top(size.y);
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
             let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
-            let above = if on_top && arrow.vector.y < 0.0 { overlay::TOP_ROWS_HEIGHT } else { 0.0 };
-            let below = if !on_top && is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
+            let below = if is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
             let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(least.top + beyond(above - tip.y)),
+                top: margins.top.max(least.top + beyond(-tip.y)),
                 bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below)),
             }
         })
@@ -694,20 +567,19 @@ impl BodyView {
         errors: Errors,
         note: Option<(&str, Color32)>,
     ) {
-        let (session, is_animated) = (content.session, content.animation.is_some());
+        let session = content.session;
         let simulation = session.simulation();
-        let shown = self.drawn(content);
+        let (shown, fallback) = (content.drawn(), session.fallback());
         let moves_support = simulation.problem().supports().move_the_body();
         let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
             reaction.middle = support.middle + (reaction.middle - support.middle) * self.magnification;
         }
         let sections = sections(shown);
-        let exact = if is_animated { Cow::Borrowed(&[][..]) } else { self.exact(content) };
+        let exact = self.exact(content);
         let overlay = Overlay {
             scene: shown.scene(),
-            wanted: (self.shows_converged && !is_animated).then_some(simulation.scene()),
-            is_dimmed: content.shows_iterate() || self.shows_converged && !is_animated || self.is_late(session),
+            wanted: fallback.map(|_| simulation.scene()),
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,
@@ -717,7 +589,7 @@ impl BodyView {
             apart: content.is_apart(),
             ghost: self.ghost(content),
             exact: &exact,
-            errors: if is_animated { Errors::default() } else { errors },
+            errors,
             time: shown.state().time(),
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().opened),
@@ -735,38 +607,6 @@ impl BodyView {
         if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {
             bases.paint(painter, hot, visuals, Palette::new(visuals).load);
         }
-    }
-
-    /// Returns the anchor, position and largest width of a message over the view: at the lower left, next to tips of
-    /// arrows that it would hide, or in another corner.
-    pub(crate) fn message_place(
-        &self,
-        content: &Content<'_>,
-        view: Rect,
-        above: f32,
-        widest: f32,
-    ) -> (Align2, Pos2, f32) {
-        const SIDE: f32 = 14.0;
-        /// Height of two messages, points.
-        const HEIGHT: f32 = 100.0;
-        const CLEAR: f32 = 18.0;
-        const NARROWEST: f32 = 220.0;
-        let lower_left = view.left_bottom() + egui::vec2(SIDE, -above);
-        let covered = Rect::from_min_max(lower_left - egui::vec2(0.0, HEIGHT), lower_left + egui::vec2(widest, 0.0));
-        let covered = covered.expand(CLEAR);
-        let hidden = self.arrows(content).into_iter().map(|arrow| arrow.tip()).filter(|tip| covered.contains(*tip));
-        let columns: Vec<f32> = hidden.map(|tip| tip.x).collect();
-        let first = columns.iter().copied().fold(f32::INFINITY, f32::min);
-        let last = columns.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let (left, right) = (first - CLEAR - lower_left.x, view.right() - SIDE - last - CLEAR);
-        if left >= NARROWEST {
-            return (Align2::LEFT_BOTTOM, lower_left, left.min(widest));
-        }
-        if right >= NARROWEST {
-            let low = view.right_bottom() - egui::vec2(SIDE, overlay::LEGEND_HEIGHT + 10.0);
-            return (Align2::RIGHT_BOTTOM, low, right.min(widest));
-        }
-        (Align2::LEFT_TOP, view.left_top() + egui::vec2(SIDE, 44.0), widest)
     }
 
     /// Checks a converged state or a motion for self-intersections of the outline at `now`, s; returns `true` for the
@@ -801,20 +641,11 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
     near.filter(|near| near.element == point.element).unwrap_or(point)
 }
 
-/// Returns the margins around a box that do not depend on the loads.
-fn least_margins(content: &Content<'_>, view: [f64; 2]) -> Margins {
-    match (content.card.is_some(), legend::has_bar_on_top(view[1] as f32)) {
-        // The first view is a point, because nothing has been laid out.
-        (true, true) if view[0] > 1.0 && view[0] < ONE_ROW => Margins { top: LOW_MARGINS.top, ..LOW_CARD_MARGINS },
-        (true, true) => LOW_CARD_MARGINS,
-        (true, false) => CARD_MARGINS,
-        (false, true) => LOW_MARGINS,
-        // The status is in a line under the view.
-        (false, false) if content.options.bars && view[1] < f64::from(STATUS_VIEW) => {
-            Margins { bottom: 110.0, ..FIT_MARGINS }
-        }
-        (false, false) => FIT_MARGINS,
-    }
+/// Returns the margins around a box that do not depend on the loads, in a view of this size, points.
+fn least_margins(size: [f64; 2]) -> Margins {
+    let Margins { sides, top, bottom } = FIT_MARGINS;
+    let [width, height] = size.map(|side| FIT_SHARE * side);
+    Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height) }
 }
 
 /// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.

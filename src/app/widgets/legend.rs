@@ -47,9 +47,3 @@ pub(crate) fn entry(ui: &mut Ui, name: &str, mark: Vec2, paint: &dyn Fn(&Ui, Rec
     ui.painter().galley(rect.left_center() + vec2(mark.x + GAP, -0.5 * galley.size().y), galley, ink);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
 }
-
-/// Returns `true` if a view of this height, points, is so low that the colour bar is at its top; at the bottom it would
-/// cover the arrows.
-pub(crate) fn has_bar_on_top(height: f32) -> bool {
-    height < 400.0
-}

@@ -21,19 +21,16 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
+use crate::app::AppError;
 use crate::app::language::{fill, tr};
-use crate::app::offscreen::record::{LiveRecording, pointer};
-use crate::app::offscreen::recorder::Recorder;
 use crate::app::platform::{self, IS_PAGE};
 use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
-use crate::app::task::thread::POLL;
-use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError, new_file};
-use crate::app::{AppError, ThemeChoice};
+use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError};
 use crate::render::RenderError;
-use crate::scene::{Scene, Source, registry};
+use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
 
 /// Connection to a display.
@@ -122,10 +119,6 @@ struct App {
     open: Option<OpenWindow>,
     /// Window that has been opened and is taken over by the next event.
     opening: Rc<RefCell<Option<Result<OpenWindow, AppError>>>>,
-    /// Recording of the window.
-    recording: Option<LiveRecording>,
-    /// Recording of the scene from its start.
-    scene_recording: Option<Recorder>,
     /// Time at which the window opened.
     start: Instant,
     /// Events that are processed in the next frame.
@@ -134,9 +127,7 @@ struct App {
     wake: Option<Instant>,
     /// Part of the name of the graphics adapter; `None` stands for that of the environment.
     adapter: Option<String>,
-    /// Times at which the graphics device failed.
-    losses: Vec<Instant>,
-    /// Reason for which the graphics resources are being made again.
+    /// Reason for which the graphics device was lost; there is a second one, once.
     lost: Option<String>,
     error: Option<AppError>,
 }
@@ -150,7 +141,6 @@ impl App {
         card: Option<usize>,
         is_default: bool,
     ) -> Result<Self, AppError> {
-        let first_picture = source.name.to_str() == Some(registry::DEFAULT);
         let file = Settings::file();
         let ctx = egui::Context::default();
         let lab = match simulation {
@@ -162,20 +152,13 @@ impl App {
         };
         lab.set_settings(&ctx, settings.clone());
         lab.set_easing(!lab.reduces_motion());
-        let is_first_start = unreadable.is_none() && file.as_deref().is_some_and(Settings::is_missing);
+        let is_first_start = file.as_deref().is_some_and(Settings::is_missing);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
         let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
             Ok((recovery, left)) => {
                 left.into_iter().for_each(|left| lab.offer(left));
-                for (file, reason) in recovery.unreadable() {
-                    let file = file.display();
-                    lab.warn(fill!(
-                        "%{file} has unsaved changes, but cannot be read: %{reason}",
-                        file = file,
-                        reason = reason
-                    ));
-                }
+                recovery.unreadable.iter().for_each(|message| _ = lab.warn(message.clone()));
                 Some(recovery)
             }
             Err(error) => {
@@ -186,7 +169,6 @@ impl App {
         match card {
             Some(card) => lab.show_card(card),
             None if is_default && is_first_start && !lab.offers_unsaved() => lab.tell_story(),
-            None if first_picture && !lab.reduces_motion() => lab.introduce(),
             None => {}
         }
         let needs_settings_file = lab.story().is_some();
@@ -199,13 +181,10 @@ impl App {
             recovery,
             open: None,
             opening: Rc::default(),
-            recording: None,
-            scene_recording: None,
             start: Instant::now(),
             later: Vec::new(),
             wake: None,
             adapter: None,
-            losses: Vec::new(),
             lost: None,
             error: None,
         })
@@ -215,22 +194,13 @@ impl App {
     fn run(self, display: Display) -> Result<(), AppError> {
         let ended = platform::start::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
         let Some(mut app) = ended else { return Ok(()) };
-        let ended = app.recording.as_ref().and_then(|recording| recording.ended(true));
-        let scene_ended = app.scene_recording.as_mut().and_then(|recorder| recorder.ended(true));
-        // The window that would show the messages is closed.
-        ended.into_iter().chain(scene_ended).for_each(|text| eprintln!("warpbeam: {text}"));
         app.keep_settings();
         app.error.map_or(Ok(()), Err)
     }
 }
 
-/// Number of lost devices in [`LOSS_PERIOD`] after which the window closes with an error.
-const MAX_LOSSES: usize = 3;
-/// Time after which a lost device no longer counts.
-const LOSS_PERIOD: Duration = Duration::from_secs(60);
-
 impl App {
-    /// Draws a frame; after an error of the device, makes the graphics resources again.
+    /// Draws a frame; after the first error of a device, makes the graphics resources again.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let drawn = if self.device_failure().is_none() { self.frame(event_loop) } else { Ok(()) };
         if let Some(reason) = self.device_failure() {
@@ -257,9 +227,9 @@ impl App {
         };
         let now = self.start.elapsed().as_secs_f64();
         self.lab.advance(now);
-        self.follow_scene_recording();
-        let Some(open) = &mut self.open else { return Ok(()) };
         let size = [open.graphics.configuration.width, open.graphics.configuration.height];
+        let side = |axis: usize| size[axis] as f32 / open.bare.window.scale_factor() as f32 / platform::SMALLEST[axis];
+        self.ctx.set_zoom_factor(self.ctx.zoom_factor().max(1.0).min(side(0)).min(side(1)));
         let mut input = open.bare.take_input(&self.ctx, now, size);
         let mut events = std::mem::take(&mut self.later);
         events.append(&mut input.events);
@@ -268,15 +238,14 @@ impl App {
         self.later = clicks::after_first(&mut events);
         input.events = events;
         let mut requests = Vec::new();
-        let (mut mark, mut cursor) = (Vec::new(), None);
-        let mut output = self.ctx.run_ui(input, |ui| {
-            requests.extend(self.lab.ui(ui));
-            if let Some(recording) = &self.recording {
-                mark = recording.mark(ui.ctx(), self.lab.view_rect(), now);
-                cursor = pointer(ui.ctx());
-                ui.ctx().request_repaint_after(POLL);
+        let again = egui::RawInput { events: Vec::new(), ..input.clone() };
+        let mut output = egui::FullOutput::default();
+        for input in [input, again] {
+            output.append(self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui))));
+            if !self.lab.take_mixed() {
+                break;
             }
-        });
+        }
         if let Some(reason) = open.bare.clipboard.after(&output.platform_output) {
             self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason = reason));
             self.ctx.request_repaint();
@@ -286,33 +255,13 @@ impl App {
             event_loop,
             std::mem::take(&mut output.platform_output),
         );
-        let mut primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         open.graphics.stage.set_textures(&open.graphics.gpu, &mut output.textures_delta);
-        let whole = self.ctx.content_rect();
-        let over = |shapes: Vec<egui::Shape>| {
-            let clipped = shapes.into_iter().map(|shape| egui::epaint::ClippedShape {
-                clip_rect: whole,
-                shape,
-                transform_after_tessellation: egui::emath::TSTransform::IDENTITY,
-            });
-            self.ctx.tessellate(clipped.collect(), output.pixels_per_point)
-        };
         let screen = open.graphics.screen(output.pixels_per_point);
         let views = self.lab.views(screen.pixels_per_point);
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
         let screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
-        if let Some(recording) = &mut self.recording {
-            recording.pass_frames(&open.graphics.gpu);
-            if let Some(number) = recording.due(now) {
-                let own = primitives.len();
-                primitives.extend(over(cursor.into_iter().collect()));
-                let drawn = (views.as_slice(), primitives.as_slice());
-                recording.take(&open.graphics.gpu, &mut open.graphics.stage, drawn, &screen, (number, now));
-                primitives.truncate(own);
-            }
-            primitives.extend(over(mark));
-        }
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         open.graphics.stage.paint(&open.graphics.gpu, &view, &screen, &primitives, &views);
         open.bare.window.pre_present_notify();
@@ -329,15 +278,13 @@ impl App {
         for request in requests {
             match request {
                 Request::Screenshot => self.say_saved(screenshot.as_ref()),
-                Request::DiscardCopy => self.recovery.iter_mut().for_each(RecoveryCopies::discard_left),
-                Request::Record => self.record(now),
-                Request::RecordScene => self.record_scene(),
+                Request::DiscardCopy => {
+                    let edits = self.lab.unsaved();
+                    let discarded = self.recovery.as_mut().map(|recovery| recovery.discard_left(edits));
+                    discarded.and_then(Result::err).into_iter().for_each(|error| self.warn(no_copy(error)));
+                }
                 Request::Close => self.close(event_loop),
             }
-        }
-        if let Some(text) = self.recording.as_ref().and_then(|recording| recording.ended(false)) {
-            self.recording = None;
-            self.say(text);
         }
         Ok(())
     }
@@ -354,22 +301,15 @@ impl App {
         self.take_window(event_loop);
     }
 
-    /// Makes the graphics resources again after the device failed. Closes the window with an error if that happens too
-    /// often.
+    /// Makes the graphics resources again after the device failed; closes the window with an error if the second device
+    /// fails too.
     fn renew_graphics(&mut self, event_loop: &ActiveEventLoop, reason: String) {
+        if self.lost.is_some() {
+            return self.quit(event_loop, Some(RenderError::Lost { reason }.into()));
+        }
         // A window may have one surface at a time.
         let Some(OpenWindow { graphics, bare, .. }) = self.open.take() else { return };
-        if let Some(recording) = &mut self.recording {
-            recording.stop(&graphics.gpu, self.start.elapsed().as_secs_f64());
-        }
         drop(graphics);
-        let now = Instant::now();
-        self.losses.retain(|loss| now.saturating_duration_since(*loss) < LOSS_PERIOD);
-        self.losses.push(now);
-        if self.losses.len() >= MAX_LOSSES {
-            let error = RenderError::Lost { times: self.losses.len(), reason };
-            return self.quit(event_loop, Some(error.into()));
-        }
         self.lost = Some(reason);
         self.open_graphics(event_loop, bare);
     }
@@ -382,7 +322,7 @@ impl App {
                 let adapter = open.graphics.gpu.describe();
                 open.bare.window.request_redraw();
                 self.open = Some(open);
-                if let Some(reason) = self.lost.take() {
+                if let Some(reason) = self.lost.clone() {
                     self.say(fill!(
                         "Graphics restarted with %{adapter}: %{reason}",
                         adapter = adapter,
@@ -410,7 +350,7 @@ impl App {
     /// Stores a copy of unsaved edits when the window closes without a question about them.
     fn keep_at_end(&mut self) {
         let (Some(recovery), Some(edits)) = (&mut self.recovery, self.lab.unsaved()) else { return };
-        match recovery.keep_at_once(edits) {
+        match recovery.keep_at_once(Some(edits)) {
             Ok(()) => self.warn(tr("Unsaved changes are kept; the next window offers to restore them").to_owned()),
             Err(error) => self.warn(no_copy(error)),
         }
@@ -424,53 +364,6 @@ impl App {
             self.warn(fill!("The copy of unsaved changes could not be removed: %{reason}", reason = error));
         }
         self.quit(event_loop, None);
-    }
-
-    /// Starts recording the window, or ends the recording.
-    fn record(&mut self, now: f64) {
-        let Some(open) = &self.open else { return };
-        if let Some(recording) = &mut self.recording {
-            recording.stop(&open.graphics.gpu, now);
-            return open.bare.window.request_redraw();
-        }
-        let size = [open.graphics.configuration.width, open.graphics.configuration.height];
-        let format = open.graphics.configuration.format;
-        let started = new_file("gif")
-            .and_then(|file| LiveRecording::start(&open.graphics.gpu, format, size, file, self.lab.language()));
-        match started {
-            Ok(recording) => {
-                self.recording = Some(recording);
-                open.bare.window.request_redraw();
-            }
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
-        }
-    }
-
-    /// Starts recording the scene from its start, or ends that recording.
-    fn record_scene(&mut self) {
-        if let Some(recorder) = &self.scene_recording {
-            return recorder.stop();
-        }
-        let theme = if self.ctx.theme() == egui::Theme::Dark { ThemeChoice::Dark } else { ThemeChoice::Light };
-        let (source, scene) = (self.lab.source().clone(), self.lab.scene().clone());
-        let (language, adapter) = (self.lab.language(), self.adapter.clone());
-        match new_file("gif").and_then(|file| Recorder::start(source, scene, (theme, language), adapter, file)) {
-            Ok(recorder) => self.scene_recording = Some(recorder),
-            Err(reason) => self.say(fill!("No recording: %{reason}", reason = reason)),
-        }
-        self.schedule(Duration::ZERO);
-    }
-
-    /// Shows the progress of the scene's recording, or its end.
-    fn follow_scene_recording(&mut self) {
-        let Some(recorder) = &mut self.scene_recording else { return };
-        let ended = recorder.ended(false);
-        let progress = ended.is_none().then(|| recorder.progress());
-        self.lab.show_recording(progress);
-        if let Some(text) = ended {
-            self.scene_recording = None;
-            self.lab.say(&self.ctx, text);
-        }
     }
 
     /// Shows a message.
@@ -538,10 +431,6 @@ impl App {
             self.keep_at_end();
         }
         self.error = self.error.take().or(error);
-        if let (Some(recording), Some(open)) = (&mut self.recording, &self.open) {
-            recording.stop(&open.graphics.gpu, self.start.elapsed().as_secs_f64());
-        }
-        self.scene_recording.iter().for_each(Recorder::stop);
         // The surface must be dropped before the display connection closes.
         self.open = None;
         event_loop.exit();

@@ -1,13 +1,11 @@
 //! Work that a worker of the web page can do.
 
 use crate::app::modes::budget::study_task::StudyWork;
-use crate::app::modes::compare::trace::ExactLine;
 use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
 use crate::app::session::facts::{
     CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, TimeFact,
 };
-use crate::app::shell::gallery::thumbnail_task::ThumbnailWork;
 use crate::app::task::keyed::FactWork;
 use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
@@ -27,12 +25,10 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<TimeFact>>(),
     entry::<FactWork<MotionTimeFact>>(),
     entry::<FactWork<FrequencyFact>>(),
-    entry::<FactWork<ExactLine>>(),
     entry::<FactWork<RhoFact>>(),
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),
     entry::<SolveWork>(),
-    entry::<ThumbnailWork>(),
 ];
 
 /// Waits for requests of the page.

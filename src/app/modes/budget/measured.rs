@@ -198,8 +198,8 @@ impl Choice {
     /// Returns the action that applies this setting to a scene. A motion makes one step at a time.
     pub(crate) fn action(&self, scene: &Scene) -> Action {
         match self {
-            Self::Rest(m) => Action::Apply(Box::new(m.apply(scene)), m.setting.iterations),
-            Self::Motion(m) => Action::Apply(Box::new(m.setting.apply(scene)), 1),
+            Self::Rest(m) => Action::Apply(Box::new(m.apply(scene))),
+            Self::Motion(m) => Action::Apply(Box::new(m.setting.apply(scene))),
         }
     }
 

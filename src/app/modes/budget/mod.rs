@@ -198,23 +198,11 @@ impl Budget {
         ui.add_space(4.0);
         let width = ui.available_width();
         let kind = usize::from(moves);
-        if width < SIDE_BY_SIDE[kind] {
-            let bottom = ui.max_rect().bottom();
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                settings(ui, &budget, limits, messages, actions);
-                // The list takes the room that the plot and its legend leave.
-                let room = bottom - ui.cursor().top() - LOW_PLOT - LEGEND;
-                list(ui, &budget, room.max(LOW_LIST), actions);
-                legend(ui, moves);
-                ui.allocate_ui(vec2(ui.available_width(), LOW_PLOT), |ui| plot(ui, &budget, actions));
-            });
-            return;
-        }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 ui.set_width(LIST_WIDTH[kind].min(LIST_SHARE[kind] * width));
                 settings(ui, &budget, limits, messages, actions);
-                list(ui, &budget, f32::INFINITY, actions);
+                list(ui, &budget, actions);
             });
             ui.vertical(|ui| {
                 legend(ui, moves);
@@ -251,13 +239,6 @@ struct BudgetView<'a> {
 /// of the width shared with the plot.
 const LIST_WIDTH: [f32; 2] = [480.0, 600.0];
 const LIST_SHARE: [f32; 2] = [0.58, 0.6];
-/// Smallest width of the list beside the plot, points; in a narrower window the plot is under the list.
-const SIDE_BY_SIDE: [f32; 2] = [560.0, 760.0];
-/// Least height of the list, and height of the plot under it, points.
-const LOW_LIST: f32 = 84.0;
-const LOW_PLOT: f32 = 200.0;
-/// Height of the legend above the plot with the space around it, points.
-const LEGEND: f32 = 34.0;
 
 fn settings(
     ui: &mut Ui,
@@ -370,13 +351,13 @@ fn settings(
     });
 }
 
-/// Shows the settings that meet the demand, fastest first, or those nearest to it, in a list of at most `height`, points;
+/// Shows the settings that meet the demand, fastest first, or those nearest to it, in a list;
 /// a click applies one.
-fn list(ui: &mut Ui, budget: &BudgetView<'_>, height: f32, actions: &mut Vec<Action>) {
+fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let listed = if budget.meeting.is_empty() { &budget.nearest } else { &budget.meeting };
     let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
     let row_height = ui.spacing().interact_size.y;
-    let area = ScrollArea::vertical().id_salt("settings").max_height(height).auto_shrink([false, false]);
+    let area = ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]);
     let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
     let id = egui::Id::unique("applied setting");
     let (length, before) = ui.memory_mut(|memory| {
@@ -430,8 +411,10 @@ fn place(study: &Measured, m: &Choice) -> [f64; 2] {
     [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
 }
 
-/// Shows the key of colours and shapes above the plot, which has no room for a legend.
+/// Shows the key of colours and shapes above the plot, which has no room for a legend; that of the shapes where it is not
+/// higher than two lines.
 fn legend(ui: &mut Ui, moves: bool) {
+    const SHAPES: f32 = 320.0;
     let palette = Palette::new(ui.visuals());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
@@ -440,6 +423,9 @@ fn legend(ui: &mut Ui, moves: bool) {
         let names: Vec<_> = if moves { integrators.collect() } else { methods.collect() };
         for (id, color) in names {
             ui.label(RichText::new(tr(id)).small().strong().color(color));
+        }
+        if ui.max_rect().width() < SHAPES {
+            return;
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
         let text = RichText::new(fill!(

@@ -22,12 +22,6 @@ const PROBE: f32 = 18.0;
 const KEY: f32 = 26.0;
 /// Smallest width of a pane in a row of three, points.
 const NARROWEST: f32 = 290.0;
-/// Smallest width of a pane beside another, points: its pickers are legible.
-const MIN_WIDTH: f32 = 260.0;
-/// Smallest height of a body above another or beside it, points.
-const MIN_HEIGHT: f32 = 120.0;
-/// Height of the row of tabs, points.
-const TABS: f32 = 34.0;
 
 /// Named settings of all panes.
 pub(super) struct Preset<S> {
@@ -73,12 +67,10 @@ pub(super) fn close_button(ui: &mut Ui, number: usize) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), close).inner
 }
 
-/// Areas of the visible panes and of the key.
+/// Areas of the panes and of the key.
 pub(super) struct Grid {
-    /// Number and area of every visible pane.
-    pub cells: Vec<(usize, Rect)>,
-    /// Area of the tabs, of which one pane is visible; `None` if all are.
-    pub tabs: Option<Rect>,
+    /// Area of every pane.
+    pub cells: Vec<Rect>,
     /// Area of the key under the panes.
     pub key: Rect,
     /// Height of the headers, points.
@@ -86,32 +78,20 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Divides a rectangle among `panes` panes, whose headers have lines for `probes` probes, side by side or in two rows;
-    /// or, where these would be too small, into a row of tabs and the pane `front`.
-    pub(super) fn new(whole: Rect, (panes, front): (usize, usize), probes: usize) -> Self {
+    /// Divides a rectangle among `panes` panes, whose headers have lines for `probes` probes, side by side or in two rows.
+    pub(super) fn new(whole: Rect, panes: usize, probes: usize) -> Self {
         let header = HEADER + PROBE * probes as f32;
         let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
         let rest = Rect::from_min_max(whole.min, key.right_top());
-        let cells = cells(rest, panes);
-        let is_small = |cell: &Rect| cell.width() < MIN_WIDTH || body_place(*cell, header).height() < MIN_HEIGHT;
-        if !cells.iter().any(is_small) {
-            return Self { cells: (0..).zip(cells).collect(), tabs: None, key, header };
-        }
-        let (tabs, cell) = rest.split_top_bottom_at_y((rest.top() + TABS).min(rest.bottom()));
-        Self { cells: vec![(front, cell)], tabs: Some(tabs), key, header }
+        Self { cells: cells(rest, panes), key, header }
     }
 
     /// Returns the area of the body in a cell, under the header.
     pub(super) fn body_place(&self, cell: Rect) -> Rect {
-        body_place(cell, self.header)
+        let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + self.header).min(cell.bottom())), cell.max);
+        // Rounded to pixels, so that the render pass and the painter have the same centre.
+        place.round_ui()
     }
-}
-
-/// Returns the area of the body in a cell, under a header of this height, points.
-fn body_place(cell: Rect, header: f32) -> Rect {
-    let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + header).min(cell.bottom())), cell.max);
-    // Rounded to pixels, so that the render pass and the painter have the same centre.
-    place.round_ui()
 }
 
 /// Returns the width and height, points, that all of these areas have in common.
@@ -168,7 +148,7 @@ pub(super) fn color_key(ui: &Ui, rect: Rect, left: f32, view: &ViewOptions, rang
 }
 
 /// Returns the number of panes in the first row in a view of this width, points.
-pub(super) fn first_row(panes: usize, width: f32) -> usize {
+fn first_row(panes: usize, width: f32) -> usize {
     let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
     if one_row { panes } else { panes.div_ceil(2) }
 }

@@ -1,5 +1,4 @@
-//! Comparison of two to four settings side by side: one load, one camera, one colour range, and the load curve under
-//! them.
+//! Comparison of two to four settings side by side: one load, one camera, one colour range.
 
 use egui::{Align2, Color32, Context, FontId, Panel, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
@@ -7,26 +6,23 @@ use web_time::{Duration, Instant};
 
 use self::grid::{Preset, grow};
 use self::panes::{ComparedPane, Condition, PaneChange, Panes};
-use self::trace::Trace;
-use crate::app::action::Action;
-use crate::app::diagnosis::{coarse_text, error_color, error_tip};
+use crate::app::diagnosis::{coarse_text, error_color, error_text, error_tip};
 use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
-use crate::app::panel::PANEL_WIDTH;
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
+use crate::app::session::live::Live;
 use crate::app::task::thread::{POLL, QUIET_POLL};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::buttons::{Icon, icon_button};
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-use crate::app::widgets::text::{UNKNOWN, semibold};
+use crate::app::widgets::text::semibold;
 use crate::format::{engineering, engineering_pair, three_digits, two_digits};
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
-use crate::scene::{ElementKind, MethodKind, Place, Scene};
+use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::sentence::Sentence;
 use crate::simulation::Status;
 use crate::state::largest;
@@ -37,7 +33,6 @@ mod motion;
 mod pane;
 mod panes;
 mod setting;
-pub(crate) mod trace;
 
 pub(crate) use motion::MotionCompare;
 pub use motion::MotionPane;
@@ -47,42 +42,40 @@ pub use setting::{PaneSetting, PaneSettingError, parse_panes};
 
 /// Time for the iterations of all panes between two frames.
 const WORK: Duration = Duration::from_millis(12);
-/// Height of the load curve, points, and its largest fraction of the window's height.
-const TRACE_HEIGHT: f32 = 190.0;
-const TRACE_SHARE: f32 = 0.28;
-/// In a window lower than this, points, the load curve is hidden unless the user opens it.
-const LOW: f32 = 560.0;
-/// Limit of the same kind for panes in two rows, points.
-const LOW_FOR_TWO_ROWS: f32 = 680.0;
-
 /// Input of the comparison of equilibria.
 pub(crate) struct CompareInput<'a> {
     pub common: PaneInput<'a>,
+    /// Reference solution of the load, or the one that follows it.
     pub reference: Option<&'a Reference>,
+    /// Reference solution that follows the load, if errors are measured against it.
+    pub live: Option<&'a Live>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
     /// Time of a solve from rest with the panel's settings; `None` until it has been measured.
     pub from_rest: Option<&'a SolveFromRest>,
     pub running: bool,
+    /// `true` if a frame makes one iteration.
+    pub is_slow: bool,
     /// Setting that Budget has chosen.
     pub chosen: Option<Setting>,
 }
 
-/// Panes, and their load curve.
+impl<'a> CompareInput<'a> {
+    /// Returns the reference solution of the load itself.
+    fn exact(&self) -> Option<&'a Reference> {
+        self.reference.filter(|_| self.live.is_none())
+    }
+}
+
+/// Panes with equilibria of one scene.
 #[derive(Debug)]
 pub(crate) struct Compare {
     panes: Panes<Pane>,
-    trace: Trace,
-    /// `true` if the load curve is shown; `None` means if there is room.
-    shows_trace: Option<bool>,
-    /// `true` if the last frame showed it.
-    showed_trace: bool,
 }
 
 impl Default for Compare {
     fn default() -> Self {
-        let panes = Panes::new(&METHODS_PRESET.map(PaneSetting::of_method));
-        Self { panes, trace: Trace::default(), shows_trace: None, showed_trace: false }
+        Self { panes: Panes::new(&METHODS_PRESET.map(PaneSetting::of_method)) }
     }
 }
 
@@ -91,10 +84,6 @@ const METHODS_PRESET: [MethodKind; 3] = [MethodKind::Linear, MethodKind::Warped,
 impl Compare {
     pub(crate) fn panes(&self) -> &[Pane] {
         &self.panes.list
-    }
-
-    pub(crate) fn traced(&self) -> Vec<(PaneSetting, [f64; 3])> {
-        self.trace.dots()
     }
 
     /// Compares these settings, at most four.
@@ -147,40 +136,31 @@ impl Compare {
 
     /// Solves all panes, and waits for them; `times` them, too.
     pub(crate) fn solve_to_end(&mut self, scene: &Scene, own: &Equations, times: bool) {
-        self.trace.set_scene(scene);
         let mut equations = self.equations(own);
         for pane in &mut self.panes.list {
             pane.solve.solve_to_end(pane.setting.apply(scene), &equations);
             equations.extend(pane.equations());
-            self.trace.record(scene, pane);
             if times {
                 pane.wait_for_time();
             }
         }
-        self.trace.wait(scene);
     }
 
     fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
-        let (moves, holds) = ctx.input(|i| (i.pointer.delta() != egui::Vec2::ZERO, i.pointer.any_down()));
-        self.trace.set_scene(input.common.scene);
+        let holds = ctx.input(|i| i.pointer.any_down());
         let equations =
             if self.is_changed(input.common.scene) { self.equations(&input.common.own) } else { Vec::new() };
-        let mut is_new = false;
         let share = WORK / u32::try_from(self.panes.list.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes.list {
             let until = Instant::now() + share;
-            let frame = FrameConditions { moves, holds, runs: input.running, until };
+            let frame = FrameConditions { is_slow: input.is_slow, holds, runs: input.running, until };
             pane.solve.advance(pane.setting.apply(input.common.scene), &equations, frame);
-            is_new |= self.trace.record(input.common.scene, pane);
-            pane.update_error(input.reference);
+            pane.is_dragged = holds && input.running && !input.is_slow;
+            pane.update_error(input);
         }
-        if !holds || !moves {
-            self.trace.request_exact(input.common.scene, ctx);
-        }
-        self.trace.record_reference(input.reference);
         let mut solves = self.panes.list.iter().map(|pane| &pane.solve);
         let busy = |solve: &ComparedSolve| !solve.is_settled() && !solve.is_away() && !solve.waits();
-        if is_new || input.running && solves.clone().any(busy) {
+        if input.running && solves.clone().any(busy) {
             ctx.request_repaint();
         } else if solves.any(ComparedSolve::is_away) {
             ctx.request_repaint_after(POLL);
@@ -196,34 +176,15 @@ impl Compare {
         self.panes.list.iter().any(is_changed)
     }
 
-    /// Shows the presets above the panes, and the load curve under them.
-    pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>, actions: &mut Vec<Action>) {
-        let height = ui.ctx().content_rect().height();
-        let panel = if input.common.view.bars && input.common.view.panel && !input.common.view.narrow {
-            PANEL_WIDTH
-        } else {
-            0.0
-        };
-        let panes = self.panes.list.len();
-        let one_row = grid::first_row(panes, ui.ctx().content_rect().width() - panel) == panes;
-        let low = if one_row { LOW } else { LOW_FOR_TWO_ROWS };
-        let shows_trace = self.shows_trace.unwrap_or(height >= low);
-        self.showed_trace = shows_trace;
-        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
+    /// Shows the presets above the panes.
+    pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>) {
         if input.common.view.bars {
-            Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input, shows_trace));
-        }
-        if shows_trace {
-            let height = TRACE_HEIGHT.min(TRACE_SHARE * height);
-            let panel = Panel::bottom("trace").exact_size(height).resizable(false).frame(frame);
-            panel.show(ui, |ui| {
-                let panes = (&self.panes.list[..], input.running);
-                self.trace.show(ui, input.common.scene, panes, input.common.view.curve_plot, actions);
-            });
+            let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
+            Panel::top("presets").resizable(false).frame(frame).show(ui, |ui| self.presets(ui, input));
         }
     }
 
-    fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>, shows_trace: bool) {
+    fn presets(&mut self, ui: &mut Ui, input: &CompareInput<'_>) {
         let elements: Vec<ElementKind> = input.common.scene.elements().collect();
         let join = |names: Vec<&str>| names.join(" | ");
         let methods = join(METHODS_PRESET.iter().map(|method| tr(method.id())).collect());
@@ -268,17 +229,7 @@ impl Compare {
                 let unused = METHODS.iter().map(|entry| entry.kind).find(|&method| !used(method));
                 self.panes.add(unused.map(PaneSetting::of_method).unwrap_or_default());
             }
-            let icon = if shows_trace { Icon::Close } else { Icon::Open };
-            let button = icon_button(ui, icon, tr("Load curve"), Some(tr("Load curve")), shows_trace);
-            if button.on_hover_text(tr("The load curve, drawn while the load is dragged")).clicked() {
-                self.toggle_trace();
-            }
         });
-    }
-
-    /// Shows or hides the load curve.
-    pub(crate) fn toggle_trace(&mut self) {
-        self.shows_trace = Some(!self.showed_trace);
     }
 
     /// Shows the panes; returns the pointer's interaction with their load.
@@ -289,12 +240,12 @@ impl Compare {
         for pane in &mut self.panes.list {
             let is_own = || pane.setting.apply(input.common.scene) == *input.common.scene;
             pane.keep_equilibrium(input.common.last.filter(|_| is_own()));
-            pane.update_display((input.common.view, input.reference), self.panes.magnification, ui.visuals(), &known);
+            pane.update_display((input.common.view, input.exact()), self.panes.magnification, ui.visuals(), &known);
             known.extend(pane.equations());
         }
-        let range = self.share_colors(input.common.view);
+        let range = self.panes.share_colors(input.common.view, |_| true);
         let whole = ui.available_rect_before_wrap();
-        let grid = self.panes.lay_out(ui, shown_probes(input.common.scene));
+        let grid = self.panes.lay_out(ui, shown_probes(input.common.scene, input.common.view));
         let reference = input.reference.filter(|_| input.common.view.exact);
         let exact = reference.map(|reference| overlay::magnified_outline(reference, self.panes.magnification));
         let exact = exact.unwrap_or_default();
@@ -325,16 +276,6 @@ impl Compare {
         for (i, pane) in panes {
             pane.show_value(ui, view, rest, self.camera(), (i == number).then_some(at));
         }
-    }
-
-    /// Gives all panes the same colour range, and returns it: that of the results, or, while there is none, that of the
-    /// panes that have not failed.
-    fn share_colors(&mut self, view: &ViewOptions) -> [f64; 2] {
-        let choices: [fn(&Pane) -> bool; 2] = [|pane| pane.solve.is_sound(), |pane| !pane.solve.has_failed()];
-        let has_range = |pane: &&Pane| pane.display.range.is_some();
-        let is_useful = |counts: &fn(&Pane) -> bool| self.panes.list.iter().filter(has_range).any(counts);
-        let counts = choices.into_iter().find(is_useful).unwrap_or(|_| true);
-        self.panes.share_colors(view, counts)
     }
 
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user
@@ -399,24 +340,22 @@ fn header(panes: &Panes<Pane>, ui: &mut Ui, number: usize, input: &CompareInput<
         grid::mesh_picker(ui, &palette, name, widths[2], &mut setting.cells, scene);
     });
     result(ui, &panes::pane_name(number), pane, input);
-    kept_probes(ui, pane);
+    kept_probes(ui, pane, input.common.view);
     change
 }
 
 /// Largest number of probes in a header, so that the bodies keep their room.
 const MAX_PROBES: usize = 3;
 
-/// Returns the number of probes that a header shows, the first of the scene: none if all are on edges, because the table
-/// of the load curve has the first one.
-fn shown_probes(scene: &Scene) -> usize {
-    let has_point = scene.probes.iter().any(|probe| matches!(probe.place, Place::At(_)));
-    if has_point { scene.probes.len().min(MAX_PROBES) } else { 0 }
+/// Returns the number of probes that a header shows, the first of the scene; a narrow window has no room for them.
+fn shown_probes(scene: &Scene, view: &ViewOptions) -> usize {
+    if view.narrow { 0 } else { scene.probes.len().min(MAX_PROBES) }
 }
 
 /// Shows the displacements of the probes.
-fn kept_probes(ui: &mut Ui, pane: &Pane) {
+fn kept_probes(ui: &mut Ui, pane: &Pane, view: &ViewOptions) {
     let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
-    for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene())) {
+    for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene(), view)) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
         let text = RichText::new(format!("{}: u = {u}", tr(&probe.name))).size(SMALL);
@@ -456,7 +395,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         painter.rect_filled(rect, 4.0, palette.error_chip);
         left += 6.0;
     } else {
-        let number = error.map_or_else(|| UNKNOWN.to_owned(), percent);
+        let number = error_text(error, input.live.is_some());
         let bound = judged.map(|(error, first)| first.error_bound(error));
         let color = error_color(&palette, bound);
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);

@@ -1,22 +1,26 @@
 //! Pane of the comparison of equilibria: a solve of the scene with settings of its own, and its display.
 
+use std::collections::VecDeque;
+
 use egui::{Color32, Pos2, Rect, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::CompareInput;
 use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
+use crate::app::session::WILD;
 use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
 use crate::app::session::facts::TimeFact;
-use crate::app::session::{equilibrium_to_keep, is_same_state};
+use crate::app::session::fallback::Fallback;
 use crate::app::task::keyed::Keyed;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::palette::Palette;
+use crate::exact_beam::error_percent;
 use crate::render::Camera;
 use crate::scene::Scene;
-use crate::simulation::{Equilibrium, Simulation};
+use crate::simulation::Simulation;
 use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
@@ -26,8 +30,12 @@ pub struct Pane {
     pub(super) solve: ComparedSolve,
     pub(super) display: PaneDisplay,
     pub(super) error: Option<f64>,
-    /// Last equilibrium, drawn in place of a state that diverges.
-    equilibrium: Option<Simulation>,
+    /// Displacements of the first probe under the last loads, m.
+    recent: VecDeque<(Scene, Vector2<f64>)>,
+    /// Bodies drawn in place of a search that has found no equilibrium.
+    fallback: Fallback,
+    /// `true` while the load is dragged, and the pane iterates as fast as it can.
+    pub(super) is_dragged: bool,
     /// Time of the solve from rest.
     time: Keyed<TimeFact>,
 }
@@ -146,18 +154,11 @@ impl Pane {
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
-    /// Keeps a copy of an equilibrium, to be drawn where a later state on the same mesh diverges: `last`, if the panel
-    /// describes it for the same setting.
+    /// Keeps the bodies that are drawn where a search finds no equilibrium: `last`, if the panel describes it for the same
+    /// setting.
     pub(super) fn keep_equilibrium(&mut self, last: Option<&Simulation>) {
-        let Some(simulation) = self.solve.displayed() else { return };
-        let fails = self.solve.has_failed();
-        if let Some(found) = equilibrium_to_keep(simulation, self.equilibrium.as_ref(), fails) {
-            self.equilibrium = Some(found);
-        }
-        let Some(last) = last.filter(|_| fails) else { return };
-        if !self.equilibrium.as_ref().is_some_and(|kept| is_same_state(kept, last)) {
-            self.equilibrium = last.equilibrium().map(Equilibrium::snapshot);
-        }
+        let last = last.filter(|_| self.solve.has_failed());
+        self.solve.displayed().into_iter().chain(last).for_each(|simulation| self.fallback.keep(simulation));
     }
 
     /// Updates the displayed mesh.
@@ -169,24 +170,57 @@ impl Pane {
         known: &[Equations],
     ) {
         let is_sound = self.solve.is_sound();
-        let equilibrium = self.equilibrium.as_ref().filter(|_| self.solve.has_failed());
-        if let Some(simulation) = equilibrium.or_else(|| self.solve.displayed()) {
+        if let Some(simulation) =
+            in_place(&self.solve, &self.fallback, self.is_dragged).or_else(|| self.solve.displayed())
+        {
             self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);
         }
         self.display.body_mesh.color(visuals, view.field);
     }
 
-    /// Computes the error of the result, if the reference solution is known.
-    pub(super) fn update_error(&mut self, reference: Option<&Reference>) {
-        let probe = self.solve.answer().filter(|(_, good)| *good);
-        self.error = reference.zip(probe).and_then(|(reference, (probe, _))| reference.first()?.error_percent(&probe));
+    /// Computes the error of the result, if the reference solution is known. One that follows the load may be of a load
+    /// before, of which the result is kept.
+    pub(super) fn update_error(&mut self, input: &CompareInput<'_>) {
+        /// Largest number of results that are kept.
+        const MOST: usize = 20;
+        let u = self.solve.answer().filter(|(_, good)| *good).map(|(probe, _)| probe.u);
+        let first = input.reference.and_then(Reference::first);
+        let error = |u: Option<Vector2<f64>>| error_percent(u?, first?.displacement);
+        let Some(live) = input.live else {
+            self.recent.clear();
+            self.error = error(u);
+            return;
+        };
+        if let Some((scene, u)) = self.solve.scene().cloned().zip(u) {
+            self.recent.retain(|(earlier, _)| *earlier != scene);
+            self.recent.push_front((scene, u));
+            self.recent.truncate(MOST);
+        }
+        if let Some((_, u)) = self.recent.iter().find(|(scene, _)| live.is_of(scene)) {
+            self.error = error(Some(*u));
+        }
     }
+}
+
+/// Returns the body drawn in place of a solve that has found no equilibrium.
+fn in_place<'a>(solve: &ComparedSolve, fallback: &'a Fallback, is_dragged: bool) -> Option<&'a Simulation> {
+    let is_wild = |simulation: &Simulation| is_dragged && !solve.is_settled() && simulation.residual() > WILD;
+    fallback.of(solve.simulation().filter(|simulation| solve.has_failed() || is_wild(simulation))?)
 }
 
 impl ComparedPane for Pane {
     fn new(setting: PaneSetting) -> Self {
         let solve = ComparedSolve::new(setting.iterations);
-        Self { setting, solve, display: PaneDisplay::default(), error: None, equilibrium: None, time: Keyed::default() }
+        Self {
+            setting,
+            solve,
+            display: PaneDisplay::default(),
+            error: None,
+            recent: VecDeque::new(),
+            fallback: Fallback::default(),
+            is_dragged: false,
+            time: Keyed::default(),
+        }
     }
 
     fn own_setting(&self) -> PaneSetting {
@@ -219,11 +253,11 @@ impl ComparedPane for Pane {
     }
 
     fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay) {
-        let equilibrium = self.equilibrium.as_ref().filter(|_| self.solve.has_failed()).map(Simulation::scene);
-        (equilibrium.or_else(|| self.solve.scene()).map(|scene| (scene, 0.0)), &mut self.display)
+        let fallback = in_place(&self.solve, &self.fallback, self.is_dragged).map(Simulation::scene);
+        (fallback.or_else(|| self.solve.scene()).map(|scene| (scene, 0.0)), &mut self.display)
     }
 
     fn unreached(&self) -> Option<&Scene> {
-        self.solve.scene().filter(|_| self.solve.has_failed() && self.equilibrium.is_some())
+        self.solve.scene().filter(|_| in_place(&self.solve, &self.fallback, self.is_dragged).is_some())
     }
 }

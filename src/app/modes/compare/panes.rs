@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Rect, RichText, Role, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Align2, Color32, FontId, Rect, Sense, Ui, UiBuilder, vec2};
 use nalgebra::Vector2;
 
 use super::grid::{self, Grid};
@@ -18,7 +18,6 @@ use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::projection::{Projection, viewport};
-use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette};
 use crate::assembly::System;
@@ -38,10 +37,10 @@ pub(crate) struct PaneInput<'a> {
     pub opening: OpeningLoads,
     /// `true` if camera movements are animated.
     pub eases: bool,
+    /// Body that the panel describes in place of a search that has found no equilibrium.
+    pub last: Option<&'a Simulation>,
     /// Equations of the body in Explore, which panes share if their mesh is the same.
     pub own: Equations,
-    /// Last equilibrium that the panel describes in place of a state that diverges.
-    pub last: Option<&'a Simulation>,
 }
 
 /// Displayed body of a pane, and the pointer over it.
@@ -140,8 +139,6 @@ pub(super) struct Panes<P> {
     pub controller: Option<CameraController>,
     /// Factor of the drawn displacement in all panes.
     pub magnification: f64,
-    /// Number of the visible pane if there is room for one only.
-    front: usize,
     /// Empty playback: the past of a motion is not drawn.
     still: Playback,
 }
@@ -149,8 +146,7 @@ pub(super) struct Panes<P> {
 impl<P: ComparedPane> Panes<P> {
     /// Creates panes with these settings, at most four.
     pub(super) fn new(settings: &[PaneSetting]) -> Self {
-        let mut panes =
-            Self { list: Vec::new(), controller: None, magnification: 1.0, front: 0, still: Playback::default() };
+        let mut panes = Self { list: Vec::new(), controller: None, magnification: 1.0, still: Playback::default() };
         panes.set(settings);
         panes
     }
@@ -158,13 +154,11 @@ impl<P: ComparedPane> Panes<P> {
     /// Replaces all panes by panes with these settings, at most four.
     pub(super) fn set(&mut self, settings: &[PaneSetting]) {
         self.list = settings.iter().take(*PANES.end()).map(|&setting| P::new(setting)).collect();
-        self.front = 0;
         self.fit();
     }
 
     /// Adds a pane.
     pub(super) fn add(&mut self, setting: PaneSetting) {
-        self.front = self.list.len();
         self.list.push(P::new(setting));
         self.fit();
     }
@@ -209,10 +203,9 @@ impl<P: ComparedPane> Panes<P> {
 
     /// Divides the available area among the panes, whose headers have lines for `probes` probes.
     pub(super) fn lay_out(&mut self, ui: &Ui, probes: usize) -> Grid {
-        let grid = Grid::new(ui.available_rect_before_wrap(), (self.list.len(), self.front), probes);
-        for (number, pane) in self.list.iter_mut().enumerate() {
-            let cell = grid.cells.iter().find(|(own, _)| *own == number);
-            pane.display_mut().place = cell.map(|(_, cell)| grid.body_place(*cell));
+        let grid = Grid::new(ui.available_rect_before_wrap(), self.list.len(), probes);
+        for (pane, cell) in self.list.iter_mut().zip(&grid.cells) {
+            pane.display_mut().place = Some(grid.body_place(*cell));
         }
         grid
     }
@@ -232,35 +225,6 @@ impl<P: ComparedPane> Panes<P> {
         }
     }
 
-    /// Shows a tab for every pane.
-    fn show_tabs(&mut self, ui: &mut Ui, rect: Rect, scene: &Scene) {
-        let palette = Palette::new(ui.visuals());
-        let inner = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 2.0))).id_salt("tabs");
-        let width = (rect.width() - 16.0 + 6.0) / self.list.len().max(1) as f32 - 6.0;
-        let panes = self.list.iter().map(|pane| (pane.own_setting().text(), pane.color(scene, &palette)));
-        let mut front = self.front;
-        ui.scope_builder(inner, |ui| {
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                for (number, (text, color)) in panes.enumerate() {
-                    let name = format!("{}: {text}", pane_name(number));
-                    let label = RichText::new(text).color(color);
-                    let button = option_button(number == self.front, label).truncate();
-                    let response = ui.add_sized(vec2(width, ui.spacing().interact_size.y), button);
-                    let is_front = number == self.front;
-                    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_front, &name));
-                    if response.clicked() {
-                        front = number;
-                    }
-                }
-            });
-        });
-        if front != self.front {
-            self.front = front;
-            ui.ctx().request_repaint();
-        }
-    }
-
     /// Shows the headers and the bodies, with the outline `exact` of the reference solution, m; returns the pointer's
     /// interaction with the load of a pane.
     pub(super) fn show(
@@ -271,10 +235,7 @@ impl<P: ComparedPane> Panes<P> {
         show_header: impl Fn(&Self, &mut Ui, usize) -> PaneChange,
     ) -> Interaction {
         let (mut changes, mut interaction) = (Vec::new(), Interaction::default());
-        if let Some(rect) = grid.tabs {
-            self.show_tabs(ui, rect, input.scene);
-        }
-        for &(number, cell) in &grid.cells {
+        for (number, &cell) in grid.cells.iter().enumerate() {
             let place = grid.body_place(cell);
             let header = Rect::from_min_max(cell.min, place.right_top());
             let inner = UiBuilder::new().max_rect(header.shrink2(vec2(8.0, 3.0))).id_salt(("pane", number));
@@ -284,8 +245,7 @@ impl<P: ComparedPane> Panes<P> {
                 show_header(self, ui, number)
             });
             changes.extend(shown.inner.map(|change| (number, change)));
-            let is_first = grid.cells.first().is_some_and(|(first, _)| *first == number);
-            let own = self.show_body(ui, (number, place), (input, is_first), exact);
+            let own = self.show_body(ui, (number, place), (input, number == 0), exact);
             if own.load.is_some() || own.restore.is_some() {
                 interaction = own;
             }
@@ -296,7 +256,6 @@ impl<P: ComparedPane> Panes<P> {
                 Some(setting) => self.list.get_mut(number).into_iter().for_each(|pane| pane.change_setting(setting)),
                 None if self.list.len() > *PANES.start() => {
                     self.list.remove(number);
-                    self.front = self.front.min(self.list.len() - 1);
                     self.fit();
                 }
                 None => {}
@@ -375,7 +334,6 @@ impl<P: ComparedPane> Panes<P> {
                 apart: false,
                 scene,
                 wanted: wanted.as_ref(),
-                is_dimmed: wanted.is_some(),
                 system,
                 geometry: &display.geometry,
                 options: input.view,

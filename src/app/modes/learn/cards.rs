@@ -40,21 +40,11 @@ pub(crate) struct Setup {
     /// `true` if the outline of the reference solution is shown, and (`rest`) the outline at rest.
     pub exact: bool,
     pub rest: bool,
-    pub start: CardStart,
+    /// `true` if the card iterates from rest when the user starts it, in slow motion.
+    pub waits: bool,
     /// Edits the scene so that it has the largest body that the card's slider reaches: the view leaves room for it from
     /// the beginning.
     pub reach: Option<fn(&mut Scene)>,
-}
-
-/// Start of the iteration to the equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CardStart {
-    /// From the current state.
-    Now,
-    /// From rest.
-    Rest,
-    /// From rest, when the user starts it.
-    Waiting,
 }
 
 /// Forces on the article's beam, N: with the first the warped iteration converges, with the second it does not.
@@ -88,7 +78,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::LargestStrain,
             exact: true,
             rest: true,
-            start: CardStart::Now,
+            waits: false,
             reach: Some(|scene| with(scene, MethodKind::Linear, area::LARGEST_FORCE)),
         },
         needs: Needs::Nothing,
@@ -111,7 +101,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: CardStart::Now,
+            waits: false,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -133,7 +123,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::LargestStrain,
             exact: false,
             rest: false,
-            start: CardStart::Now,
+            waits: false,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -157,7 +147,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: CardStart::Now,
+            waits: false,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -181,7 +171,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::RotationAngle,
             exact: false,
             rest: true,
-            start: CardStart::Waiting,
+            waits: true,
             reach: None,
         },
         needs: Needs::Nothing,
@@ -194,7 +184,7 @@ pub(crate) const CARDS: &[Card] = &[
         title: "Iterate",
         text: "R depends on the positions, and the positions depend on R. So solve with the current R, compute the \
                 new R, and solve again: a fixed-point iteration. Near the equilibrium each iteration multiplies the \
-                residual by \u{3c1}.",
+                residual by \u{3c1}. Elsewhere each frame iterates to equilibrium; a step is one iteration.",
         formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
         symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
                   iteration converges from a start that is near enough.",
@@ -204,7 +194,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: false,
             rest: true,
-            start: CardStart::Waiting,
+            waits: true,
             reach: None,
         },
         needs: Needs::Rho,
@@ -227,7 +217,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: false,
             rest: true,
-            start: CardStart::Rest,
+            waits: false,
             reach: None,
         },
         needs: Needs::Rho,
@@ -249,7 +239,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: true,
             rest: true,
-            start: CardStart::Now,
+            waits: false,
             reach: None,
         },
         needs: Needs::Errors,
@@ -272,7 +262,7 @@ pub(crate) const CARDS: &[Card] = &[
             field: Field::VonMises,
             exact: true,
             rest: true,
-            start: CardStart::Now,
+            waits: false,
             reach: None,
         },
         needs: Needs::Nothing,

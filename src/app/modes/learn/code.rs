@@ -4,7 +4,7 @@ use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::frames::angle_text;
 use super::triangle::Triangle;
-use super::{Learn, Shown, formula, not_triangles};
+use super::{Learn, Shown, formula, not_triangles, step_buttons};
 use crate::app::action::Action;
 use crate::app::language::{count, fill, tr};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
@@ -109,22 +109,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             actions,
         );
     }
-    let running = shown.input.running && *simulation.status() == Status::Running;
     ui.horizontal_wrapped(|ui| {
-        for (name, tip, action, on) in [
-            ("Next line", "The next line; the line that solves makes an iteration (N)", Action::Step, true),
-            ("From rest", "Back to rest (R)", Action::Reset, true),
-            (
-                "Go on",
-                "Iterate to the end (Space)",
-                Action::ToggleRun,
-                !running && *simulation.status() == Status::Running,
-            ),
-        ] {
-            if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
-                actions.push(action);
-            }
-        }
+        let next = ("Next line", "The next line; the line that solves makes an iteration (N)", true);
+        step_buttons(ui, shown, next, actions);
         let iterations = count(simulation.iterations(), "iteration");
         ui.add(egui::Label::new(fill!("%{iterations} so far", iterations = iterations)).extend());
     });

@@ -9,8 +9,6 @@ use crate::app::language::tr;
 
 /// Font size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;
-/// Font size of a formula in a low window, points.
-pub(super) const LOW_SIZE: f32 = 16.0;
 /// Font size of superscripts and subscripts, relative to that of the line.
 const SCRIPT: f32 = 0.66;
 /// Overhang of an italic letter over its right edge, relative to the font size.

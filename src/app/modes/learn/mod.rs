@@ -18,7 +18,7 @@ use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Scene, Source, registry};
 use crate::sentence::Sentence;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, Status};
 use crate::study::Study;
 
 mod area;
@@ -33,26 +33,16 @@ mod residuals;
 mod trade;
 mod triangle;
 
-pub(crate) use cards::{CARDS, Card, CardStart};
+pub(crate) use cards::{CARDS, Card};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
 use locking::ElementError;
 
 /// Height of the row of cards, points, and its largest fraction of the window's height.
 const HEIGHT: f32 = 258.0;
-/// Height of a narrow row, whose title and controls are on rows of their own, points.
-const NARROW_HEIGHT: f32 = 300.0;
 const SHARE: f32 = 0.42;
-/// Largest fraction in a low window, which has no status bar in this mode.
-const LOW_SHARE: f32 = 0.46;
-/// In a row lower than this, points, most cards need to scroll.
-const LOW: f32 = 240.0;
-
-/// In a row narrower than this, points, numbers and controls are placed under the text.
-const TWO_COLUMNS: f32 = 560.0;
-
-/// A window lower than this, points, has no room for a status bar.
-const LOW_WINDOW: f32 = 560.0;
+/// Width of the navigation to the other cards, points.
+const NAVIGATION: f32 = 420.0;
 
 /// Largest number of elements that are painted one by one.
 const MAX_ELEMENTS: usize = 3000;
@@ -191,7 +181,7 @@ impl Learn {
 
     /// Returns `true` if the card iterates when the user starts it.
     pub(crate) fn waits_for_steps(&self) -> bool {
-        self.card().setup.start == cards::CardStart::Waiting
+        self.card().setup.waits
     }
 
     /// Returns `true` if the card shows ρ at the equilibrium.
@@ -256,41 +246,25 @@ impl Learn {
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
-        let share = if is_low(ui.ctx()) { LOW_SHARE } else { SHARE };
         let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
         let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
-        let is_narrow = ui.available_width() - frame.inner_margin.sum().x < TWO_COLUMNS;
-        let height = if is_narrow { NARROW_HEIGHT } else { HEIGHT };
-        let height = height.min(share * ui.ctx().content_rect().height());
+        let height = HEIGHT.min(SHARE * ui.ctx().content_rect().height());
         Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
-            self.header(ui, is_narrow, actions);
+            self.header(ui, actions);
             ui.add_space(2.0);
             let card = self.card();
             let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
             ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
             let number = self.card;
             let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
-                // A scroll bar that appears would wrap the text differently, which might hide the bar again. In a low
-                // row its space is therefore always reserved.
+                // A scroll bar that appears would wrap the text differently, which might hide the bar again.
                 let room = ui.available_width() - ui.spacing().scroll.allocated_width();
                 let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
                 area.scroll_bar_visibility(bars).show(ui, |ui| {
-                    if height < LOW {
-                        ui.set_max_width(room);
-                    }
+                    ui.set_max_width(room);
                     show(ui);
                 });
             };
-            if is_narrow {
-                scroll(ui, "card", &mut |ui| {
-                    text(ui, card, false);
-                    ui.add_space(8.0);
-                    (card.show)(ui, shown, self, actions);
-                    ui.add_space(8.0);
-                    symbols(ui, card);
-                });
-                return;
-            }
             let (left, right) = split(ui.available_rect_before_wrap());
             let mut column = |rect: Rect, show: &mut dyn FnMut(&mut Ui)| {
                 let layout = egui::Layout::top_down(egui::Align::Min);
@@ -298,39 +272,22 @@ impl Learn {
                 ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 show(&mut ui);
             };
-            column(left, &mut |ui| {
-                // In a low window the row of cards scrolls: the task comes first, so that it is seen without scrolling.
-                let is_low = is_low(ui.ctx());
-                scroll(ui, "words", &mut |ui| {
-                    text(ui, card, !is_low);
-                    if is_low {
-                        symbols(ui, card);
-                    }
-                });
-            });
+            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
             column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
         });
     }
 
-    /// Shows the title, on a row of its own if the window is narrow, and the navigation to the other cards.
-    fn header(&self, ui: &mut Ui, is_narrow: bool, actions: &mut Vec<Action>) {
+    /// Shows the title, and the navigation to the other cards.
+    fn header(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let palette = Palette::new(ui.visuals());
         let (card, count) = (self.card, CARDS.len());
         let title = RichText::new(tr(self.card().title)).size(HEADLINE).strong().color(palette.text);
-        let title = |ui: &mut Ui| ui.add(egui::Label::new(title.clone()).truncate());
-        if is_narrow {
-            title(ui);
-        }
         ui.horizontal(|ui| {
-            let wide = ui.available_width() > 720.0;
-            let nav = if wide { 540.0 } else { 316.0 };
-            if !is_narrow {
-                let room = ui.available_width() - nav;
-                ui.scope(|ui| {
-                    ui.set_max_width(room);
-                    title(ui);
-                });
-            }
+            let room = (ui.available_width() - NAVIGATION).max(0.0);
+            ui.scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(egui::Label::new(title).truncate());
+            });
             at_right(ui, "cards", |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
@@ -340,18 +297,13 @@ impl Learn {
                 ui.label(
                     RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
                 );
-                if wide {
-                    dots(ui, &palette, card, actions);
-                }
                 let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
                 if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
                     actions.push(Action::Card(card + 1));
                 }
-                if wide {
-                    let tip = "Restores this card\u{2019}s scene";
-                    if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
-                        actions.push(Action::Card(card));
-                    }
+                let tip = "Restores this card\u{2019}s scene";
+                if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
+                    actions.push(Action::Card(card));
                 }
                 let tip = "Twenty seconds on the article\u{2019}s beam; any key or click ends them";
                 if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
@@ -387,9 +339,18 @@ impl Learn {
     }
 }
 
-/// Returns `true` if the window has no room for a status bar.
-pub(crate) fn is_low(ctx: &Context) -> bool {
-    ctx.content_rect().height() < LOW_WINDOW
+/// Shows the buttons that step (name, tooltip, and `true` if it can), return to rest, and iterate to the end.
+fn step_buttons(ui: &mut Ui, shown: &Shown<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
+    let goes_on = *shown.input.simulation.status() == Status::Running && !shown.input.running;
+    for (name, tip, on, action) in [
+        (step.0, step.1, step.2, Action::Step),
+        ("From rest", "Back to rest (R)", true, Action::Reset),
+        ("Go on", "Iterate to the end (Space)", goes_on, Action::ToggleRun),
+    ] {
+        if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+            actions.push(action);
+        }
+    }
 }
 
 /// Returns the areas of the text, and of the numbers and controls next to it.
@@ -403,31 +364,9 @@ fn split(rect: Rect) -> (Rect, Rect) {
     (rect.with_max_x(rect.left() + width), drawing.with_max_x(drawing.right().min(drawing.left() + WIDEST_DRAWING)))
 }
 
-/// Shows one dot per card; a click goes to the card.
-fn dots(ui: &mut Ui, palette: &Palette, card: usize, actions: &mut Vec<Action>) {
-    ui.spacing_mut().item_spacing.x = 0.0;
-    for (i, Card { title, .. }) in CARDS.iter().enumerate() {
-        let (rect, response) = ui.allocate_exact_size(vec2(15.0, 20.0), Sense::click());
-        let color = if i == card { palette.accent } else { palette.secondary };
-        let radius = if i == card || response.hovered() { 4.5 } else { 3.0 };
-        ui.painter().circle_filled(rect.center(), radius, color);
-        if response.has_focus() {
-            ui.painter().circle_stroke(rect.center(), 7.0, egui::Stroke::new(1.5, palette.accent));
-        }
-        let name = fill!("Card %{n}: %{title}", n = i + 1, title = tr(title));
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == card, &name));
-        if response.on_hover_text(tr(title)).clicked() {
-            actions.push(Action::Card(i));
-        }
-    }
-    ui.spacing_mut().item_spacing.x = 6.0;
-    ui.add_space(6.0);
-}
-
-/// Shows sentences, formulas and the task, with the definitions of symbols in between if `has_symbols`.
-fn text(ui: &mut Ui, card: &Card, has_symbols: bool) {
+/// Shows sentences, formulas, the definitions of symbols and the task.
+fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
-    let is_low = is_low(ui.ctx());
     let text = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
     ui.add(egui::Label::new(text).wrap());
     ui.add_space(4.0);
@@ -435,8 +374,7 @@ fn text(ui: &mut Ui, card: &Card, has_symbols: bool) {
     chip.show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             let width = ui.max_rect().width();
-            let size = if is_low { formula::LOW_SIZE } else { formula::SIZE };
-            let set = |part: &&str| formula::fitted(ui.painter(), part, size, palette.text, width);
+            let set = |part: &&str| formula::fitted(ui.painter(), part, formula::SIZE, palette.text, width);
             let galleys: Vec<_> = card.formula.iter().map(set).collect();
             // The formulas move closer together if that fits them into one row.
             let gaps = width - galleys.iter().map(|galley| galley.size().x).sum::<f32>();
@@ -448,9 +386,9 @@ fn text(ui: &mut Ui, card: &Card, has_symbols: bool) {
             }
         });
     });
-    if has_symbols {
-        symbols(ui, card);
-    }
+    ui.add_space(2.0);
+    let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
+    ui.add(egui::Label::new(spaced(symbols, SMALL)).wrap());
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
@@ -458,13 +396,6 @@ fn text(ui: &mut Ui, card: &Card, has_symbols: bool) {
         ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
-}
-
-/// Shows the definitions of symbols.
-fn symbols(ui: &mut Ui, card: &Card) {
-    ui.add_space(2.0);
-    let text = RichText::new(tr(card.symbols)).size(SMALL).color(Palette::new(ui.visuals()).secondary);
-    ui.add(egui::Label::new(spaced(text, SMALL)).wrap());
 }
 
 const NOT_TRIANGLES: &str = "These numbers are for three-node triangles only.";

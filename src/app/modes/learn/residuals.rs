@@ -3,7 +3,7 @@
 
 use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{Learn, Shown};
+use super::{Learn, Shown, step_buttons};
 use crate::app::action::Action;
 use crate::app::diagnosis::rho_number;
 use crate::app::language::{count, fill, tr};
@@ -17,15 +17,7 @@ use crate::simulation::Status;
 pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.input.simulation.status() != Status::Running;
-        for (name, tip, action, on) in [
-            ("Step once", "One iteration (N)", Action::Step, !ended),
-            ("From rest", "Back to rest (R)", Action::Reset, true),
-            ("Go on", "Iterate to the end (Space)", Action::ToggleRun, !ended && !shown.input.running),
-        ] {
-            if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
-                actions.push(action);
-            }
-        }
+        step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
         if let Some(ratio) = last_ratio(shown.input.residuals) {
             let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
             ui.add(egui::Label::new(text).extend());

@@ -50,7 +50,7 @@ pub(crate) fn show(
         move_scene(&mut drawn, body);
     }
     let parts = Parts::of(whole);
-    ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn, None));
+    ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn));
     ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
         figure::controls(ui, &drawn, offered, shown, actions);
         figure::table(ui, &drawn);
@@ -95,7 +95,7 @@ impl Curve {
 }
 
 /// Returns the load and both components of the displacement of the first probe.
-pub(crate) fn quantities(load: FigureQuantity, scene: &Scene) -> Vec<FigureQuantity> {
+fn quantities(load: FigureQuantity, scene: &Scene) -> Vec<FigureQuantity> {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     let x = said(&sentence!("u_x of %{probe}", probe));
     let y = said(&sentence!("u_y of %{probe}", probe));
@@ -103,13 +103,13 @@ pub(crate) fn quantities(load: FigureQuantity, scene: &Scene) -> Vec<FigureQuant
 }
 
 /// Returns the heading of a column of displacements.
-pub(crate) fn displacement_text(scene: &Scene) -> String {
+fn displacement_text(scene: &Scene) -> String {
     let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
     fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
 }
 
 /// Returns the axes of a plot, as indices of load, u_x and u_y.
-pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
+fn axes(shown: CurvePlot) -> [usize; 2] {
     match shown {
         CurvePlot::Path => [1, 2],
         CurvePlot::X => [0, 1],
@@ -118,7 +118,7 @@ pub(crate) fn axes(shown: CurvePlot) -> [usize; 2] {
 }
 
 /// Formats a displacement, m, for a table, in the prefix that suits its whole column.
-pub(crate) fn pair(u: Vector2<f64>, column: &[Vector2<f64>]) -> String {
+fn pair(u: Vector2<f64>, column: &[Vector2<f64>]) -> String {
     let column: Vec<f64> = column.iter().flat_map(|u| [u.x, u.y]).collect();
     engineering_pair_among([u.x, u.y].map(three_digits), &column, "m")
 }
@@ -187,18 +187,15 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         ink: series.ink,
         mark: series.mark,
         value: value(series).unwrap_or_default(),
-        error: String::new(),
         is_bad: series.mark == Mark::Cross,
     };
     let load = engineering(three_digits(full), unit);
     Figure {
         title: curve_title(scene),
         axes: axes(shown),
-        bounds: None,
         rows: all.iter().map(row).collect(),
         series: all,
-        head: [fill!("at %{load}", load = load), displacement_text(scene), String::new()],
-        error_name: String::new(),
+        head: [fill!("at %{load}", load = load), displacement_text(scene)],
         quantities: quantities(FigureQuantity::new(said(&name), unit), scene),
     }
 }

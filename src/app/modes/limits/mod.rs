@@ -4,8 +4,8 @@
 pub(crate) mod load_curve;
 
 use egui::{
-    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, ScrollArea, Sense, Stroke, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
 use nalgebra::Vector2;
 
@@ -29,13 +29,7 @@ const HATCH: f32 = 6.0;
 /// Widths of the columns left and right of the strips, points.
 const NAMES: f32 = 92.0;
 const INTEGRATORS: f32 = 120.0;
-const ENDS: f32 = 190.0;
-/// Width, points, below which the right column is as wide as its texts, and below which it is omitted.
-const WITH_ENDS: [f32; 2] = [760.0, 460.0];
-/// Width from which the choice of the scale and the key of the colours are in one row, points.
-const ONE_ROW: f32 = 980.0;
-/// Width from which the short key has room there.
-const SHORT_KEY: f32 = 612.0;
+const ENDS: f32 = 150.0;
 /// Height of a line of small text, points.
 const LINE: f32 = 18.0;
 /// Height of the line that shows the progress, points.
@@ -96,16 +90,11 @@ impl LimitMap {
         let limits = facts.so_far(&base);
         let progress = facts.progress().map(|done| done as f32);
         let moves = scene.analysis == Analysis::Dynamic;
-        let has_one_row = ui.available_width() >= ONE_ROW;
-        // In a low window the strips take the room of the whole key.
-        let strips = limits.map(|limits| 3.0 * LINE + ROW[0] * limits.strips.len() as f32);
-        let room = ui.available_height() - ui.spacing().interact_size.y;
-        let has_row = ui.available_width() < SHORT_KEY && strips.is_some_and(|strips| room >= strips + 2.0 * LINE);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.add_space(8.0);
             self.views(ui, scene, view);
-            if limits.is_some() && !shows_curve && (has_one_row || !has_row) {
-                key(ui, moves, !has_one_row);
+            if limits.is_some() && !shows_curve {
+                key(ui, moves);
             }
         });
         if shows_curve {
@@ -128,12 +117,6 @@ impl LimitMap {
             });
             return;
         };
-        if !has_one_row && has_row {
-            ui.horizontal(|ui| {
-                ui.add_space(8.0);
-                ui.horizontal_wrapped(|ui| key(ui, moves, false));
-            });
-        }
         // Its room stays after the limits are complete, so that nothing moves.
         let line = Rect::from_min_size(ui.next_widget_position(), vec2(ui.available_width(), PROGRESS));
         ui.add_space(PROGRESS);
@@ -141,11 +124,29 @@ impl LimitMap {
             ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
         }
         let axis = limits::axis(&base);
-        let below = ui.available_rect_before_wrap();
-        let chart = StripChart::new(ui, below, limits, &axis, self.scale);
+        // A low window scrolls.
+        let least = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let size = vec2(ui.available_width(), ui.available_height().max(least));
+            let (below, _) = ui.allocate_exact_size(size, Sense::hover());
+            let chart = StripChart::new(ui, below, limits, &axis, self.scale);
+            self.chart(ui, &chart, &base, (scene, shown), actions);
+        });
+    }
+
+    /// Shows the chart of the limits.
+    fn chart(
+        &self,
+        ui: &Ui,
+        chart: &StripChart<'_>,
+        base: &Scene,
+        (scene, shown): (&Scene, &Simulation),
+        actions: &mut Vec<Action>,
+    ) {
+        let StripChart { limits, axis, .. } = *chart;
         let load = chart.handle(ui, self.factor);
         if let Some(factor) = load {
-            let placed = with_part(&base, scene, &axis, factor);
+            let placed = with_part(base, scene, axis, factor);
             if placed != *scene {
                 actions.push(Action::Edit(chart.label(), Box::new(placed)));
             }
@@ -157,7 +158,7 @@ impl LimitMap {
         let factor = load.unwrap_or(self.factor);
         if limits.contains(factor) {
             // While a load is not reached, the body is that of another one.
-            let is_here = part_of(&base, shown.scene()).is_none_or(|own| own == self.factor);
+            let is_here = part_of(base, shown.scene()).is_none_or(|own| own == self.factor);
             let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
             chart.load_line(ui, factor, length);
         }
@@ -259,24 +260,15 @@ fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
     Some(probe.mean(shown.displacement()))
 }
 
-/// Shows the key of the colours; a line breaks between entries. In short, the bounds stand for the errors within them.
-fn key(ui: &mut Ui, moves: bool, in_short: bool) {
+/// Shows the key of the colours; a line breaks between entries.
+fn key(ui: &mut Ui, moves: bool) {
     const BOX: Vec2 = vec2(10.0, 10.0);
-    ui.spacing_mut().item_spacing = vec2(if in_short { 8.0 } else { 10.0 }, 0.0);
+    ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
     for (rating, name) in Rating::all(moves) {
-        let name = match rating {
-            Rating::Good if in_short => format!("≤ {} %", limits::GOOD),
-            Rating::Usable if in_short => format!("≤ {} %", limits::USABLE),
-            Rating::Beyond if in_short => format!("> {} %", limits::USABLE),
-            Rating::NotConverged if in_short => tr("fails").to_owned(),
-            Rating::Unknown if in_short => tr("unknown").to_owned(),
-            _ => said(&name),
-        };
-        legend::entry(ui, &name, BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+        legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
     }
     let ink = Palette::new(ui.visuals()).text;
-    let law = if in_short { "strained" } else { "strains above 10 % or inverted" };
-    legend::entry(ui, tr(law), BOX, &|ui, rect| {
+    legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
         ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
         hatch(ui, rect, ink);
     });
@@ -310,7 +302,7 @@ struct StripChart<'a> {
     row: f32,
     /// Width of the column of names.
     names: f32,
-    /// Width of the column of the loads at the ends of the strips; 0 if it has no room.
+    /// Width of the column of the loads at the ends of the strips.
     ends: f32,
     /// `true` if the curve has room.
     has_curve: bool,
@@ -318,20 +310,13 @@ struct StripChart<'a> {
 
 impl<'a> StripChart<'a> {
     fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: AxisScale) -> Self {
-        let [whole_column, any_column] = WITH_ENDS;
-        let ends = match whole.width() {
-            width if width >= whole_column => ENDS,
-            width if width >= any_column => {
-                let widths = limits.strips.iter().filter_map(|strip| strip.end(axis, limits.range)).map(|end| {
-                    let font = FontId::proportional(SMALL);
-                    ui.painter().layout_no_wrap(said(&end), font, Color32::WHITE).size().x
-                });
-                widths.fold(120.0, f32::max) + 20.0
-            }
-            _ => 0.0,
-        };
+        let widths =
+            limits.strips.iter().filter_map(|strip| strip.end(axis, limits.range)).map(|end| {
+                ui.painter().layout_no_wrap(said(&end), FontId::proportional(SMALL), Color32::WHITE).size().x
+            });
+        let ends = widths.fold(ENDS, f32::max) + 20.0;
         let names = if limits.duration.is_some() { INTEGRATORS } else { NAMES };
-        let (left, right) = (whole.left() + names, whole.right() - ends.max(24.0));
+        let (left, right) = (whole.left() + names, whole.right() - ends);
         let count = limits.strips.len().max(1) as f32;
         let room = whole.height() - 3.0 * LINE;
         let row = (SHARE * room / count).clamp(ROW[0], ROW[1]);
@@ -402,10 +387,7 @@ impl<'a> StripChart<'a> {
             let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
             painter.line_segment(ends, Stroke::new(1.0, palette.line));
             let text = painter.layout_no_wrap(load_text(self.axis, factor), FontId::proportional(SMALL), palette.text);
-            // In a narrow window there is no room beyond the end of the strips.
-            let most = ui.clip_rect().right() - text.size().x - 2.0;
-            let left = (x - 0.5 * text.size().x).min(most);
-            painter.galley(pos2(left, strips.bottom() + 2.0), text, palette.text);
+            painter.galley(pos2(x - 0.5 * text.size().x, strips.bottom() + 2.0), text, palette.text);
         }
         let at = pos2(strips.center().x, strips.bottom() + LINE);
         let name = said(&limits::axis_text(self.limits, self.axis));
@@ -437,11 +419,9 @@ impl<'a> StripChart<'a> {
             let points = lengths.filter(|(_, u)| *u > 0.0).map(|(factor, u)| pos2(self.x(factor), up.place(u) as f32));
             painter.line(points.collect(), Stroke::new(2.0, palette.exact));
         }
-        if self.ends >= ENDS {
-            let at = pos2(curve.right() + 10.0, curve.top());
-            let text = tr("reference displacement\nof the first probe");
-            self.text(ui, at, Align2::LEFT_TOP, text, palette.exact);
-        }
+        let at = pos2(curve.right() + 10.0, curve.top());
+        let text = tr("reference displacement\nof the first probe");
+        self.text(ui, at, Align2::LEFT_TOP, text, palette.exact);
     }
 
     /// Returns the vertical axis of the curve; `None` if no reference displacement is known, or the curve has no room.
@@ -513,7 +493,7 @@ impl<'a> StripChart<'a> {
         }
         let end =
             if strip.done < 1.0 { Some(done) } else { strip.end(self.axis, self.limits.range).map(|end| said(&end)) };
-        if let Some(end) = end.filter(|_| self.ends > 0.0) {
+        if let Some(end) = end {
             let at = pos2(strips.right() + 10.0, rect.center().y);
             self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
         }

@@ -93,10 +93,6 @@ pub(super) struct Film {
 struct Gif {
     encoder: gif::Encoder<BufWriter<File>>,
     palette: GifPalette,
-    /// `true` if a frame whose colours are missing in the palette gets a new palette.
-    adapts: bool,
-    /// `true` if the current palette is not the one at the beginning of the file.
-    is_local: bool,
     before: Vec<u8>,
     now: Vec<u8>,
 }
@@ -141,7 +137,7 @@ impl Film {
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
                 let (before, now) = (Vec::new(), Vec::new());
-                Some(Box::new(Gif { encoder, palette, adapts: false, is_local: false, before, now }))
+                Some(Box::new(Gif { encoder, palette, before, now }))
             }
             MovieFormat::Folder => {
                 std::fs::create_dir_all(path).map_err(|e| failed(&e))?;
@@ -149,18 +145,6 @@ impl Film {
             }
         };
         Ok(Self { path: path.to_owned(), delay, pictures: 0, length: 0, gif })
-    }
-
-    /// Lets a GIF use new palettes for frames that differ from the samples.
-    pub(super) fn adapt(&mut self) {
-        if let Some(gif) = &mut self.gif {
-            gif.adapts = true;
-        }
-    }
-
-    /// Returns the number of frames.
-    pub(super) fn pictures(&self) -> u64 {
-        self.pictures
     }
 
     /// Adds a frame whose duration is `hold` s longer than that of others.
@@ -221,16 +205,8 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
 impl Gif {
     /// Adds the changed part of a frame: the smallest rectangle that contains it.
     fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
-        /// Fraction of pixels without a similar palette colour above which there is a new palette.
-        const MAX_POOR: f64 = 1e-3;
-        let Self { encoder, palette, adapts, is_local, before, now } = self;
-        let poor = palette.indices(picture, now);
-        if *adapts && poor as f64 > MAX_POOR * now.len() as f64 {
-            *palette = GifPalette::of(std::slice::from_ref(picture));
-            palette.indices(picture, now);
-            *is_local = true;
-            before.clear();
-        }
+        let Self { encoder, palette, before, now } = self;
+        palette.indices(picture, now);
         let width = picture.size[0] as usize;
         let rect = changed(before, now, width);
         let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
@@ -243,7 +219,6 @@ impl Gif {
             top: small(rect.top),
             width: small(rect.width),
             height: small(rect.height),
-            palette: is_local.then(|| palette.bytes().to_vec()),
             buffer: Cow::Owned(pixels),
             ..gif::Frame::default()
         })?;

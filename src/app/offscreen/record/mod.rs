@@ -8,7 +8,6 @@ use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
-pub(crate) use self::live::{LiveRecording, pointer};
 pub use self::story::record_story;
 use crate::app::language::{self, Language, fill};
 use crate::app::offscreen::shot::Canvas;
@@ -25,7 +24,6 @@ use crate::state::State;
 
 mod colors;
 mod film;
-mod live;
 mod story;
 
 /// Default frames per second of a motion: a rate that GIF represents exactly.

@@ -1,7 +1,6 @@
 //! Desktop: files on disk, the system clipboard, a window of its own.
 
 pub(crate) mod clipboard;
-pub(crate) mod copies;
 pub(crate) mod files;
 pub(crate) mod graphics;
 pub(crate) mod new_file;

@@ -1,4 +1,4 @@
-//! Settings in a file of the user's folder for settings.
+//! Settings, and copies of unsaved edits, in files of the user's folder for settings.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub(crate) fn file() -> Option<PathBuf> {
     Some(folder.join("warpbeam").join("settings.toml"))
 }
 
-/// Reads the settings.
+/// Reads settings or a copy.
 ///
 /// # Errors
 /// Error of the operating system.
@@ -21,33 +21,45 @@ pub(crate) fn read(file: &Path) -> std::io::Result<String> {
     std::fs::read_to_string(file)
 }
 
-/// Locks the settings until the result is dropped, and creates their folder if necessary. Waits for other windows.
-///
-/// # Errors
-/// Error of the operating system.
-pub(crate) fn lock(file: &Path) -> std::io::Result<File> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)?;
-    }
-    let lock = File::options().create(true).truncate(false).write(true).open(file.with_extension("lock"))?;
-    lock.lock()?;
-    Ok(lock)
+/// File for a copy, locked during the lifetime of this value.
+#[derive(Debug)]
+pub(crate) struct CopyPlace {
+    pub(crate) file: PathBuf,
+    _lock: File,
 }
 
-/// Writes the settings.
+/// Locks the file with this number in `folder`, which is created if it does not exist; `None` if another window has
+/// locked it.
 ///
 /// # Errors
 /// Error of the operating system.
+pub(crate) fn lock(folder: &Path, number: usize) -> std::io::Result<Option<CopyPlace>> {
+    std::fs::create_dir_all(folder)?;
+    let lock = folder.join(format!("{number}.lock"));
+    let lock = File::options().create(true).truncate(false).write(true).open(lock)?;
+    match lock.try_lock() {
+        Ok(()) => Ok(Some(CopyPlace { file: folder.join(format!("{number}.toml")), _lock: lock })),
+        Err(std::fs::TryLockError::WouldBlock) => Ok(None),
+        Err(std::fs::TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// Writes settings or a copy, and creates their folder if necessary.
+///
+/// # Errors
+/// Error of the operating system; the previous content is unchanged.
 pub(crate) fn write(file: &Path, text: &str) -> std::io::Result<()> {
+    file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
     files::save_without_sync(file, text.as_bytes())
 }
 
-/// Renames settings that cannot be read, and returns their new name.
+/// Removes a copy, if there is one.
 ///
 /// # Errors
 /// Error of the operating system.
-pub(crate) fn set_aside(file: &Path) -> std::io::Result<PathBuf> {
-    let kept = file.with_extension("unreadable.toml");
-    std::fs::rename(file, &kept)?;
-    Ok(kept)
+pub(crate) fn remove(file: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(file) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }

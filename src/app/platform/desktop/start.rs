@@ -6,12 +6,13 @@ use winit::error::EventLoopError;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::WindowAttributes;
 
-/// Smallest size of the window, points: all controls can still be reached.
-const SMALLEST: LogicalSize<f64> = LogicalSize::new(480.0, 360.0);
+use crate::app::platform::SMALLEST;
 
 /// Returns the attributes of a window of this size, points.
 pub(crate) fn window(attributes: WindowAttributes, event_loop: &ActiveEventLoop, size: [f32; 2]) -> WindowAttributes {
-    with_icon(attributes).with_inner_size(first_size(event_loop, size)).with_min_inner_size(SMALLEST)
+    let [width, height] = SMALLEST;
+    let attributes = attributes.with_min_inner_size(LogicalSize::new(width, height));
+    with_icon(attributes).with_inner_size(first_size(event_loop, size))
 }
 
 /// Adds the icons of title bar and taskbar, which `build.rs` has put into the program. A window of Windows has none by

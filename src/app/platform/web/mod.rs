@@ -2,7 +2,6 @@
 
 mod browser;
 pub(crate) mod clipboard;
-pub(crate) mod copies;
 pub(crate) mod files;
 pub(crate) mod graphics;
 pub(crate) mod new_file;

@@ -1,4 +1,4 @@
-//! Settings in the local storage of the browser.
+//! Settings, and copies of unsaved edits, in the local storage of the browser.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,53 +12,55 @@ pub(crate) fn file() -> Option<PathBuf> {
     storage().map(|_| PathBuf::from("warpbeam.settings"))
 }
 
-/// Reads the settings.
+/// Reads settings or a copy.
 ///
 /// # Errors
-/// [`io::ErrorKind::NotFound`] if the browser has no settings of this name.
+/// [`io::ErrorKind::NotFound`] if the browser has no item of this name.
 pub(crate) fn read(file: &Path) -> io::Result<String> {
     let text = storage().zip(file.to_str()).and_then(|(storage, name)| storage.get_item(name).ok().flatten());
     text.ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
-/// Does nothing: a page has one window.
-///
-/// # Errors
-/// None.
-pub(crate) fn lock(_: &Path) -> io::Result<()> {
-    Ok(())
+/// Item for a copy.
+#[derive(Debug)]
+pub(crate) struct CopyPlace {
+    pub(crate) file: PathBuf,
 }
 
-/// Writes the settings.
+/// Returns the item of an earlier visit with this number, and beyond them a new one. Visits in other tabs that have
+/// unsaved edits count as earlier ones.
 ///
 /// # Errors
-/// The browser refuses them.
+/// The browser is set to keep nothing.
+pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<CopyPlace>> {
+    let prefix = format!("warpbeam.{}.", folder.display());
+    let storage = storage().ok_or_else(|| io::Error::other("the browser is set to keep nothing"))?;
+    let keys = (0..storage.length().unwrap_or(0)).filter_map(|i| storage.key(i).ok().flatten());
+    let mut earlier: Vec<String> = keys.filter(|key| key.starts_with(&prefix)).collect();
+    earlier.sort();
+    let new = || format!("{prefix}{:.0}{:.0}", js_sys::Date::now(), 1e6 * js_sys::Math::random());
+    Ok(Some(CopyPlace { file: earlier.get(number).cloned().unwrap_or_else(new).into() }))
+}
+
+/// Writes settings or a copy.
+///
+/// # Errors
+/// The browser refuses it.
 pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
     let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
     storage.set_item(name, text).map_err(|error| io::Error::other(browser::message(&error)))
 }
 
-/// Keeps settings that cannot be read under another name, and returns it.
-///
-/// # Errors
-/// The browser refuses them.
-pub(crate) fn set_aside(file: &Path) -> io::Result<PathBuf> {
-    let kept = file.with_extension("unreadable");
-    write(&kept, &read(file)?)?;
-    remove(file)?;
-    Ok(kept)
-}
-
-/// Removes an item of the storage, if there is one.
+/// Removes a copy, if there is one.
 ///
 /// # Errors
 /// The browser refuses it.
-pub(super) fn remove(name: &Path) -> io::Result<()> {
+pub(crate) fn remove(name: &Path) -> io::Result<()> {
     let Some((storage, name)) = storage().zip(name.to_str()) else { return Ok(()) };
     storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.
-pub(super) fn storage() -> Option<Storage> {
+fn storage() -> Option<Storage> {
     web_sys::window()?.local_storage().ok().flatten()
 }

@@ -1,33 +1,27 @@
-//! Gallery of the built-in scenes, each with thumbnail, name and description.
+//! Gallery of the built-in scenes, each with picture, name and description.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align, ComboBox, Context, FontId, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextFormat, Ui,
-    WidgetInfo, style::ScrollAnimation, vec2,
+    Align, ColorImage, ComboBox, Context, FontId, Image, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
+    TextFormat, TextureHandle, TextureOptions, Ui, WidgetInfo, style::ScrollAnimation, vec2,
 };
 
-use self::thumbnail::Thumbnail;
-use self::thumbnail_task::{Made, ThumbnailWork};
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
-use crate::app::task::thread::{POLL, Task, Update};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::text::with_keys;
 use crate::scene::{Analysis, Scene, registry};
 
-pub(crate) mod thumbnail;
-pub(crate) mod thumbnail_task;
-
-/// Size of a thumbnail, and height of its entry, points.
-const THUMBNAIL: egui::Vec2 = vec2(112.0, 68.0);
+/// Size of a picture, and height of its entry, points.
+const PICTURE: egui::Vec2 = vec2(112.0, 68.0);
 const HEIGHT: f32 = 80.0;
-/// Largest width of an entry in two columns, and smallest width for which there are two columns, points.
+/// Number of columns, and largest width of an entry, points.
+const COLUMNS: usize = 2;
 const WIDEST: f32 = 420.0;
-const NARROWEST: f32 = 340.0;
 
 /// Built-in scene in the gallery.
 struct GalleryEntry {
@@ -35,12 +29,14 @@ struct GalleryEntry {
     name: String,
     about: String,
     analysis: Analysis,
+    /// PNG file of the result.
+    picture: &'static [u8],
 }
 
 static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {
     let entry = |built_in: &registry::BuiltIn| {
         let Scene { name, about, analysis, .. } = Scene::from_toml(built_in.toml).ok()?;
-        Some(GalleryEntry { id: built_in.id, name, about, analysis })
+        Some(GalleryEntry { id: built_in.id, name, about, analysis, picture: built_in.picture })
     };
     registry::BUILT_IN.iter().filter_map(entry).collect()
 });
@@ -48,67 +44,48 @@ static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {
 /// Groups of entries with their headings.
 const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "Dynamic"), (Analysis::Static, "Static")];
 
-/// Gallery with its thumbnails, which are made when it is opened for the first time.
-#[derive(Debug, Default)]
+/// Gallery; it has its pictures while it is open.
+#[derive(Default)]
 pub(crate) struct Gallery {
-    thumbnails: BTreeMap<&'static str, Thumbnail>,
-    work: ThumbnailState,
+    pictures: BTreeMap<&'static str, TextureHandle>,
     is_open: bool,
 }
 
-/// State of the work on the thumbnails.
-#[derive(Debug, Default)]
-enum ThumbnailState {
-    #[default]
-    NotBegun,
-    Running(Task<Made, ()>),
-    Ended,
+impl std::fmt::Debug for Gallery {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.is_open.fmt(f)
+    }
 }
 
 impl Gallery {
-    /// Receives the thumbnails that are ready; starts the work on the first call.
-    fn poll(&mut self, ctx: &Context) {
-        if matches!(self.work, ThumbnailState::NotBegun) {
-            // If the thread cannot be started, the gallery shows names and descriptions only.
-            self.work = Task::run(ThumbnailWork).map_or(ThumbnailState::Ended, ThumbnailState::Running);
-        }
-        while let ThumbnailState::Running(task) = &self.work {
-            match task.poll() {
-                Update::Progress((number, thumbnail)) => {
-                    let built_in = registry::BUILT_IN.get(number);
-                    self.thumbnails.extend(built_in.map(|built_in| (built_in.id, thumbnail)));
-                }
-                Update::None => return ctx.request_repaint_after(POLL),
-                Update::Done(()) | Update::Died => self.work = ThumbnailState::Ended,
-            }
-        }
-    }
-
     /// Shows the button with the scene's name, which opens the gallery.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
-        let palette = Palette::new(ui.visuals());
+    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
         let window = ui.ctx().content_rect().size();
-        let label = ui.label(RichText::new(tr("Scene")).color(palette.secondary));
         let opened = ComboBox::from_id_salt("scene")
             .selected_text(tr(&input.scene.name))
-            .width(if wide { 190.0 } else { 120.0 })
-            .height((window.y - 64.0).max(200.0))
+            .width(120.0)
+            .height(window.y - 64.0)
             .truncate()
             .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));
         self.is_open = opened.inner.is_some();
-        opened.response.labelled_by(label.id).on_hover_text(tr(&input.scene.about));
+        if !self.is_open {
+            self.pictures.clear();
+        }
+        opened.response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::ComboBox, true, tr("Scene"));
+            info.current_text_value = Some(tr(&input.scene.name).to_owned());
+            info
+        });
+        opened.response.on_hover_text(tr(&input.scene.about));
     }
 
     fn entries(&mut self, ui: &mut Ui, input: &Readout<'_>, window: f32, actions: &mut Vec<Action>) {
         /// Width of the margins and the scroll bar, points.
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;
-        self.poll(ui.ctx());
         let palette = Palette::new(ui.visuals());
-        let room = (window - BESIDE).max(160.0);
-        let columns = if room >= 2.0 * NARROWEST + GAP { 2 } else { 1 };
-        let width = ((room - GAP * (columns - 1) as f32) / columns as f32).min(if columns > 1 { WIDEST } else { room });
-        ui.set_width(width * columns as f32 + GAP * (columns - 1) as f32);
+        let width = ((window - BESIDE - GAP) / COLUMNS as f32).clamp(0.0, WIDEST);
+        ui.set_width(width * COLUMNS as f32 + GAP);
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         let top = ui.horizontal(|ui| {
             let tip = with_keys(ui.ctx(), tr("Open a scene file, or a recent one (Ctrl+O)"));
@@ -126,7 +103,7 @@ impl Gallery {
         for (analysis, heading) in GROUPS {
             ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
             let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
-            for row in group.chunks(columns) {
+            for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {
                     for entry in row {
                         let is_present = entry.id == input.scene_name;
@@ -146,7 +123,14 @@ impl Gallery {
         }
     }
 
-    fn entry(&self, ui: &mut Ui, palette: &Palette, entry: &GalleryEntry, width: f32, is_present: bool) -> Response {
+    fn entry(
+        &mut self,
+        ui: &mut Ui,
+        palette: &Palette,
+        entry: &GalleryEntry,
+        width: f32,
+        is_present: bool,
+    ) -> Response {
         const PADDING: f32 = 6.0;
         const TEXT: f32 = 12.0;
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());
@@ -165,18 +149,10 @@ impl Gallery {
         };
         let edge = if response.has_focus() { Stroke::new(1.5, palette.accent) } else { Stroke::NONE };
         ui.painter().rect(rect, 5.0, fill, edge, StrokeKind::Inside);
-        let plate = Rect::from_min_size(rect.min + vec2(PADDING, PADDING), THUMBNAIL);
+        let plate = Rect::from_min_size(rect.min + vec2(PADDING, PADDING), PICTURE);
         ui.painter().rect_filled(plate, 4.0, palette.canvas);
-        match self.thumbnails.get(entry.id) {
-            Some(thumbnail) => thumbnail.paint(&ui.painter_at(plate), plate, palette),
-            None => {
-                _ = ui.painter().hline(
-                    plate.center().x - 8.0..=plate.center().x + 8.0,
-                    plate.center().y,
-                    (2.0, palette.line),
-                )
-            }
-        }
+        let texture = self.pictures.entry(entry.id).or_insert_with(|| texture(ui.ctx(), entry));
+        Image::new(&*texture).corner_radius(4).paint_at(ui, plate);
         let left = plate.right() + TEXT;
         let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
         // On selected or hovered entries only the main text colour has enough contrast.
@@ -193,21 +169,13 @@ impl Gallery {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A background thread makes the thumbnails of all scenes, and the work then ends.
-    #[test]
-    fn thumbnails_are_computed_in_the_background() {
-        let ctx = Context::default();
-        let mut gallery = Gallery::default();
-        assert!(matches!(gallery.work, ThumbnailState::NotBegun), "nothing is made before it is opened");
-        while !matches!(gallery.work, ThumbnailState::Ended) {
-            gallery.poll(&ctx);
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        assert_eq!(gallery.thumbnails.len(), ENTRIES.len());
-        assert_eq!(ENTRIES.len(), registry::BUILT_IN.len());
-    }
+/// Returns the picture of a scene; empty if it cannot be read.
+fn texture(ctx: &Context, entry: &GalleryEntry) -> TextureHandle {
+    let image = || {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(entry.picture)).read_info().ok()?;
+        let mut rgba = vec![0; reader.output_buffer_size()?];
+        let info = reader.next_frame(&mut rgba).ok()?;
+        Some(ColorImage::from_rgba_unmultiplied([info.width, info.height].map(|side| side as usize), &rgba))
+    };
+    ctx.load_texture(entry.id, image().unwrap_or_default(), TextureOptions::LINEAR)
 }

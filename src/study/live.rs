@@ -1,0 +1,130 @@
+//! Reference solution that follows a dragged load: fine solutions on a few small meshes, each of which goes on from its own
+//! last state.
+
+use std::sync::Arc;
+
+use super::displacement_map::DisplacementMap;
+use super::fine::{
+    Effort, Fine, Meshes, MovedPoint, errors, has_point, has_straight_sides, outlines, prepared, probes_of,
+};
+use super::reference::Reference;
+use crate::assembly::System;
+use crate::scene::{Load, MethodKind, Scene, SolverSettings};
+use crate::simulation::{Simulation, Status};
+
+/// Largest number of unknowns of a mesh.
+const MOST_UNKNOWNS: usize = 3500;
+/// Largest sum of unknowns over the iterations that follow a load: about 50 ms.
+const MOST_WORK: usize = 40_000;
+/// Largest sum for the first solution, which starts from rest.
+const FIRST_WORK: usize = 400_000;
+
+/// Fine solutions of a scene that follow its load.
+#[derive(Debug)]
+pub(crate) struct LiveReference {
+    /// Scene without the values of its loads, to which the meshes belong.
+    key: Scene,
+    /// Scene of the solutions: its points are at nodes.
+    own: Scene,
+    /// Solutions, from the coarsest mesh to the finest.
+    levels: Vec<Simulation>,
+    /// Linear theory on the finest mesh.
+    linear: Simulation,
+    moved: Vec<MovedPoint>,
+    is_started: bool,
+}
+
+impl LiveReference {
+    /// Makes the meshes of a scene at rest; `None` if they are too large for a drag.
+    pub(crate) fn new(scene: &Scene) -> Option<Self> {
+        let mut own = prepared(scene);
+        let (mut meshes, moved) = Meshes::of(&mut own, None, Effort::Bounded).ok()?;
+        let mut levels = Vec::new();
+        loop {
+            let system = Arc::new(System::with_mesh(&own, meshes.mesh().ok()?).ok()?);
+            let (dofs, nodes) = (system.dofs(), system.mesh().nodes().len());
+            levels.push(Simulation::with_system(&own, system).ok()?);
+            if 4 * dofs > MOST_UNKNOWNS {
+                break;
+            }
+            meshes.refine(&vec![Default::default(); nodes]);
+        }
+        let finest = levels.last().filter(|finest| levels.len() > 1 && finest.system().dofs() <= MOST_UNKNOWNS)?;
+        let linear =
+            Simulation::with_system(&own.clone().with_method(MethodKind::Linear), finest.system().clone()).ok()?;
+        Some(Self { key: key(scene), own, levels, linear, moved, is_started: false })
+    }
+
+    /// Returns `true` if the meshes are those of a scene.
+    pub(crate) fn suits(&self, scene: &Scene) -> bool {
+        Scene { material: self.key.material, ..key(scene) } == self.key
+    }
+
+    /// Returns the reference solution of a scene under another load; `None` if it is not found soon.
+    pub(crate) fn follow(&mut self, scene: &Scene) -> Option<Reference> {
+        let scene_of_levels = self.with_loads_of(scene);
+        let mut left = if self.is_started { MOST_WORK } else { FIRST_WORK };
+        self.is_started = false;
+        for level in &mut self.levels {
+            level.change_scene(&scene_of_levels).ok()?;
+            while *level.status() == Status::Running {
+                let before = level.iterations();
+                level.step();
+                let work = level.system().dofs() * level.iterations().saturating_sub(before) as usize;
+                left = left.checked_sub(work)?;
+            }
+            let is_sound = *level.status() == Status::Converged
+                && level.system().elements().smallest_area_ratio(level.displacement()) > 0.0;
+            if !is_sound {
+                return None;
+            }
+        }
+        self.is_started = true;
+        self.linear.change_scene(&scene_of_levels.with_method(MethodKind::Linear)).ok()?;
+        self.linear.solve();
+        Some(Reference::of_live(scene, self.fine()?))
+    }
+
+    /// Returns the scene of the solutions with the loads of `scene`.
+    fn with_loads_of(&self, scene: &Scene) -> Scene {
+        let mut own = Scene { beam: self.own.beam.clone(), ..prepared(scene) };
+        own.supports.iter_mut().zip(&self.own.supports).for_each(|(to, from)| to.place.clone_from(&from.place));
+        for pair in own.loads.iter_mut().zip(&self.own.loads) {
+            if let (Load::Force { place: to, .. }, Load::Force { place: from, .. }) = pair {
+                to.clone_from(from);
+            }
+        }
+        own
+    }
+
+    /// Returns the solution on the finest mesh; that of the probes is extrapolated from the two finest.
+    fn fine(&self) -> Option<Fine> {
+        let [.., _, finest] = self.levels.as_slice() else { return None };
+        let solutions: Vec<_> = self.levels.iter().map(probes_of).collect();
+        let [.., coarse, fine] = solutions.as_slice() else { return None };
+        let [rest_outline, outline] = outlines(finest);
+        Some(Fine {
+            probes: coarse.iter().zip(fine).map(|(coarse, fine)| fine + (fine - coarse) / 3.0).collect(),
+            errors: errors(&solutions, has_point(&self.own)),
+            outline,
+            rest_outline,
+            displacements: DisplacementMap::of(finest),
+            linear: probes_of(&self.linear).first().copied(),
+            moved: self.moved.clone(),
+            folds: false,
+            is_polygon: self.own.beam.is_none() && has_straight_sides(finest.system().mesh()),
+            unknowns: finest.system().dofs(),
+        })
+    }
+}
+
+/// Returns a scene without the values of its loads and without the settings of its own solution.
+fn key(scene: &Scene) -> Scene {
+    let mut scene = prepared(scene);
+    scene.scale_loads(0.0);
+    scene.solver = SolverSettings::default();
+    if let Some(beam) = &mut scene.beam {
+        beam.cells = [1, 1];
+    }
+    scene
+}
