@@ -65,6 +65,7 @@ struct MeshData {
     /// Computed on first use.
     recovery: OnceLock<Recovery>,
     strip: OnceLock<[f64; 2]>,
+    #[cfg(feature = "cli")]
     seams: OnceLock<Vec<Sentence>>,
     size: f64,
 }
@@ -90,6 +91,7 @@ impl MeshData {
             valence: valences.into_iter().max().unwrap_or(0),
             recovery: OnceLock::new(),
             strip: OnceLock::new(),
+            #[cfg(feature = "cli")]
             seams: OnceLock::new(),
             size: (high - low).norm(),
             mesh,

@@ -122,7 +122,6 @@ fn stress_of(
         series,
         rows,
         head: [String::new(), render(&"in the cut (of the drawn stress)".into())],
-        ..Figure::default()
     }
 }
 
