@@ -277,7 +277,7 @@ impl Session {
     }
 
     /// Returns time and result of a solve from rest; `None` if they are not known for the present load.
-    pub(crate) fn from_rest(&self) -> Option<&SolveFromRest> {
+    pub(crate) fn timed_from_rest(&self) -> Option<&SolveFromRest> {
         let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.scene).map(|(_, solve)| solve);
         self.facts.time.get(&self.scene).or(own)
     }
@@ -811,7 +811,7 @@ impl Session {
         /// Largest time of a solve in a frame.
         const SHORT: Duration = Duration::from_millis(2);
         let is_short = self.facts.time.latest().is_some_and(|solve| solve.timings.total() < SHORT);
-        if !is_short || self.from_rest().is_some() {
+        if !is_short || self.timed_from_rest().is_some() {
             return;
         }
         let timed = self.timed.take().map(|(timed, _)| timed);

@@ -352,7 +352,7 @@ impl Lab {
             frequency: facts.frequency.latest().copied(),
             is_slow: session.is_slow(),
             timings: session.timings(),
-            from_rest: session.from_rest(),
+            from_rest: session.timed_from_rest(),
             last_from_rest: session.last_from_rest(),
             residuals: session.residuals(),
             can_undo: session.can_undo(),

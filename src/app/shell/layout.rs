@@ -245,7 +245,7 @@ impl Lab {
             reference: session.facts().reference.get(session.scene()).or(session.live().map(|live| &live.reference)),
             live: session.live(),
             reference_failure: session.facts().reference.failure(session.scene()),
-            from_rest: session.from_rest(),
+            from_rest: session.timed_from_rest(),
             running: session.is_running(),
             is_slow: session.is_slow(),
             chosen: budget.chosen(session.scene()),

@@ -149,7 +149,7 @@ impl SectionPlot {
         let has_none = cuts.is_some_and(|cuts| cuts.own.is_empty());
         let parts = Parts::of(whole);
         ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
-            Some(Ok(drawn)) => _ = figure::plot(ui, "sections", drawn),
+            Some(Ok(drawn)) => figure::plot(ui, "sections", drawn),
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
             None => {
                 let reason = match cuts {
