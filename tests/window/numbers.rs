@@ -182,8 +182,7 @@ fn numbers_are_those_of_solve() {
     assert!(results > 20 && diverged > 4, "{results} results, {diverged} diverged");
 }
 
-/// Each pane of Compare, and its row beside the plot, have the numbers of `solve` for the pane's scene. The time in the
-/// header is the pane's.
+/// Each pane of Compare has the numbers of `solve` for the pane's scene. The time in the header is the pane's.
 #[test]
 fn panes_have_the_numbers_of_solve() {
     let mut diverged = 0;
@@ -201,10 +200,8 @@ fn panes_have_the_numbers_of_solve() {
             let setting = pane.setting().of(harness.state().scene());
             let what = format!("{id} at {factor}, {setting}");
             let header = shown.starting_with(&format!("Pane {}: ", number + 1)).unwrap();
-            let row = shown.starting_with(&format!("{setting}: ")).unwrap();
             if json["status"] != "converged" {
                 assert!(header.contains("Does not converge") && !header.contains("error"), "{what}: {header}");
-                assert_eq!(row, format!("{setting}: does not converge"), "{what}");
                 diverged += 1;
                 continue;
             }
@@ -216,8 +213,6 @@ fn panes_have_the_numbers_of_solve() {
             let time = engineering(two_digits(seconds), "s");
             let iterations = count(json["iterations"].as_u64().unwrap(), "iteration");
             assert!(header.ends_with(&format!(": error {error}, {time} \u{b7} {iterations}")), "{what}: {header}");
-            assert_eq!(row, format!("{setting}: {}, {error}", pair(&probe["u"])), "{what}");
-            assert!(shown.has(&format!("reference: {}", pair(&probe["reference_u"]))), "{what}: {:?}", shown.0);
         }
     }
     assert!(diverged > 0);

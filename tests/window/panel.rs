@@ -224,7 +224,7 @@ fn a_refused_text_stays_for_correction() {
     assert_eq!(field.as_deref(), Some("4 kN"));
     // A click elsewhere restores the value, and the next one removes the message.
     type_into(&mut harness, "Force", "12 kg");
-    let pos = harness.get_by_label("explain").rect().left_center() - egui::vec2(40.0, 0.0);
+    let pos = harness.state().view_rect().left_center() + egui::vec2(8.0, 0.0);
     harness.hover_at(pos);
     for pressed in [true, false, true, false] {
         assert!(harness.query_by_label_contains("expected").is_some(), "{pressed}");
@@ -679,7 +679,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
 #[test]
 fn at_rest_nothing_is_redrawn() {
     let mut harness = harness("article");
-    wait(&mut harness, "the truth", |lab| !lab.is_computing());
+    wait(&mut harness, "the reference", |lab| !(lab.is_computing() || lab.is_following()));
     harness.run_steps(3);
     assert!(!harness.state().iterates());
     let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;

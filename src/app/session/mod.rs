@@ -348,7 +348,8 @@ impl Session {
     /// is drawn.
     pub(crate) fn fallback(&self) -> Option<&Simulation> {
         // An iterate that was asked for, or of a body that is not dragged, is drawn however far it is from equilibrium.
-        let is_wild = self.running && self.is_held && !self.is_slow && self.simulation.residual() > WILD;
+        let goes_on = self.running && self.is_held && !self.is_slow && !self.is_in_background();
+        let is_wild = goes_on && self.simulation.residual() > WILD;
         let is_hidden = match self.simulation.status() {
             Status::Running => is_wild && !self.is_motion(),
             _ => is_lost(&self.simulation),
@@ -449,6 +450,7 @@ impl Session {
     pub(crate) fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         if self.is_for_background(&scene) {
             scene.validate()?;
+            self.running |= !self.is_motion();
             self.request_scene(scene);
             self.poll();
             return Ok(());

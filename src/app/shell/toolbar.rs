@@ -29,7 +29,6 @@ pub(crate) fn show(
     let mut of_scene = |ui: &mut Ui, actions: &mut Vec<Action>| {
         ui.spacing_mut().item_spacing.x = 6.0;
         gallery.show(ui, input, actions);
-        divide(ui);
         run(ui, input, !view.narrow, actions);
         history(ui, input, actions);
     };

@@ -52,7 +52,7 @@ fn matrix_rows(m: &Matrix2<f64>) -> String {
 
 /// Sizes of a card while its matrices are folded, points: with the value of the displayed field and the displacement, and
 /// with all values.
-const FEW: Vec2 = vec2(340.0, 100.0);
+const FEW: Vec2 = vec2(324.0, 110.0);
 const ALL: Vec2 = vec2(300.0, 262.0);
 /// Room for the line key above a card, and for the scale and the colour bar below, points.
 const KEY: f32 = 44.0;

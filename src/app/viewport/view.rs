@@ -456,7 +456,8 @@ impl BodyView {
         let (session, is_motion) = (content.session, content.session.is_motion());
         let status = session.drawn().status();
         let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
-        if is_sound {
+        let is_stepped = !is_motion && (session.is_slow() || !session.is_running());
+        if is_sound || is_stepped && self.is_of_usual_size(content) {
             let (mut low, mut high) = content.mesh().bounds();
             if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
                 (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
@@ -482,6 +483,14 @@ impl BodyView {
         if self.camera.aim(fitted, self.eases.then_some(dt)) {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
+    fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
+        const LARGEST: f64 = 10.0;
+        let (low, high) = content.mesh().bounds();
+        let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
+        (to - from).norm() < LARGEST * (high - low).norm()
     }
 
     /// Leaves room for a beam that is going to bend, and for its arrow.
