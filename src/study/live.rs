@@ -70,7 +70,7 @@ impl LiveReference {
             while *level.status() == Status::Running {
                 let before = level.iterations();
                 level.step();
-                let work = level.system().dofs() * level.iterations().saturating_sub(before) as usize;
+                let work = level.system().dofs() * level.iterations().saturating_sub(before).max(1) as usize;
                 left = left.checked_sub(work)?;
             }
             let is_sound = *level.status() == Status::Converged

@@ -53,9 +53,10 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
             harness.run();
             let is_small = harness.state().simulation().system().dofs() <= 2000;
             settle(&mut harness);
-            eprintln!("{id} {method:?}");
             wait(&mut harness, "the live reference", |lab| !lab.is_following());
-            let has_error = is_small && !text(&shown(&harness), "ERROR ").contains('\u{2013}');
+            let is_shown = |name: &str| !text(&shown(&harness), name).contains('\u{2013}');
+            // The time of a long solve is that of the last rest.
+            let (has_error, has_time) = (is_small && is_shown("ERROR "), is_shown("TIME "));
             let (foot, tip) = (harness.state().arrow_feet()[0], harness.state().arrow_tips()[0].1);
             harness.hover_at(tip);
             harness.run();
@@ -87,7 +88,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
                 let shown = shown(&harness);
                 assert!(shown.starting_with("Converged").is_some(), "{what}: {:?}", shown.0);
                 assert!(!shown.0.iter().any(|text| text.contains("not reached")), "{what}");
-                assert!(!text(&shown, "TIME ").contains('\u{2013}'), "{what}");
+                assert!(!has_time || !text(&shown, "TIME ").contains('\u{2013}'), "{what}");
                 if has_error {
                     assert!(!text(&shown, "ERROR ").contains('\u{2013}'), "{what}: {}", text(&shown, "ERROR "));
                 }

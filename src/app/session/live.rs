@@ -60,16 +60,23 @@ impl Follower {
         self.running.is_some()
     }
 
+    /// Takes the reference that has been found; returns `true` while one is pending.
+    pub(crate) fn poll(&mut self) -> bool {
+        let Some(task) = &self.running else { return false };
+        match task.poll() {
+            Update::None | Update::Progress(()) => return true,
+            Update::Done(found) => (self.solutions, self.known) = found,
+            Update::Died => self.known = None,
+        }
+        self.running = None;
+        false
+    }
+
     /// Requests the reference of a scene at rest; returns `true` while it is pending. A page has no thread for it: there
     /// the error is shown at rest.
     pub(crate) fn request(&mut self, scene: &Scene, compared: Compared) -> bool {
-        if let Some(task) = &self.running {
-            match task.poll() {
-                Update::None | Update::Progress(()) => return true,
-                Update::Done(found) => (self.solutions, self.known) = found,
-                Update::Died => self.known = None,
-            }
-            self.running = None;
+        if self.poll() {
+            return true;
         }
         let key = without_settings(scene);
         if IS_PAGE || self.asked.as_ref() == Some(&key) {

@@ -796,7 +796,7 @@ impl Session {
     fn follow_reference(&mut self) -> bool {
         let is_compared = self.simulation.status().is_success() && self.simulation.mouse_spring().is_none();
         if !is_compared || self.simulation.system().dofs() > MAX_CERTIFIED_HERE {
-            return false;
+            return self.live.poll();
         }
         let linear = self.linear.as_ref().and_then(first_probe);
         let compared = Compared { own: first_probe(&self.simulation), linear };
@@ -808,12 +808,13 @@ impl Session {
         self.live.is_running()
     }
 
-    /// Measures the time of a solve from rest, if it was short at the last rest.
+    /// Measures the time of a solve from rest, if it was short at the last rest; if that failed, if the last search was.
     fn time_in_frame(&mut self) {
         /// Largest time of a solve in a frame.
         const SHORT: Duration = Duration::from_millis(2);
-        let is_short = self.facts.time.latest().is_some_and(|solve| solve.timings.total() < SHORT);
-        if !is_short || self.timed_from_rest().is_some() {
+        let last = self.facts.time.latest().filter(|solve| solve.is_solved);
+        let time = last.map_or(self.timings.total(), |solve| solve.timings.total());
+        if time >= SHORT || self.timed_from_rest().is_some() {
             return;
         }
         let timed = self.timed.take().map(|(timed, _)| timed);

@@ -654,7 +654,11 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
 fn least_margins(size: [f64; 2]) -> Margins {
     let Margins { sides, top, bottom } = FIT_MARGINS;
     let [width, height] = size.map(|side| FIT_SHARE * side);
-    Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height) }
+    Margins {
+        sides: sides.min(width),
+        top: top.min(height),
+        bottom: bottom.min(height.max(f64::from(overlay::LEGEND_HEIGHT))),
+    }
 }
 
 /// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
