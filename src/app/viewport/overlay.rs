@@ -189,6 +189,9 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
             }
         }
         supports(painter, &projection, overlay, &palette);
+        if is_tiny(overlay.options, rect.size()) {
+            return;
+        }
         loads(painter, &projection, overlay, &palette, visuals, legend);
         weights(painter, rect, overlay, &palette, visuals);
         moved_supports(painter, &projection, overlay, &palette, visuals);
@@ -555,6 +558,11 @@ const KEY_WIDTH: f32 = 220.0;
 /// Returns `true` if a view of size `view`, points, has a colour bar.
 pub(crate) fn has_legend(view: Vec2) -> bool {
     view.x >= LEGEND_VIEW.x && view.y >= LEGEND_VIEW.y
+}
+
+/// Returns `true` if a picture without bars is so small, points, that it has no arrows and no names.
+pub(crate) fn is_tiny(options: &ViewOptions, view: Vec2) -> bool {
+    !options.bars && view.x < KEY_WIDTH
 }
 
 /// Paints the colour bar with its title and ticks in the lower right corner, and returns its area.

@@ -540,10 +540,10 @@ impl BodyView {
     ) -> Margins {
         /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
-        if content.is_apart() {
+        let size = egui::vec2(view[0] as f32, view[1] as f32);
+        if content.is_apart() || overlay::is_tiny(content.options, size) {
             return least;
         }
-        let size = egui::vec2(view[0] as f32, view[1] as f32);
         let camera = Camera::fit(low, high, view, least);
         let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
         let mut arrows = self.forces(content).whole_arrows(&projection);
@@ -654,11 +654,9 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
 fn least_margins(size: [f64; 2]) -> Margins {
     let Margins { sides, top, bottom } = FIT_MARGINS;
     let [width, height] = size.map(|side| FIT_SHARE * side);
-    Margins {
-        sides: sides.min(width),
-        top: top.min(height),
-        bottom: bottom.min(height.max(f64::from(overlay::LEGEND_HEIGHT))),
-    }
+    let has_bar = overlay::has_legend(egui::vec2(size[0] as f32, size[1] as f32));
+    let bar = if has_bar { f64::from(overlay::LEGEND_HEIGHT) } else { 0.0 };
+    Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height.max(bar)) }
 }
 
 /// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
