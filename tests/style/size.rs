@@ -10,25 +10,25 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 30_448),
-    ("study", &["src/study"], 7_989),
-    ("model", &["src/model", "src/scene"], 3_578),
+    ("app", &["src/app"], 28_070),
+    ("study", &["src/study"], 8_118),
+    ("model", &["src/model", "src/scene"], 3_586),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_545),
     ("simulation", &["src/simulation"], 3_021),
-    ("assembly", &["src/assembly"], 2_981),
-    ("cli", &["src/cli"], 2_818),
+    ("assembly", &["src/assembly"], 2_983),
+    ("cli", &["src/cli"], 2_817),
     ("dynamics", &["src/dynamics"], 2_055),
-    ("render", &["src/render"], 2_014),
+    ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_005),
     ("mesh", &["src/mesh"], 1_843),
-    ("plot", &["src/plot"], 1_038),
+    ("plot", &["src/plot"], 1_029),
     ("the rest of src", &["src"], 5_214),
-    ("tests", &["tests"], 23_625),
+    ("tests", &["tests"], 23_575),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 68_549;
+const SRC: usize = 66_231;
 /// Largest number of crates of the program on Linux.
-const CRATES: usize = 245;
+const CRATES: usize = 240;
 
 /// Says what to do if `actual` is more than `most`, or at least 3 % less.
 fn problem(name: &str, actual: usize, most: usize) -> Option<String> {
