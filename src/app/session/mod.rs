@@ -879,6 +879,7 @@ impl Session {
             // Pulling fails only for a position that is not finite; the pointer's is.
             let _ = self.simulation.pull_to(target);
             self.playback.pull_to(target);
+            self.is_edited_now = true;
         }
         if grab.release {
             self.release();
