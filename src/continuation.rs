@@ -173,6 +173,8 @@ pub(crate) struct Continuation<S> {
     max_by_factor: f64,
     /// `true` if bifurcations beyond the first one, where the path is unstable already, are located too.
     pub(crate) locates_all: bool,
+    /// Number of places in a unit of λ at which steps look for bifurcations that hide each other.
+    pub(crate) places: f64,
     scratch: [Vec<f64>; 2],
 }
 
@@ -254,6 +256,7 @@ impl<S: Clone> Continuation<S> {
             max_linearizations,
             max_by_factor: f64::INFINITY,
             locates_all: false,
+            places: 0.0,
             scratch,
         };
         usable.then_some(made)
@@ -320,7 +323,17 @@ impl<S: Clone> Continuation<S> {
                 step = (SHORTER * step).max(BIFURCATION_STEP);
                 continue;
             }
-            if consistent && !turns && step > MIN_RESOLVED_STEP && may_pass_limits(&from, &point, step) {
+            // Of two bifurcations within a step, the second one may undo the first.
+            let places = (self.places * (point.factor - from.factor).abs()) as u32;
+            let mut hides_two = || {
+                (1..=places).any(|place| {
+                    let part = f64::from(place) / f64::from(places + 1);
+                    let between = self.correct_between(equations, &from, [0.0, step], part);
+                    between.is_some_and(|(_, between)| between.modes != point.modes)
+                })
+            };
+            let is_long = consistent && !turns && step > MIN_RESOLVED_STEP;
+            if is_long && (may_pass_limits(&from, &point, step) || hides_two()) {
                 step *= 0.5;
                 was_rejected = true;
                 continue;

@@ -410,6 +410,8 @@ pub(crate) enum PathProgress {
     Ended(PathEndReason),
 }
 
+/// Number of places in a unit of λ at which the path of moved supports is looked at for pairs of bifurcations.
+const PLACES: f64 = 16.0;
 /// Load factor below which a path that turned back does not return.
 const LOWEST_FACTOR: f64 = -2.0;
 /// Number of linearizations after a limit point within which the path must return to its load.
@@ -434,6 +436,9 @@ impl PathFollower {
         let unit = 0.1 * equations.problem.system().size();
         let mut path = Continuation::start(equations, state, factor, unit, u32::MAX)?;
         path.limit_factor(equations.problem.supports().largest_load_step());
+        if equations.problem.supports().move_the_body() {
+            path.places = PLACES;
+        }
         let last = path.point().clone();
         let unstable_modes = last.modes;
         Some(Self {
