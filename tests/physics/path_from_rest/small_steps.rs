@@ -1,8 +1,8 @@
 //! Equilibria in small steps of the load factor: a judge of the path from rest that shares with it only the forces and
 //! the tangent of the elements. Each step extrapolates the last ones, and corrects that by full Newton steps at a constant
 //! load factor. Steps are halved where a correction is long or converges slowly, and where the number of unstable modes
-//! changes. Where no step is short enough, the next extrapolation ignores the earlier points: the steps then pass a sharp
-//! turn, but no limit point.
+//! changes; beyond that, they go on from a longer one. Where no step is short enough, the next extrapolation ignores the
+//! earlier points: the steps then pass a sharp turn, but no limit point.
 
 use warpbeam::assembly::{Forces, Kinematics, Matrix, NodalSupport, Problem};
 use warpbeam::element::Tangent;
@@ -12,6 +12,8 @@ use warpbeam::{Rotation, Simulation};
 
 /// Number of steps on a path along which nothing is difficult.
 const STEPS: f64 = 160.0;
+/// Length of steps that resolve sharp turns.
+pub const SHARP: f64 = 1e-8;
 
 type Field = Vec<Vector2<f64>>;
 
@@ -50,6 +52,8 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     let (mut bifurcations, mut work, mut exchanged, longest) = (Vec::new(), [0.0; 2], 0.0, 1.0 / STEPS);
     // The first step has nothing to extrapolate.
     let (mut step, mut speed) = (1e-2 * longest, f64::INFINITY);
+    // The last points before a change of the number of unstable modes, and one beyond.
+    let mut beyond: Vec<Vec<Point>> = Vec::new();
     loop {
         let last = points.last()?.clone();
         if last.factor >= 1.0 {
@@ -60,19 +64,32 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         let ahead = distance(&start, &last.u);
         let allowed = if points.len() > 1 { 0.25 * ahead } else { 4.0 * speed * (factor - last.factor) };
         let next = judge.equilibrium(start, factor, allowed);
-        let is_short = step <= shortest;
-        match next.filter(|next| next.modes == last.modes || is_short) {
-            Some(next) => {
+        let least = shortest.min(0.1 * last.factor).max(SHARP);
+        let is_short = step <= least;
+        // Beside a singular tangent, rounding displaces points or hides them: the steps go on from one farther beyond,
+        // unless they are short enough for a sharp turn of the path.
+        let next = next.or_else(|| beyond.last().filter(|_| is_short && shortest > SHARP)?.last().cloned());
+        match next {
+            Some(next) if next.modes != last.modes && !is_short => {
+                step = (0.5 * (factor - last.factor)).max(least);
+                beyond.push([&points[..], &[next]].concat());
+            }
+            Some(mut next) => {
                 if next.modes != last.modes {
                     bifurcations.push((next.factor, [last.modes, next.modes]));
+                    if let Some(far) = beyond.drain(..).find(|far| far.last().is_some_and(|p| p.modes == next.modes)) {
+                        points = far;
+                        next = points.pop()?;
+                    }
                 }
+                beyond.retain(|far| far.last().is_some_and(|p| p.factor > next.factor));
                 for (work, (before, after)) in work.iter_mut().zip(last.forces.iter().zip(&next.forces)) {
                     let nodes = before.iter().zip(after).zip(last.u.iter().zip(&next.u));
                     let more = nodes.map(|((f, g), (u, v))| 0.5 * (f + g).dot(&(v - u))).sum::<f64>();
                     *work += more;
                     exchanged += more.abs();
                 }
-                speed = distance(&next.u, &last.u) / (factor - last.factor);
+                speed = distance(&next.u, &last.u) / (next.factor - last.factor);
                 points.push(next);
                 if points.len() > 3 {
                     points.remove(0);
@@ -81,7 +98,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
             }
             None if is_short && points.len() > 1 => drop(points.drain(..points.len() - 1)),
             None if is_short => break,
-            None => step = (0.5 * (factor - last.factor)).max(shortest),
+            None => step = (0.5 * (factor - last.factor)).max(least),
         }
     }
     let Point { factor, u, .. } = points.pop()?;

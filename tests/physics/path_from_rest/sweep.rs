@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use warpbeam::study::LoadPath;
 use warpbeam::{Axis, ElementKind, MethodKind, Scene, Simulation, Status};
 
-use super::small_steps::{distance, follow};
+use super::small_steps::{SHARP, SmallSteps, distance, follow};
 use super::{first_seed, share};
 use crate::common::random::Random;
 
@@ -141,24 +141,30 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
     }
     let Some(mut small) = follow(&simulation, 1e-5) else { return (wrong, note + ", singular at rest") };
     let reported = path.jump.map(|jump| jump.factor).or(path.end.map(|end| end.factor));
-    if small.factor < reported.unwrap_or(1.0) - 2e-3 {
-        // The path may turn sharply there.
-        small = follow(&simulation, 1e-8).unwrap();
+    let events_off = |small: &SmallSteps| {
+        let mut wrong = Vec::new();
+        if reported.map_or(small.factor != 1.0, |factor| !near(factor, small.factor)) {
+            wrong.push(format!("small steps reach {}, curve {reported:?} ({:?})", small.factor, path.jump));
+        }
+        let until = |factor: f64| factor < small.factor - 2e-3;
+        let theirs: Vec<_> =
+            path.bifurcations.iter().map(|b| (b.factor, b.unstable_modes)).filter(|b| until(b.0)).collect();
+        let ours: Vec<_> = small.bifurcations.iter().copied().filter(|b| until(b.0)).collect();
+        if theirs.len() != ours.len() || theirs.iter().zip(&ours).any(|(a, b)| !near(a.0, b.0) || a.1 != b.1) {
+            wrong.push(format!("bifurcations {theirs:?}, small steps {ours:?}"));
+        }
+        wrong
+    };
+    if !events_off(&small).is_empty() {
+        // A sharp turn of the path is a bifurcation to steps that do not resolve it.
+        let shorter = follow(&simulation, SHARP).unwrap();
+        if shorter.factor > small.factor || events_off(&shorter).is_empty() {
+            small = shorter;
+        }
     }
     note += &format!(", small steps to {:.4}, {:?}", small.factor, small.bifurcations);
+    wrong.extend(events_off(&small));
     let judges_end = small.factor == 1.0 && reported.is_none();
-    match reported {
-        _ if judges_end => {}
-        Some(factor) if near(factor, small.factor) => note += ", jumps",
-        _ => wrong.push(format!("small steps reach {}, curve {reported:?} ({:?})", small.factor, path.jump)),
-    }
-    let until = |factor: f64| factor < small.factor - 2e-3;
-    let theirs: Vec<_> =
-        path.bifurcations.iter().map(|b| (b.factor, b.unstable_modes)).filter(|b| until(b.0)).collect();
-    let ours: Vec<_> = small.bifurcations.iter().copied().filter(|b| until(b.0)).collect();
-    if theirs.len() != ours.len() || theirs.iter().zip(&ours).any(|(a, b)| !near(a.0, b.0) || a.1 != b.1) {
-        wrong.push(format!("bifurcations {theirs:?}, small steps {ours:?}"));
-    }
     // EI/L is the energy of a turn of both ends by about a right angle.
     let beam = scene.beam.as_ref().unwrap();
     let floor = 1e-6 * scene.material.young * scene.material.thickness * beam.height.powi(3) / 12.0 / beam.length;
@@ -197,7 +203,8 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
 #[test]
 fn random_bodies_with_moved_supports_end_on_their_path() {
     let (mut judged, mut all) = (0, Vec::new());
-    for scene in (first_seed(500)..).take(share(300) as usize).map(scene) {
+    // In the last two, bifurcations hide each other; beside those of the one before, rounding hides the path.
+    for scene in (first_seed(500)..).take(share(300) as usize).chain([5210, 5072, 2180]).map(scene) {
         if Simulation::new(&scene).is_err() {
             continue;
         }
