@@ -15,7 +15,7 @@
 //!     .probe("tip", "right");
 //! let mut beam = Simulation::new(&ruler)?;
 //! while *beam.status() == Status::Running {
-//!     beam.step(); // one iteration: rotations → assemble → factorize → solve → update
+//!     beam.step(); // one iteration: factorize → solve → advance → linearize
 //! }
 //! let tip = beam.probe("tip").unwrap_or_default();
 //! assert!((tip.y + 0.010).abs() < 0.0001, "the tip went down by {} m", -tip.y);
@@ -56,7 +56,8 @@
 //! data of a scene hold `[f64; 2]`. Units are SI and angles in rad, except where the name or the comment says otherwise
 //! (`_deg`, `_percent`, `_ms`).
 //!
-//! `examples/` has a game loop, grabbing, a mesh of one's own, a motion with energies, a load curve and a study.
+//! `examples/warped.rs` is the method in 60 lines; `src/step.rs` is the code that every iteration executes.
+//! `examples/` also has a game loop, grabbing, a mesh of one's own, a motion with energies, a load curve and a study.
 //!
 //! # Notation
 //!
@@ -78,12 +79,12 @@
 //! # The iteration
 //!
 //! ```text
-//! rotations(F(x)) → assemble A, f → factorize → solve → update x → (draw)
+//! factorize A → solve A d = f_ext − f_int → advance x ← x + d → linearize: R, f_int, A of the new x → (draw)
 //! ```
 //!
 //! A module imports only from its own layer and from layers to its left: `format`, `sentence`, `progress`, `timings`,
 //! `simd`, `image`, `atomic_write` → `model`, the scene's data → `rotation`, `displacement`, `material`, `state`, `continuation`,
-//! `exact_beam` → `element` → `mesh`, `article` → `scene` → `solver` → `assembly` → `method`, `dynamics`, `stress`,
+//! `exact_beam` → `element` → `mesh`, `article` → `scene` → `solver` → `assembly` → `step` → `method`, `dynamics`, `stress`,
 //! `section` → `simulation` → `export`, `study` → `plot` → `render` → the window → the commands. A test holds this
 //! order (`LAYERS` in `tests/style/architecture.rs`).
 //!
@@ -150,6 +151,8 @@ mod simulation;
 #[doc(hidden)]
 pub mod solver;
 mod state;
+#[doc(hidden)]
+pub mod step;
 mod stress;
 #[doc(hidden)]
 pub mod study;

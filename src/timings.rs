@@ -6,14 +6,16 @@ use web_time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Timings {
     /// Rotations and edge angles computed separately at the end of time steps. Those of an iteration are computed in
-    /// the assembly loop and counted in `assemble`.
+    /// the loop over the elements and counted in `linearize`.
     pub rotate: Duration,
     /// Rotations, stiffness, forces, residual.
-    pub assemble: Duration,
+    pub linearize: Duration,
     /// Numeric factorization.
     pub factorize: Duration,
-    /// Forward and back substitution, update.
+    /// Forward and back substitution.
     pub solve: Duration,
+    /// Update of the displacement.
+    pub advance: Duration,
     /// Stability of the result, and ρ.
     pub certify: Duration,
 }
@@ -22,15 +24,16 @@ impl Timings {
     /// Returns the sum of all stages.
     #[must_use]
     pub fn total(&self) -> Duration {
-        self.rotate + self.assemble + self.factorize + self.solve + self.certify
+        self.rotate + self.linearize + self.factorize + self.solve + self.advance + self.certify
     }
 
     /// Adds `other`, stage by stage.
     pub fn add(&mut self, other: &Self) {
         self.rotate += other.rotate;
-        self.assemble += other.assemble;
+        self.linearize += other.linearize;
         self.factorize += other.factorize;
         self.solve += other.solve;
+        self.advance += other.advance;
         self.certify += other.certify;
     }
 }

@@ -9,6 +9,7 @@ mod edge;
 mod held_points;
 mod hold;
 mod kinematics;
+mod linear_system;
 mod loads;
 mod mass;
 mod matrix;
@@ -21,6 +22,7 @@ mod system;
 
 pub use edge::{Edge, NodeWeights};
 pub use kinematics::Kinematics;
+pub use linear_system::{IterationError, LinearSystem};
 pub use loads::Loads;
 pub use mass::Mass;
 pub use matrix::Matrix;

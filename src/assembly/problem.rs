@@ -5,9 +5,8 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::{Kinematics, Loads, Matrix, MouseSpring, NodalProbe, Supports, System, SystemError};
-use crate::element::{Elements, MatrixSum, Rotations, Tangent, UNIT};
+use crate::element::{ElementLoops, MatrixSum, Sums, Tangent, UNIT};
 use crate::material::Lame;
-use crate::rotation::Rotation;
 use crate::scene::{Load, Material, Pulse, Scene, Support};
 use crate::state::State;
 
@@ -52,6 +51,8 @@ pub struct Forces {
     /// The relative residual and the bound of its rounding error, if supports move the body and the residual is within
     /// that bound; [`Problem::balance`] then returns 0.
     pub(crate) below_rounding: Option<[f64; 2]>,
+    /// Relative residual of the last [`Problem::balance`].
+    pub(crate) relative_residual: f64,
 }
 
 impl Forces {
@@ -65,6 +66,7 @@ impl Forces {
             external: zero.clone(),
             residual: zero,
             below_rounding: None,
+            relative_residual: 0.0,
         }
     }
 
@@ -230,43 +232,8 @@ impl Problem {
         &self.probes
     }
 
-    /// Computes the warped force f_int = Σ R Ke (Rᵀ x − X) and its magnitude in one loop over the elements, and, if
-    /// requested, a tangent of the elements over the free unknowns.
-    ///
-    /// f_int is A x − R K X, the article's system (eq. 2) with all terms on one side; it is computed from the strain,
-    /// so that it vanishes exactly at rest.
-    pub fn linearize(&self, state: &State, forces: &mut Forces, tangent: Option<(Tangent, &mut Matrix)>) {
-        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            let rotations = Rotations::Given(&state.rotations);
-            elements.linearize(moduli, state.compensated(), rotations, force, magnitude, matrix);
-        });
-    }
-
-    /// Performs [`System::update_rotations`] and [`Self::linearize`] in the same loop, for a state with a new
-    /// displacement.
-    pub fn update_and_linearize(
-        &self,
-        state: &mut State,
-        kinematics: Kinematics,
-        forces: &mut Forces,
-        tangent: Option<(Tangent, &mut Matrix)>,
-    ) {
-        self.system.rotate_edges(state, kinematics);
-        let State { displacement: u, rotations, .. } = state;
-        let rotations = match kinematics {
-            Kinematics::Corotated => Rotations::Follow(rotations),
-            Kinematics::Linear => {
-                rotations.fill(Rotation::IDENTITY);
-                Rotations::Given(rotations)
-            }
-        };
-        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            elements.linearize(moduli, u.view(), rotations, force, magnitude, matrix);
-        });
-    }
-
     /// Computes as [`Self::linearize`] the discrete gradient of the elastic energy between two states; see
-    /// [`Elements::linearize_between`].
+    /// [`crate::element::Elements::linearize_between`].
     pub(crate) fn linearize_between(
         &self,
         states: [&State; 2],
@@ -274,27 +241,26 @@ impl Problem {
         tangent: Option<(Tangent, &mut Matrix)>,
     ) {
         let states = states.map(|state| (state.compensated(), &*state.rotations));
-        self.sweep(forces, tangent, |elements, moduli, force, magnitude, matrix| {
-            elements.linearize_between(moduli, states, force, magnitude, matrix);
-        });
+        self.sum(forces, tangent, |elements, moduli, sums| elements.linearize_between(moduli, states, sums));
     }
 
-    fn sweep(
+    /// Computes internal forces, their magnitude, and a tangent if requested, by a loop over the elements.
+    pub(crate) fn sum(
         &self,
-        Forces { internal, magnitude, .. }: &mut Forces,
+        Forces { internal: force, magnitude, .. }: &mut Forces,
         tangent: Option<(Tangent, &mut Matrix)>,
-        work: impl FnOnce(&dyn Elements, Lame, &mut [Vector2<f64>], &mut [Vector2<f64>], Option<MatrixSum<'_>>),
+        add: impl FnOnce(&ElementLoops, Lame, Sums<'_>),
     ) {
-        internal.fill(Vector2::zeros());
+        force.fill(Vector2::zeros());
         magnitude.fill(Vector2::zeros());
-        let (elements, moduli) = (self.system.elements(), self.material.membrane());
+        let (elements, moduli, slots) = (self.system.elements(), self.material.membrane(), self.system.slots());
         let Some((tangent, matrix)) = tangent else {
-            work(elements, moduli, internal, magnitude, None);
-            return;
+            return add(elements, moduli, Sums { force, magnitude, matrix: None });
         };
         matrix.clear();
-        let slots = self.system.slots();
-        matrix.sum(|values| work(elements, moduli, internal, magnitude, Some(MatrixSum { tangent, slots, values })));
+        matrix.sum(|values| {
+            add(elements, moduli, Sums { force, magnitude, matrix: Some(MatrixSum { tangent, slots, values }) });
+        });
     }
 
     /// Adds the loads' part, at this load factor and for a body at rest, to a tangent of the elements, N/m: the mouse
@@ -314,7 +280,12 @@ impl Problem {
     /// vanish, the residual is relative to the load. If supports move the body, it is 0 within the rounding error; see
     /// [`Forces`].
     pub fn balance(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
-        let Forces { internal, magnitude, external, residual, below_rounding } = forces;
+        forces.relative_residual = self.balanced(state, kinematics, load_factor, forces);
+        forces.relative_residual
+    }
+
+    fn balanced(&self, state: &State, kinematics: Kinematics, load_factor: f64, forces: &mut Forces) -> f64 {
+        let Forces { internal, magnitude, external, residual, below_rounding, .. } = forces;
         *below_rounding = None;
         self.loads.force(&self.system, &state.displacement, kinematics, load_factor, external);
         if let Some(spring) = &self.mouse_spring {

@@ -11,7 +11,7 @@ use super::hold::nodes_of;
 use super::pattern::component;
 use super::{Kinematics, Matrix, NodeWeights, System};
 use crate::displacement::Displacement;
-use crate::element::{MatrixSum, Rotations, Tangent};
+use crate::element::{MatrixSum, Sums, Tangent};
 use crate::format::number;
 use crate::mesh::Mesh;
 use crate::rotation::Rotation;
@@ -244,10 +244,10 @@ impl Supports {
         let mut scratch = [rest.displacement.to_vec(), rest.displacement.to_vec()];
         let [force, magnitude] = &mut scratch;
         let (elements, moduli) = (system.elements(), material.membrane());
-        let rotations = Rotations::Given(&rest.rotations);
         matrix.sum(|values| {
             let sum = MatrixSum { tangent: Tangent::WARPED, slots: system.slots(), values };
-            elements.linearize(moduli, rest.compensated(), rotations, force, magnitude, Some(sum));
+            let states = [(rest.compensated(), &*rest.rotations); 2];
+            elements.linearize_between(moduli, states, Sums { force, magnitude, matrix: Some(sum) });
         });
         self.diagonal = matrix.diagonal(system.pattern()).collect();
     }

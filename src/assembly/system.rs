@@ -9,7 +9,7 @@ use super::edge::no_such_edge;
 use super::held_points::{HeldPoints, held_points};
 use super::hold::{Hold, check_any_free, check_held, fixed_unknowns};
 use super::{Edge, Kinematics, Pattern};
-use crate::element::Elements;
+use crate::element::ElementLoops;
 use crate::mesh::{Mesh, Recovery};
 use crate::rotation::Rotation;
 use crate::scene::{Beam, Invalid, Load, MeshFile, Scene, Support};
@@ -57,7 +57,7 @@ enum Origin {
 struct MeshData {
     origin: Origin,
     mesh: Mesh,
-    elements: Box<dyn Elements>,
+    elements: ElementLoops,
     edges: Vec<Edge>,
     nodal_areas: Vec<f64>,
     /// Largest number of elements that share a node.
@@ -241,8 +241,8 @@ impl System {
 
     /// Returns the loops over the elements.
     #[must_use]
-    pub fn elements(&self) -> &dyn Elements {
-        self.body.elements.as_ref()
+    pub fn elements(&self) -> &ElementLoops {
+        &self.body.elements
     }
 
     /// Returns free unknowns and sparsity.
@@ -400,7 +400,7 @@ impl System {
     }
 
     /// Sets the angles of the edges, rad, to those of the displaced edges.
-    pub(super) fn rotate_edges(&self, state: &mut State, kinematics: Kinematics) {
+    pub(crate) fn rotate_edges(&self, state: &mut State, kinematics: Kinematics) {
         let State { displacement: u, edge_angles, .. } = state;
         for (edge, angle) in self.edges().iter().zip(edge_angles).filter(|(edge, _)| edge.is_straight()) {
             *angle = match kinematics {

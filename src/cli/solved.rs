@@ -35,15 +35,16 @@ impl Spent {
     }
 
     /// Returns the parts, which sum to the whole, with their names in JSON.
-    pub(super) fn parts(&self) -> [(&'static str, Duration); 9] {
+    pub(super) fn parts(&self) -> [(&'static str, Duration); 10] {
         let Self { wall, set_up, stages, stress, reference } = *self;
-        let Timings { rotate, assemble, factorize, solve, certify } = stages;
+        let Timings { rotate, linearize, factorize, solve, advance, certify } = stages;
         let other = wall.saturating_sub(set_up + stages.total() + stress + reference);
         [
             ("rotate", rotate),
-            ("assemble", assemble),
+            ("assemble", linearize),
             ("factorize", factorize),
             ("solve", solve),
+            ("advance", advance),
             ("certify", certify),
             ("set_up", set_up),
             ("stress", stress),

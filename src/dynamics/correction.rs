@@ -7,9 +7,9 @@
 
 use nalgebra::Vector2;
 
-use crate::assembly::{Matrix, Pattern, System};
+use crate::assembly::{LinearSystem, Pattern, System};
 use crate::rotation::Rotation;
-use crate::solver::{Factor, SolverError};
+use crate::solver::SolverError;
 use crate::state::State;
 
 /// Range of the step length of conjugate gradients in which a kept factor is used. The step length is the ratio of the
@@ -22,10 +22,7 @@ const SAME: f64 = 1e-9;
 /// Matrix over the free unknowns with a factor.
 #[derive(Debug)]
 pub(crate) struct Corrector {
-    pub matrix: Matrix,
-    pub factor: Factor,
-    /// Vector over the free unknowns.
-    pub free: Vec<f64>,
+    pub linear: LinearSystem,
     /// Weights of the factorized matrix, if it is constant.
     pub constant: Option<Weights>,
     kept: Kept,
@@ -81,13 +78,7 @@ struct Kept {
 
 impl Corrector {
     pub fn new(system: &System) -> Result<Self, SolverError> {
-        Ok(Self {
-            matrix: Matrix::new(system.pattern()),
-            factor: Factor::new(system.symbolic()?)?,
-            free: vec![0.0; system.dofs()],
-            constant: None,
-            kept: Kept::default(),
-        })
+        Ok(Self { linear: LinearSystem::new(system)?, constant: None, kept: Kept::default() })
     }
 
     /// Discards factors of equations that have changed.
@@ -127,11 +118,11 @@ impl Corrector {
     /// including the factorization.
     fn serves(&self, weights: Weights) -> bool {
         let Kept { weights: kept, stages, solves, last, .. } = &self.kept;
-        let price = self.factor.price() + f64::from(*solves);
+        let price = self.linear.factor.price() + f64::from(*solves);
         kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*stages) <= price
     }
 
-    /// Replaces the vector over the free unknowns, a residual force, by the correction, to a relative accuracy in the
+    /// Solves for the correction under a residual force, to a relative accuracy in the
     /// norm of the matrix, with the kept factor. Returns the number of back substitutions, and `true` if the accuracy
     /// was reached; if not, the vector is unchanged. If a guess of the correction, m, is given, the accuracy is
     /// relative to the remaining correction.
@@ -141,6 +132,7 @@ impl Corrector {
     /// another iteration.
     pub fn correct_with_kept(
         &mut self,
+        force: &[Vector2<f64>],
         weights: Weights,
         accuracy: Accuracy,
         guess: Option<&[Vector2<f64>]>,
@@ -150,8 +142,9 @@ impl Corrector {
         if !self.serves(weights) {
             return (0, false);
         }
-        let Self { matrix, factor, free, kept, .. } = self;
+        let Self { linear: LinearSystem { matrix, factor, correction: free }, kept, .. } = self;
         let pattern = system.pattern();
+        pattern.restrict(force, free);
         nodal_rotations(system, state, &mut kept.since);
         for (now, then) in kept.since.iter_mut().zip(&kept.then) {
             *now = Rotation { c: now.c * then.c + now.s * then.s, s: now.s * then.c - now.c * then.s };

@@ -129,7 +129,7 @@ impl StageSolver<'_> {
             let tangent = self.tangent(stage);
             // An iteration does not need the current matrix as long as the residual decreases fast.
             let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
-            let residual = self.assemble(stage, tangent.filter(|_| !old), start, state);
+            let residual = self.linearize(stage, tangent.filter(|_| !old), start, state);
             if !residual.norm.is_finite() {
                 return Err(StepError::NotFinite);
             }
@@ -142,7 +142,7 @@ impl StageSolver<'_> {
             }
             let gets_on = old && residual.norm <= PROGRESS * before;
             if old && !gets_on {
-                self.assemble(stage, tangent, start, state);
+                self.linearize(stage, tangent, start, state);
             }
             before = residual.norm;
             self.correct(stage, tangent, gets_on, start, state)?;
@@ -185,9 +185,9 @@ impl StageSolver<'_> {
     }
 
     /// Computes the residual force of a state, and the matrix if requested.
-    fn assemble(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
+    fn linearize(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
         let mut timings = std::mem::take(self.timings);
-        let residual = timed(&mut timings.assemble, || {
+        let residual = timed(&mut timings.linearize, || {
             let forces = self.residual(stage, tangent, start, state);
             if let Some(tangent) = tangent {
                 self.complete_matrix(stage, tangent, start, state);
@@ -203,7 +203,7 @@ impl StageSolver<'_> {
     fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
         let Memory { corrector, forces, free_flight, mean, scratch: [increment, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
-        let matrix = tangent.map(|tangent| (tangent, &mut corrector.matrix));
+        let matrix = tangent.map(|tangent| (tangent, &mut corrector.linear.matrix));
         match self.kinematics {
             Kinematics::Corotated if stage.between => problem.linearize_between([start, state], forces, matrix),
             Kinematics::Linear if stage.between => {
@@ -275,11 +275,11 @@ impl StageSolver<'_> {
             damped_configuration(self.kinematics, stage, start, state, configuration);
             let (system, material) = (self.problem.system(), self.problem.material());
             let moduli = material.membrane().scaled(stage.damping * self.damping.stiffness * stage.rate);
-            corrector.matrix.sum(|values| {
+            corrector.linear.matrix.sum(|values| {
                 system.elements().viscous_matrix(moduli, configuration, system.slots(), values);
             });
         }
-        let matrix = &mut self.memory.corrector.matrix;
+        let matrix = &mut self.memory.corrector.linear.matrix;
         let inertia = stage.inertia + stage.damping * self.damping.mass * stage.rate;
         self.mass.add_to(inertia, matrix);
         if tangent.is_exact() {
@@ -304,7 +304,7 @@ impl StageSolver<'_> {
     ) -> Result<(), StepError> {
         let mut made = self.try_factorize();
         if made.is_err() && tangent.is_exact() {
-            self.assemble(stage, Some(Tangent { definite: true, ..tangent }), start, state);
+            self.linearize(stage, Some(Tangent { definite: true, ..tangent }), start, state);
             made = self.try_factorize();
         }
         self.memory.corrector.constant = if made.is_ok() { self.constant(stage) } else { None };
@@ -314,7 +314,7 @@ impl StageSolver<'_> {
     fn try_factorize(&mut self) -> Result<(), SolverError> {
         let corrector = &mut self.memory.corrector;
         self.counts.factorizations += 1;
-        timed(&mut self.timings.factorize, || corrector.factor.factorize(corrector.matrix.values()))
+        corrector.linear.factorize(self.timings)
     }
 
     /// Returns `true` if corrections are computed with factors of earlier matrices (`auto`).
@@ -332,36 +332,27 @@ impl StageSolver<'_> {
         start: &State,
         state: &mut State,
     ) -> Result<(), StepError> {
-        let pattern = self.problem.system().pattern();
-        pattern.restrict(&self.memory.forces.residual, &mut self.memory.corrector.free);
+        let is_corrected = tangent.is_some() && self.correct_with_kept_factor(stage, earlier, state);
         if let Some(tangent) = tangent
-            && !self.correct_with_kept_factor(stage, earlier, state)
+            && !is_corrected
         {
             if earlier {
-                self.assemble(stage, Some(tangent), start, state);
+                self.linearize(stage, Some(tangent), start, state);
             }
             self.factorize(stage, tangent, start, state)?;
             if self.method == MotionMethod::Adaptive {
                 let weights = self.weights(stage);
                 self.memory.corrector.keep(weights, self.problem.system(), state);
             }
-            self.back_substitute();
-        } else if tangent.is_none() {
-            self.back_substitute();
         }
-        let corrector = &self.memory.corrector;
-        if !corrector.free.iter().all(|v| v.is_finite()) {
-            return Err(StepError::NotFinite);
+        let Memory { corrector, forces, .. } = &mut *self.memory;
+        let (linear, pattern) = (&mut corrector.linear, self.problem.system().pattern());
+        if !is_corrected {
+            self.counts.solves += 1;
+            linear.solve(pattern, &forces.residual, self.timings).map_err(|_| StepError::NotFinite)?;
         }
-        let pattern = self.problem.system().pattern();
-        timed(&mut self.timings.solve, || pattern.advance(&corrector.free, 1.0, &mut state.displacement));
+        linear.advance(pattern, &mut state.displacement, self.timings);
         Ok(())
-    }
-
-    fn back_substitute(&mut self) {
-        let corrector = &mut self.memory.corrector;
-        self.counts.solves += 1;
-        timed(&mut self.timings.solve, || corrector.factor.solve_in_place(&mut corrector.free));
     }
 
     /// Tries to compute the correction with the factor of an earlier matrix; returns `true` if that succeeded.
@@ -375,11 +366,13 @@ impl StageSolver<'_> {
         };
         let accuracy = Accuracy { relative: accuracy, is_checked: earlier };
         let (weights, system) = (self.weights(stage), self.problem.system());
-        let Memory { corrector, free_flight, scratch: [flight, _], .. } = &mut *self.memory;
+        let Memory { corrector, forces, free_flight, scratch: [flight, _], .. } = &mut *self.memory;
         combine(flight, [(1.0, free_flight), (-1.0, &state.displacement)]);
         let guess = stage.from_start.then_some(flight.as_slice());
-        let (solves, done) =
-            timed(&mut self.timings.solve, || corrector.correct_with_kept(weights, accuracy, guess, system, state));
+        let force = &forces.residual;
+        let (solves, done) = timed(&mut self.timings.solve, || {
+            corrector.correct_with_kept(force, weights, accuracy, guess, system, state)
+        });
         self.counts.solves += u64::from(solves);
         done
     }
@@ -388,7 +381,7 @@ impl StageSolver<'_> {
     pub fn measure_net_force(&mut self, state: &State, result: &mut State) {
         self.problem.set_pulses(&|_| 0.0);
         let (problem, forces) = (&*self.problem, &mut self.memory.forces);
-        timed(&mut self.timings.assemble, || {
+        timed(&mut self.timings.linearize, || {
             problem.linearize(state, forces, None);
             problem.loads().force(problem.system(), &state.displacement, self.kinematics, 1.0, &mut forces.external);
             combine(&mut result.net_force, [(1.0, &forces.external), (-1.0, &forces.internal)]);
@@ -476,8 +469,9 @@ impl StageSolver<'_> {
     fn rounding(&mut self, state: &State) -> f64 {
         let pattern = self.problem.system().pattern();
         let corrector = &mut self.memory.corrector;
-        pattern.select(&state.displacement, &mut corrector.free);
-        let squares = corrector.matrix.diagonal(pattern).zip(&corrector.free).map(|(k, u)| (k * u).powi(2));
+        pattern.select(&state.displacement, &mut corrector.linear.correction);
+        let squares =
+            corrector.linear.matrix.diagonal(pattern).zip(&corrector.linear.correction).map(|(k, u)| (k * u).powi(2));
         ROUNDING * squares.sum::<f64>().sqrt()
     }
 }

@@ -41,7 +41,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let system = problem.system();
     let Memory { forces, damping, .. } = &mut *solver.memory;
     let spring_at_start = pull(problem.mouse_spring(), start);
-    timed(&mut solver.timings.assemble, || {
+    timed(&mut solver.timings.linearize, || {
         problem.linearize(start, forces, None);
         problem.loads().force(system, &start.displacement, solver.kinematics, 1.0, &mut forces.external);
         combine(&mut forces.residual, [(1.0, &forces.external), (-1.0, &forces.internal)]);

@@ -10,8 +10,8 @@ use super::matrix::ElementMatrix;
 use super::point::{QuadraturePoint, SMALLEST_STRETCH_TRACE};
 use super::rounding::{Rounded, RoundedPoint, UNIT};
 use super::{
-    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, Tangent, rotations_at,
-    warped_strain,
+    DiscreteGradient, ElementType, Elements, MatrixSum, PointStress, Rotations, StrainRate, StrainVisitor, Sums,
+    Tangent, rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
 use crate::material::Lame;
@@ -306,6 +306,41 @@ impl IncompatibleQuads {
         new
     }
 
+    /// See [`super::ElementLoops::sweep`]. Not inlined: the loops of all elements in one function are slower.
+    #[inline(never)]
+    pub(super) fn sweep(
+        &self,
+        moduli: Lame,
+        u: Compensated<'_>,
+        mut point_stress: impl FnMut([usize; LANES], &Matrix2<Lanes>) -> PointStress,
+        Sums { force, magnitude, mut matrix }: Sums<'_>,
+    ) {
+        let condensed = self.condensed(moduli);
+        let mu = Lanes::splat(moduli.mu);
+        let batches = self.nodes.batches().zip(self.quads.iter().zip(&condensed.stiffness));
+        for ((numbers, nodes), (quad, k)) in batches {
+            let u = u.relative_side_by_side(nodes);
+            let h = quad.centre.displacement_gradient(&u);
+            let PointStress { rotation: r, trace, stress } = point_stress(numbers.all(), &h);
+            let inverse_trace = inverse_trace(r, &h);
+            let k = symmetric(*k) * mu;
+            let twisted = Twisted::new(&k, r.apply_inverse(quad.twist(&u)));
+            let stress = stress * quad.centre.area;
+            let (twist, couple) = (r.apply(twisted.force), twisted.moment * inverse_trace);
+            let mut own = [zero_vector(); 4];
+            for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
+                *own = apply(&stress, g) + twist * *gamma + r.apply(quarter(*g)) * couple;
+            }
+            add_forces(numbers.count, nodes, &own, force, magnitude);
+            if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
+                let mut sum = ElementMatrix::zero();
+                sum.add(&quad.centre, r, quad.centre.tangent(moduli, trace, *tangent));
+                add_twist(&mut sum, quad, &k, r, &twisted, inverse_trace, *tangent);
+                sum.scatter(numbers.first, numbers.count, slots, values);
+            }
+        }
+    }
+
     fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Quad)> {
         let quads = self.quads.iter().flat_map(|quad| (0..LANES).map(move |lane| quad.lane(lane)));
         self.nodes.iter().zip(quads)
@@ -358,41 +393,6 @@ impl Elements for IncompatibleQuads {
         }
     }
 
-    fn linearize(
-        &self,
-        moduli: Lame,
-        u: Compensated<'_>,
-        mut rotations: Rotations<'_>,
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        mut matrix: Option<MatrixSum<'_>>,
-    ) {
-        let condensed = self.condensed(moduli);
-        let mu = Lanes::splat(moduli.mu);
-        let batches = self.nodes.batches().zip(self.quads.iter().zip(&condensed.stiffness));
-        for ((numbers, nodes), (quad, k)) in batches {
-            let u = u.relative_side_by_side(nodes);
-            let h = quad.centre.displacement_gradient(&u);
-            let r = rotations.evaluate(numbers.all(), &h);
-            let (strain, inverse_trace) = (warped_strain(r, &h), inverse_trace(r, &h));
-            let k = symmetric(*k) * mu;
-            let twisted = Twisted::new(&k, r.apply_inverse(quad.twist(&u)));
-            let stress = product(&r.matrix(), &moduli.stress(&strain)) * quad.centre.area;
-            let (twist, couple) = (r.apply(twisted.force), twisted.moment * inverse_trace);
-            let mut own = [zero_vector(); 4];
-            for ((own, g), gamma) in own.iter_mut().zip(&quad.centre.gradients).zip(&quad.gamma) {
-                *own = apply(&stress, g) + twist * *gamma + r.apply(quarter(*g)) * couple;
-            }
-            add_forces(numbers.count, nodes, &own, force, magnitude);
-            if let Some(MatrixSum { tangent, slots, values }) = &mut matrix {
-                let mut sum = ElementMatrix::zero();
-                sum.add(&quad.centre, r, quad.centre.tangent(moduli, strain.m11 + strain.m22, *tangent));
-                add_twist(&mut sum, quad, &k, r, &twisted, inverse_trace, *tangent);
-                sum.scatter(numbers.first, numbers.count, slots, values);
-            }
-        }
-    }
-
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
         let condensed = self.condensed(moduli);
         for ((nodes, quad, k), &r) in self.with_twist(&condensed).zip(r) {
@@ -435,9 +435,7 @@ impl Elements for IncompatibleQuads {
         &self,
         moduli: Lame,
         [(u0, r0), (u1, r1)]: [(Compensated<'_>, &[Rotation]); 2],
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        mut matrix: Option<MatrixSum<'_>>,
+        Sums { force, magnitude, mut matrix }: Sums<'_>,
     ) {
         let condensed = self.condensed(moduli);
         let (half, mu) = (Lanes::splat(0.5), Lanes::splat(moduli.mu));

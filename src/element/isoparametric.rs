@@ -8,13 +8,13 @@ use super::matrix::ElementMatrix;
 use super::point::QuadraturePoint;
 use super::rounding::{Rounded, RoundedPoint};
 use super::{
-    DiscreteGradient, ElementType, Elements, MatrixSum, Rotations, StrainRate, StrainVisitor, rotations_at,
-    warped_strain,
+    DiscreteGradient, ElementType, Elements, MatrixSum, PointStress, Rotations, StrainRate, StrainVisitor, Sums,
+    rotations_at, warped_strain,
 };
 use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::Rotation;
-use crate::simd::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, product, sum_of_lanes, zero_vector};
+use crate::simd::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, sum_of_lanes, zero_vector};
 
 /// Elements with `N` nodes and `Q` quadrature points.
 #[derive(Debug)]
@@ -22,17 +22,6 @@ pub struct Isoparametric<const N: usize, const Q: usize> {
     nodes: Connectivity<N>,
     /// Quadrature points in SIMD batches.
     points: Vec<[QuadraturePoint<N, Lanes>; Q]>,
-}
-
-/// Rotation, strain and stress of a quadrature point in an element loop.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    /// Rotation R.
-    rotation: Rotation<Lanes>,
-    /// Trace of the strain.
-    trace: Lanes,
-    /// First Piola–Kirchhoff stress, times the thickness, N/m.
-    stress: Matrix2<Lanes>,
 }
 
 impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
@@ -59,25 +48,38 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         self.nodes.iter().zip(points.map(|(points, lane)| points.iter().map(move |point| point.lane(lane))))
     }
 
+    /// See [`super::ElementLoops::sweep`]. Not inlined: the loops of all elements in one function are slower.
+    #[inline(never)]
+    pub(super) fn sweep(
+        &self,
+        moduli: Lame,
+        u: Compensated<'_>,
+        mut point_stress: impl FnMut([usize; LANES], &Matrix2<Lanes>) -> PointStress,
+        sums: Sums<'_>,
+    ) {
+        let gather = |nodes: &[[u32; LANES]; N]| u.relative_side_by_side(nodes);
+        let look =
+            |u: &_, numbers, point: &QuadraturePoint<N, Lanes>| point_stress(numbers, &point.displacement_gradient(u));
+        self.sweep_with(gather, look, moduli, sums);
+    }
+
     /// Loops over all elements: `gather` collects nodal values of a batch, `look` computes rotation, strain trace and
     /// stress of a quadrature point from them. Adds nodal forces, their absolute values, and the tangent to `matrix` if
     /// given.
     #[inline(always)]
-    fn sweep<D>(
+    fn sweep_with<D>(
         &self,
         gather: impl Fn(&[[u32; LANES]; N]) -> D,
-        mut look: impl FnMut(&D, [usize; LANES], &QuadraturePoint<N, Lanes>) -> Seen,
+        mut look: impl FnMut(&D, [usize; LANES], &QuadraturePoint<N, Lanes>) -> PointStress,
         moduli: Lame,
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        mut matrix: Option<MatrixSum<'_>>,
+        Sums { force, magnitude, mut matrix }: Sums<'_>,
     ) {
         for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
             let gathered = gather(nodes);
             let mut own = [zero_vector(); N];
             let mut sum = ElementMatrix::zero();
             for (q, point) in points.iter().enumerate() {
-                let Seen { rotation, trace, stress } = look(&gathered, numbers.points(Q, q), point);
+                let PointStress { rotation, trace, stress } = look(&gathered, numbers.points(Q, q), point);
                 let stress = stress * point.area;
                 own.iter_mut().zip(&point.gradients).for_each(|(own, g)| *own += apply(&stress, g));
                 if let Some(MatrixSum { tangent, .. }) = &matrix {
@@ -149,26 +151,6 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         }
     }
 
-    fn linearize(
-        &self,
-        moduli: Lame,
-        u: Compensated<'_>,
-        mut rotations: Rotations<'_>,
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        matrix: Option<MatrixSum<'_>>,
-    ) {
-        let gather = |nodes: &[[u32; LANES]; N]| u.relative_side_by_side(nodes);
-        let look = |u: &[Vector2<Lanes>; N], numbers, point: &QuadraturePoint<N, Lanes>| {
-            let h = point.displacement_gradient(u);
-            let rotation = rotations.evaluate(numbers, &h);
-            let strain = warped_strain(rotation, &h);
-            let stress = product(&rotation.matrix(), &moduli.stress(&strain));
-            Seen { rotation, trace: strain.m11 + strain.m22, stress }
-        };
-        self.sweep(gather, look, moduli, force, magnitude, matrix);
-    }
-
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]) {
         for ((nodes, points), r) in self.elements().zip(r.chunks_exact(Q)) {
             let own = Rounded::relative(u, nodes);
@@ -189,17 +171,15 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         &self,
         moduli: Lame,
         [(u0, r0), (u1, r1)]: [(Compensated<'_>, &[Rotation]); 2],
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        matrix: Option<MatrixSum<'_>>,
+        sums: Sums<'_>,
     ) {
         let gather = |nodes: &[[u32; LANES]; N]| [u0, u1].map(|u| u.relative_side_by_side(nodes));
         let look = |u: &[[Vector2<Lanes>; N]; 2], numbers, point: &QuadraturePoint<N, Lanes>| {
             let h = [point.displacement_gradient(&u[0]), point.displacement_gradient(&u[1])];
             let between = DiscreteGradient::new(h, [rotations_at(r0, numbers), rotations_at(r1, numbers)]);
-            Seen { rotation: between.rotation, trace: between.trace, stress: between.stress(moduli) }
+            PointStress { rotation: between.rotation, trace: between.trace, stress: between.stress(moduli) }
         };
-        self.sweep(gather, look, moduli, force, magnitude, matrix);
+        self.sweep_with(gather, look, moduli, sums);
     }
 
     fn viscous_force(&self, moduli: Lame, u: &[Vector2<f64>], rate: StrainRate<'_>, force: &mut [Vector2<f64>]) {

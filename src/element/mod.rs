@@ -70,7 +70,7 @@ pub struct ElementType {
 }
 
 /// Constructor of element loops from rest nodes (m) and node numbers, element by element.
-pub type MakeElements = fn(nodes: &[Vector2<f64>], connectivity: &[u32]) -> Box<dyn Elements>;
+pub type MakeElements = fn(nodes: &[Vector2<f64>], connectivity: &[u32]) -> ElementLoops;
 
 /// Point of a quadrature rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,7 +186,7 @@ impl ElementType {
 }
 
 /// Matrix that an element loop adds up with the force: a sum of A = Σ R Ke Rᵀ and G.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Tangent {
     /// Factor of A.
     pub warped: f64,
@@ -225,6 +225,74 @@ pub struct MatrixSum<'a> {
     pub values: &'a mut [f64],
 }
 
+/// Rotation, strain and stress of a quadrature point, one element per lane.
+#[derive(Clone, Copy, Debug)]
+pub struct PointStress {
+    /// Rotation R.
+    pub rotation: Rotation<Lanes>,
+    /// Trace of the strain S − I.
+    pub trace: Lanes,
+    /// First Piola–Kirchhoff stress R T, times the thickness, N/m.
+    pub stress: Matrix2<Lanes>,
+}
+
+/// Destinations of a loop over the elements.
+#[derive(Debug)]
+pub struct Sums<'a> {
+    /// Nodal forces, N.
+    pub force: &'a mut [Vector2<f64>],
+    /// Absolute values of the elements' forces, by component, N.
+    pub magnitude: &'a mut [Vector2<f64>],
+    /// Matrix, N/m, if requested.
+    pub matrix: Option<MatrixSum<'a>>,
+}
+
+/// Loops over the elements of a mesh, all of one type.
+#[derive(Debug)]
+pub enum ElementLoops {
+    /// Three-node triangles.
+    T3(Isoparametric<3, 1>),
+    /// Six-node triangles.
+    T6(Isoparametric<6, 3>),
+    /// Four-node quadrilaterals.
+    Q4(IncompatibleQuads),
+}
+
+impl ElementLoops {
+    /// Loops over all elements at a displacement: `point_stress` computes rotation and stress of the points with these indices
+    /// from their displacement gradients H = F − I; the loop adds the forces Σ ∫ R T ∇N dA and the tangent at R.
+    ///
+    /// With the rotations of `u` the force is the gradient of the energy, and A + G its Hessian; elements whose energy
+    /// is not stationary in R include the dependence of R on x. With any other rotations, as in linear theory, the
+    /// force is linear in `u`.
+    #[inline(always)]
+    pub fn sweep(
+        &self,
+        moduli: Lame,
+        u: Compensated<'_>,
+        point_stress: impl FnMut([usize; LANES], &Matrix2<Lanes>) -> PointStress,
+        sums: Sums<'_>,
+    ) {
+        match self {
+            Self::T3(elements) => elements.sweep(moduli, u, point_stress, sums),
+            Self::T6(elements) => elements.sweep(moduli, u, point_stress, sums),
+            Self::Q4(elements) => elements.sweep(moduli, u, point_stress, sums),
+        }
+    }
+}
+
+impl std::ops::Deref for ElementLoops {
+    type Target = dyn Elements;
+
+    fn deref(&self) -> &(dyn Elements + 'static) {
+        match self {
+            Self::T3(elements) => elements,
+            Self::T6(elements) => elements,
+            Self::Q4(elements) => elements,
+        }
+    }
+}
+
 /// Rotations used by an element loop.
 #[derive(Debug)]
 pub enum Rotations<'a> {
@@ -237,7 +305,7 @@ pub enum Rotations<'a> {
 impl Rotations<'_> {
     /// Returns the rotations with these indices, for displacement gradients H; updates them if they follow.
     #[inline(always)]
-    fn evaluate(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
+    pub fn evaluate(&mut self, numbers: [usize; LANES], h: &Matrix2<Lanes>) -> Rotation<Lanes> {
         match self {
             Self::Given(r) => rotations_at(r, numbers),
             Self::Follow(r) => {
@@ -293,40 +361,16 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
     /// Sets every R to the polar factor of F(x); where that is undefined, R is kept.
     fn rotations(&self, u: Compensated<'_>, r: &mut [Rotation]);
 
-    /// Adds force and tangent in one loop: updates the rotations if they follow `u`, adds the warped force Σ R Ke (Rᵀ x
-    /// − X) to `force`, the elements' absolute values by component to `magnitude`, N, and a tangent to `matrix` if
-    /// given, N/m.
-    ///
-    /// With the rotations of `u` the force is the gradient of the energy, and A + G its Hessian; elements whose energy
-    /// is not stationary in R include the dependence of R on x. With any other rotations, as in linear theory, the
-    /// force is linear in `u`.
-    fn linearize(
-        &self,
-        moduli: Lame,
-        u: Compensated<'_>,
-        rotations: Rotations<'_>,
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        matrix: Option<MatrixSum<'_>>,
-    );
-
-    /// Adds to `bound` an upper bound of the rounding error of the forces of [`Self::linearize`], N, for rotations that
+    /// Adds to `bound` an upper bound of the rounding error of the forces of [`ElementLoops::sweep`], N, for rotations that
     /// are the polar factors of F, or identities: by component, to first order in the unit roundoff, and without the
     /// error of summing elements.
     fn add_rounding(&self, moduli: Lame, u: Compensated<'_>, r: &[Rotation], bound: &mut [Vector2<f64>]);
 
-    /// Adds force and tangent between two states, as [`Self::linearize`]: the discrete gradient of the elastic energy,
+    /// Adds force and tangent between two states, as [`ElementLoops::sweep`]: the discrete gradient of the elastic energy,
     /// a force whose work from one state to the other is exactly the difference of their energies and whose resultant
     /// moment is zero; and A and G at the mean rotation and strain. Half of A + G approximates the derivative with
     /// respect to the second state.
-    fn linearize_between(
-        &self,
-        moduli: Lame,
-        states: [(Compensated<'_>, &[Rotation]); 2],
-        force: &mut [Vector2<f64>],
-        magnitude: &mut [Vector2<f64>],
-        matrix: Option<MatrixSum<'_>>,
-    );
+    fn linearize_between(&self, moduli: Lame, states: [(Compensated<'_>, &[Rotation]); 2], sums: Sums<'_>);
 
     /// Adds the viscous force Σ ∫ F ℂ : Ė ∇N dA to `force`, N: `moduli` (N s/m) times a rate Ė of Green's strain, in
     /// the configuration F of the displacement `u`. The rate vanishes for rigid motions.

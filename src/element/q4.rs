@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::cell::{SQUARE, bilinear};
-use super::{ElementType, IncompatibleQuads, RulePoint};
+use super::{ElementLoops, ElementType, IncompatibleQuads, RulePoint};
 use crate::model::ElementKind;
 
 /// Gauss's two points on [−1, 1]: ±1/√3.
@@ -37,7 +37,7 @@ pub(super) static Q4: ElementType = ElementType {
     drawn_pieces: 4,
     vtk_type: 9,
     gmsh_type: 3,
-    loops: |nodes, connectivity| Box::new(IncompatibleQuads::new(&Q4, nodes, connectivity)),
+    loops: |nodes, connectivity| ElementLoops::Q4(IncompatibleQuads::new(&Q4, nodes, connectivity)),
 };
 
 fn local_gradients([x, y]: [f64; 2]) -> Vec<Vector2<f64>> {

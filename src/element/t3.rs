@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::cell::TRIANGLE;
-use super::{ElementType, Isoparametric, RulePoint};
+use super::{ElementLoops, ElementType, Isoparametric, RulePoint};
 use crate::model::ElementKind;
 
 /// Registry entry of the element.
@@ -27,5 +27,5 @@ pub(super) static T3: ElementType = ElementType {
     drawn_pieces: 1,
     vtk_type: 5,
     gmsh_type: 2,
-    loops: |nodes, connectivity| Box::new(Isoparametric::<3, 1>::new(&T3, nodes, connectivity)),
+    loops: |nodes, connectivity| ElementLoops::T3(Isoparametric::new(&T3, nodes, connectivity)),
 };

@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::cell::TRIANGLE;
-use super::{ElementType, Isoparametric, RulePoint};
+use super::{ElementLoops, ElementType, Isoparametric, RulePoint};
 use crate::model::ElementKind;
 
 /// Dunavant 1985, degree 4: six points in two groups of three.
@@ -44,7 +44,7 @@ pub(super) static T6: ElementType = ElementType {
     drawn_pieces: 4,
     vtk_type: 22,
     gmsh_type: 9,
-    loops: |nodes, connectivity| Box::new(Isoparametric::<6, 3>::new(&T6, nodes, connectivity)),
+    loops: |nodes, connectivity| ElementLoops::T6(Isoparametric::new(&T6, nodes, connectivity)),
 };
 
 /// Returns lₐ (2 lₐ − 1) at corners, 4 lₐ l_b between them, in area coordinates l.

@@ -1,12 +1,13 @@
 //! Properties of a result independent of the method: stability, and convergence of the warped iteration.
 
-use super::iteration::{Workspace, assemble};
-use crate::assembly::{Forces, Kinematics, Matrix, Problem};
+use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
 use crate::format::{number, two_digits};
 use crate::sentence::{Sentence, sentence};
 use crate::solver::lanczos::extreme_eigenvalues;
+use crate::solver::{Factor, SolverError};
 use crate::state::State;
+use crate::step::Workspace;
 
 /// Properties of a result independent of the method that found it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -28,8 +29,31 @@ pub fn is_stable(
     forces: &mut Forces,
     workspace: &mut Workspace,
 ) -> bool {
-    assemble(problem, state, forces, workspace, Tangent::EXACT, load_factor);
-    workspace.factor.factorize(workspace.matrix.values()).is_ok()
+    compute_tangent(problem, state, forces, workspace, Tangent::EXACT, load_factor);
+    check_factor(workspace, problem.system()).is_ok_and(|(matrix, factor)| factor.factorize(matrix.values()).is_ok())
+}
+
+/// Computes a tangent of a state, including the loads' part.
+fn compute_tangent(
+    problem: &Problem,
+    state: &State,
+    forces: &mut Forces,
+    workspace: &mut Workspace,
+    tangent: Tangent,
+    load_factor: f64,
+) {
+    problem.linearize(state, forces, Some((tangent, &mut workspace.linear.matrix)));
+    problem.add_load_stiffness(state, tangent, load_factor, &mut workspace.linear.matrix);
+    workspace.tangent = Some(tangent);
+}
+
+/// Returns the matrix, and a factor other than that of the iteration, which `auto` uses again.
+fn check_factor<'a>(
+    workspace: &'a mut Workspace,
+    system: &System,
+) -> Result<(&'a Matrix, &'a mut Factor), SolverError> {
+    let factor = workspace.check_factor.take().map_or_else(|| system.symbolic().and_then(Factor::new), Ok)?;
+    Ok((&workspace.linear.matrix, workspace.check_factor.insert(factor)))
 }
 
 /// Returns the stiffness along the supports' prescribed motion at constant loads, J: the derivative of their
@@ -64,10 +88,10 @@ pub fn support_stiffness(
         system.update_rotations(&mut trial, Kinematics::Corotated);
         problem.linearize(&trial, forces, None);
         problem.balance(&trial, Kinematics::Corotated, load_factor, forces);
-        pattern.restrict(forces.residual(), &mut workspace.free);
-        free.iter_mut().zip(&workspace.free).for_each(|(sum, f)| *sum += f / (2.0 * h));
+        pattern.restrict(forces.residual(), &mut workspace.linear.correction);
+        free.iter_mut().zip(&workspace.linear.correction).for_each(|(sum, f)| *sum += f / (2.0 * h));
     }
-    workspace.factor.solve_in_place(&mut free);
+    check_factor(workspace, system).ok()?.1.solve_in_place(&mut free);
     let (mut stiffness, mut noise) = (0.0, 0.0);
     for h in [H, -H] {
         trial.copy_from(state);
@@ -132,9 +156,9 @@ pub fn fixed_point_rho(
     let mut a = Matrix::new(system.pattern());
     problem.linearize(state, forces, Some((Tangent::WARPED, &mut a)));
     problem.add_load_stiffness(state, Tangent::WARPED, load_factor, &mut a);
-    workspace.factor.factorize(a.values()).ok()?;
-    assemble(problem, state, forces, workspace, Tangent::GEOMETRIC, load_factor);
-    let Workspace { matrix: g, factor, .. } = workspace;
+    check_factor(workspace, system).ok()?.1.factorize(a.values()).ok()?;
+    compute_tangent(problem, state, forces, workspace, Tangent::GEOMETRIC, load_factor);
+    let (g, factor) = check_factor(workspace, system).ok()?;
 
     let multiply = |v: &[f64], gv: &mut [f64]| g.multiply(system.pattern(), v, gv);
     let [low, high] = extreme_eigenvalues(system.dofs(), LANCZOS_STEPS, multiply, |b| factor.solve_in_place(b))?;

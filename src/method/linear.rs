@@ -2,10 +2,11 @@
 //! grow far too long.
 
 use super::status::StallDetector;
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
+use crate::step::{Iteration, Linearization, Operation, RotationUpdate};
 
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Linear,
@@ -34,17 +35,19 @@ impl Method for Linear {
         *self = Self { factorized: self.factorized && keeps_factor, ..Self::default() };
     }
 
-    fn kinematics(&self) -> Kinematics {
-        Kinematics::Linear
+    fn linearization(&self) -> Linearization {
+        Linearization { kinematics: Kinematics::Linear, tangent: None, load_factor: 1.0 }
     }
 
-    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+    fn plan(&mut self, it: &mut Iteration<'_>, _: &Criteria) -> Result<Operation, IterationError> {
+        // The tangent of a mouse spring is not constant.
         let held = it.problem.mouse_spring().is_some();
-        if !self.factorized || held {
-            it.assemble(Tangent::WARPED, 1.0);
-            it.factorize()?;
-            // The tangent of a mouse spring is not constant.
-            self.factorized = !held;
+        let keeps_factor = self.factorized && !held;
+        if !keeps_factor {
+            it.linearize(
+                RotationUpdate::Keep,
+                Linearization { tangent: Some(Tangent::WARPED), ..self.linearization() },
+            );
         }
         if !self.solved && !held {
             // The result does not depend on the previous state; a large displacement would only add rounding errors.
@@ -52,14 +55,15 @@ impl Method for Linear {
             it.forces.residual.copy_from_slice(&it.forces.external);
             self.solved = true;
         }
-        it.put_supports(1.0, Kinematics::Linear);
-        it.step().map(|step| self.stall.steps.stepped(step))
+        it.put_supports(self.linearization());
+        Ok(if keeps_factor { Operation::Solve } else { Operation::Factorize })
     }
 
-    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
+        self.factorized = step.map_or(self.factorized, |_| it.problem.mouse_spring().is_none());
         if !it.supports_are_at(1.0, Kinematics::Linear) {
             return Verdict::Continue;
         }
-        self.stall.check_convergence(it)
+        self.stall.check_convergence(it, criteria)
     }
 }

@@ -1,15 +1,12 @@
 //! Methods: the iterations that bring a state closer to equilibrium.
 //!
-//! A method decides which matrix an iteration factorizes, and when the solve is done. The iteration itself is the
-//! article's, the same for all methods:
-//!
-//! rotations(F(x)) → assemble A, f → factorize → solve → update x
+//! A method decides which matrix a step factorizes, under which part of the load, and when the solve is done. The step
+//! itself is the article's, the same for all methods: [`crate::step`].
 
-use crate::assembly::Kinematics;
-use crate::element::Tangent;
 use crate::scene::{Analysis, Invalid, MethodKind};
 use crate::sentence::sentence;
 use crate::state::State;
+use crate::step::{Iteration, Linearization, Operation};
 
 mod auto;
 mod certificate;
@@ -20,10 +17,11 @@ mod path;
 mod status;
 mod warped;
 
+pub use crate::assembly::IterationError;
+pub use crate::step::Workspace;
 pub use auto::{AutoReport, Decision};
 pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_text, support_stiffness};
-pub(crate) use iteration::measure;
-pub use iteration::{Iteration, IterationError, Tolerances, Workspace};
+pub(crate) use iteration::Criteria;
 pub use path::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub(crate) use path::{PathFollower, PathPart, PathProgress, StaticEquations};
 pub(crate) use status::is_useful_start;
@@ -125,11 +123,8 @@ pub enum Verdict {
     Continue,
     /// Continue with another iteration; the load factor or the state has changed since the forces were computed.
     Changed,
-    /// Converged.
-    Converged,
-    /// Converged as far as double precision allows: the residual is above the tolerance, but within this bound of its
-    /// rounding error.
-    AtRounding(f64),
+    /// Converged; where the residual is above the tolerance, it is within this bound of its rounding error.
+    Converged(Option<f64>),
     /// Give up.
     Stop(Reason),
 }
@@ -147,8 +142,25 @@ pub enum Restart {
     NewUnknowns,
 }
 
-/// Solution method. It may have internal state; a new one starts at rest. The trait is not public: methods are listed
-/// in [`METHODS`].
+/// Figures of a method for display.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(crate) struct MethodReport {
+    /// Number of load steps so far, including the current one.
+    pub load_steps: u32,
+    /// Number of linear solves of the last iteration.
+    pub solves: u32,
+    /// Length of the last step relative to the one before: below 1 the iteration contracts.
+    pub step_ratio: Option<f64>,
+    /// Counts of the solves and factorizations that were skipped; `None` for methods that skip none.
+    pub auto_report: Option<AutoReport>,
+}
+
+impl MethodReport {
+    const DEFAULT: Self = Self { load_steps: 1, solves: 1, step_ratio: None, auto_report: None };
+}
+
+/// Solution method: a policy over the steps of [`crate::step`]. It may have internal state; a new one starts at rest.
+/// The trait is not public: methods are listed in [`METHODS`].
 pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     /// Clones without cached factors; they are rebuilt on first use.
     fn copy(&self) -> Box<dyn Method>;
@@ -156,30 +168,12 @@ pub(crate) trait Method: std::fmt::Debug + Send + Sync {
     /// Resets the iteration, and discards what the restart makes invalid.
     fn restart(&mut self, why: Restart);
 
-    /// Returns the strain measure of the current state.
-    fn kinematics(&self) -> Kinematics {
-        Kinematics::Corotated
-    }
+    /// Returns strain measure and load factor of the current state, and the tangent that the next step will need.
+    fn linearization(&self) -> Linearization;
 
-    /// Returns the tangent of the current state that the next iteration will need; it is assembled in the same loop as
-    /// the forces. `None` if none is needed or the choice is still open.
-    fn tangent(&self) -> Option<Tangent> {
-        None
-    }
-
-    /// Returns the fraction of the load currently applied.
-    fn load_factor(&self) -> f64 {
-        1.0
-    }
-
-    /// Returns the number of load steps so far, including the current one.
-    fn load_steps(&self) -> u32 {
-        1
-    }
-
-    /// Returns the number of linear solves of the last iteration.
-    fn solves(&self) -> u32 {
-        1
+    /// Returns figures for display.
+    fn report(&self) -> MethodReport {
+        MethodReport::DEFAULT
     }
 
     /// Returns the critical points of the path from rest to the current state; `None` if the state is not known to be
@@ -188,32 +182,23 @@ pub(crate) trait Method: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
-    fn step_ratio(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns counts of the solves and factorizations that were skipped; `None` for methods that skip none.
-    fn report(&self) -> Option<AutoReport> {
-        None
-    }
-
-    /// Performs one iteration: computes a new displacement from the current one.
+    /// Prepares the state for the next step, and returns the operation with which it begins. Afterwards,
+    /// [`Self::linearization`] is that of its end.
     ///
     /// # Errors
     /// [`IterationError`]; the caller then restores the state.
-    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError>;
+    fn plan(&mut self, it: &mut Iteration<'_>, criteria: &Criteria) -> Result<Operation, IterationError>;
 
-    /// Decides whether the state has converged.
-    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict;
+    /// Decides whether the linearized state is the result; `step` is the length of the step that led to it, if one did.
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict;
 
-    /// Leaves the best available state; called when the iteration limit is reached.
-    fn stop(&mut self, _: &mut State) {}
-
-    /// Handles a failed iteration; the state is the one before it. Returns how to continue.
+    /// Handles a failed step; the state is the one before it. Returns how to continue.
     fn recover(&mut self, _: &mut Iteration<'_>, error: IterationError) -> Verdict {
         Verdict::Stop(Reason::Iteration(error))
     }
+
+    /// Leaves the best available state; called when the iteration limit is reached.
+    fn stop(&mut self, _: &mut State) {}
 }
 
 #[cfg(test)]

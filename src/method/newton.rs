@@ -4,7 +4,7 @@
 //! solution, which is far too long, and the second one corrects it: a line search on the energy would reject both and
 //! slow the method down. The result counts as the end of the path from rest if nothing in the iteration softens, as columns and arches do:
 //!
-//! - the body does not soften to first order in the load ([`softening`]),
+//! - the body does not soften to first order in the load ([`softens`]),
 //! - every tangent is positive definite, as the factorization shows at no extra cost,
 //! - the displacement is not larger than that of linear theory.
 //!
@@ -21,12 +21,13 @@ use nalgebra::Vector2;
 use super::iteration::ROUNDING;
 use super::path::{Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
 use super::status::{LONGEST_STEP, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Reason, Restart, Verdict, Workspace};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::continuation::ContinuationPoint;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
 use crate::state::{State, largest};
+use crate::step::{Iteration, Linearization, Operation, Workspace};
 use crate::timings::timed;
 
 pub(super) const ENTRY: MethodEntry = MethodEntry {
@@ -230,41 +231,24 @@ impl Newton {
         matches!(self.phase, NewtonPhase::Direct) && self.from_rest && is_fast
     }
 
-    /// Performs a full step under the current load.
-    fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        it.carry(self.load_factor);
+    /// Prepares a full step under the current load.
+    fn plan_full_step(&mut self, it: &mut Iteration<'_>) -> Operation {
         let is_first = self.from_rest && self.steps == 1;
-        if is_first && it.problem.loads().moments().next().is_some() {
-            // Linear theory has no part of the moments in its tangent.
-            it.workspace.tangent = None;
-            it.assemble(Tangent::EXACT, 0.0);
-        }
-        it.assemble(Tangent::EXACT, self.load_factor);
-        let definite = it.factorize_symmetric();
-        if self.from_rest && !definite {
-            self.give_up(it.state);
-            return Ok(());
-        }
+        // Linear theory has no part of the moments in its tangent.
+        let is_linear = is_first && it.problem.loads().moments().next().is_some();
+        let tangent = if is_linear { Tangent::WARPED } else { Tangent::EXACT };
+        it.carry(Linearization { tangent: Some(tangent), ..self.linearization() });
         if is_first {
             it.workspace.trial.copy_from(it.state);
         }
-        it.put_supports(self.load_factor, Kinematics::Corotated);
-        let step = it.step()?;
-        self.contraction = (self.last_step > 0.0).then(|| step / self.last_step);
-        self.last_step = step;
-        if is_first {
-            self.linear = size(&it.state.displacement);
-            if softens(it) {
-                self.give_up(it.state);
-            }
-        }
-        Ok(())
+        it.put_supports(self.linearization());
+        if self.from_rest { Operation::Factorize } else { Operation::FactorizeIndefinite }
     }
 
     /// Follows the path by a step.
-    fn step_on_path(&mut self, it: &mut Iteration<'_>) {
+    fn step_on_path(&mut self, it: &mut Iteration<'_>, solves_left: u32) {
         let NewtonPhase::Path(follower) = &mut self.phase else { return };
-        let Iteration { problem, forces, workspace, timings, state, solves_left, .. } = it;
+        let Iteration { problem, state, forces, workspace, timings } = it;
         let mut equations = StaticEquations::new(problem, forces, workspace, timings);
         let before = follower.as_ref().map_or(0, |follower| follower.linearizations());
         if follower.is_none() {
@@ -274,9 +258,8 @@ impl Newton {
             self.end = Some(Reason::NoEquilibrium(0.0));
             return;
         };
-        let progress = follower.advance(&mut equations, before + *solves_left);
+        let progress = follower.advance(&mut equations, before + solves_left);
         drop(follower.take_parts());
-        workspace.tangent = None;
         self.solves = (follower.linearizations() - before).max(1);
         self.load_steps = follower.steps;
         let shown = match &progress {
@@ -309,18 +292,17 @@ impl Newton {
     }
 }
 
-/// Returns the displacement to second order in the load relative to the linear displacement d, minus 1; it is positive
-/// for a body that softens, such as an arch. With the elastic energy ½ a s² + ⅙ c s³ along s d it is −c/2a. d is the
-/// first step from rest, which began at `workspace.trial`.
-fn softening(it: &mut Iteration<'_>) -> f64 {
+/// Returns `true` if the body softens, as an arch does: the displacement to second order in the load relative to the
+/// linear displacement d, minus 1, is then positive. With the elastic energy ½ a s² + ⅙ c s³ along s d it is −c/2a. d is
+/// the first step from rest, which began at `workspace.trial`.
+pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
     /// Length of the differences relative to the height of the strip: strains and rotations of this order.
     const STEP: f64 = 1e-3;
     /// Largest displacement, relative to the size of the body, that is only rounding error.
     const ROUNDING_ERROR: f64 = 1e-11;
-    let Iteration { problem, forces, state, workspace, timings, .. } = it;
-    let Workspace { trial, tangent, nodal, .. } = &mut **workspace;
-    *tangent = None;
-    timed(&mut timings.assemble, || {
+    let Iteration { problem, state, workspace, timings, .. } = it;
+    let Workspace { trial, trial_forces: forces, nodal, .. } = &mut **workspace;
+    let softening = timed(&mut timings.linearize, || {
         for (d, (start, end)) in nodal.iter_mut().zip(trial.displacement.iter().zip(&state.displacement)) {
             *d = end - start;
         }
@@ -346,13 +328,8 @@ fn softening(it: &mut Iteration<'_>) -> f64 {
         };
         let ([ahead, pushes], [behind, pulls]) = (work(step), work(-2.0 * step));
         -(ahead + behind - (pushes - pulls)) / (step * (ahead - behind))
-    })
-}
-
-/// Returns `true` if the exact tangent of the current state is positive definite.
-fn is_stable_now(it: &mut Iteration<'_>, load_factor: f64) -> bool {
-    it.assemble(Tangent::EXACT, load_factor);
-    it.factorize().is_ok()
+    });
+    softening > MAX_SOFTENING
 }
 
 impl Method for Newton {
@@ -364,20 +341,12 @@ impl Method for Newton {
         *self = Self::default();
     }
 
-    fn tangent(&self) -> Option<Tangent> {
-        Some(Tangent::EXACT)
+    fn linearization(&self) -> Linearization {
+        Linearization::corotated(Tangent::EXACT, self.load_factor)
     }
 
-    fn load_factor(&self) -> f64 {
-        self.load_factor
-    }
-
-    fn load_steps(&self) -> u32 {
-        self.load_steps
-    }
-
-    fn solves(&self) -> u32 {
-        self.solves
+    fn report(&self) -> MethodReport {
+        MethodReport { load_steps: self.load_steps, solves: self.solves, ..MethodReport::DEFAULT }
     }
 
     fn path_events(&self) -> Option<PathEvents> {
@@ -389,27 +358,38 @@ impl Method for Newton {
         }
     }
 
-    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+    fn plan(&mut self, it: &mut Iteration<'_>, criteria: &Criteria) -> Result<Operation, IterationError> {
         self.solves = 1;
-        if let NewtonPhase::Path(_) = self.phase {
-            self.step_on_path(it);
-            return Ok(());
-        }
-        self.steps += 1;
-        if self.steps == 1 && matches!(self.phase, NewtonPhase::Direct) {
-            self.from_rest = it.is_at_rest();
-            if self.from_rest && it.problem.supports().move_the_body() {
-                self.begin_path();
-                self.step_on_path(it);
-                return Ok(());
+        if !matches!(self.phase, NewtonPhase::Path(_)) {
+            self.steps += 1;
+            if self.steps == 1 && matches!(self.phase, NewtonPhase::Direct) {
+                self.from_rest = it.is_at_rest();
+                if self.from_rest && it.problem.supports().move_the_body() {
+                    self.begin_path();
+                }
             }
         }
-        self.step(it)
+        if let NewtonPhase::Path(_) = self.phase {
+            self.step_on_path(it, criteria.solves_left);
+            return Ok(Operation::Linearize);
+        }
+        Ok(self.plan_full_step(it))
     }
 
-    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
-        let (residual, is_partial) = (it.residual, self.load_factor < 1.0);
-        let tolerance = it.tolerances.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
+        if let Some(step) = step {
+            self.contraction = (self.last_step > 0.0).then(|| step / self.last_step);
+            self.last_step = step;
+            if self.from_rest && self.steps == 1 {
+                self.linear = size(&it.state.displacement);
+                if softens(it) {
+                    self.give_up(it.state);
+                    return Verdict::Changed;
+                }
+            }
+        }
+        let (residual, is_partial) = (it.forces.relative_residual, self.load_factor < 1.0);
+        let tolerance = criteria.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
         if let NewtonPhase::Path(_) = self.phase {
             return self.end.take().map_or(Verdict::Continue, Verdict::Stop);
         }
@@ -421,7 +401,7 @@ impl Method for Newton {
         if self.steps == 0 && matches!(self.phase, NewtonPhase::Direct) {
             // A body at rest without load is in equilibrium, but its supports may have to move.
             let is_there = it.supports_are_at(1.0, Kinematics::Corotated);
-            return if residual <= tolerance && is_there { Verdict::Converged } else { Verdict::Continue };
+            return if residual <= tolerance && is_there { Verdict::Converged(None) } else { Verdict::Continue };
         }
         let gets_on = residual < self.last_residual;
         self.last_residual = residual;
@@ -430,7 +410,7 @@ impl Method for Newton {
         if residual <= tolerance || floor.is_some() {
             let grows = self.from_rest && grows(it.state, self.linear);
             let is_known = self.may_be_unstable || self.is_known_stable();
-            if !grows && (is_known || is_stable_now(it, self.load_factor)) {
+            if !grows && (is_known || it.factorize().is_ok()) {
                 if let NewtonPhase::LoadSteps(steps) = &mut self.phase
                     && is_partial
                 {
@@ -446,7 +426,7 @@ impl Method for Newton {
                     events.jump = Some(Jump::from(&limit, Some(it.state), false, it.problem));
                     steps.events = Some(events);
                 }
-                return floor.map_or(Verdict::Converged, Verdict::AtRounding);
+                return Verdict::Converged(floor);
             }
             return self.fail(it.state);
         }
@@ -460,10 +440,10 @@ impl Method for Newton {
         if self.worse >= PATIENCE && near && !gets_on {
             return Verdict::Stop(Reason::Stuck(self.worse));
         }
-        let nodes = (it.workspace.free.len() as f64 * 0.5).sqrt();
-        let too_long = self.last_step / nodes > LONGEST_STEP * it.system().size();
+        let nodes = (it.workspace.linear.correction.len() as f64 * 0.5).sqrt();
+        let too_long = self.last_step / nodes > LONGEST_STEP * it.problem.system().size();
         let hopeless = self.steps > 1
-            && (too_long || self.worse >= PATIENCE && !near || farthest(it.system(), it.state) > LONGEST_STEP);
+            && (too_long || self.worse >= PATIENCE && !near || farthest(it.problem.system(), it.state) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
         if late || hopeless { self.fail(it.state) } else { Verdict::Continue }
     }
@@ -493,11 +473,6 @@ impl Method for Newton {
             NewtonPhase::Path(_) | NewtonPhase::Finish(_) => Verdict::Stop(Reason::Iteration(error)),
         }
     }
-}
-
-/// Returns `true` if a body softens; see [`softening`].
-pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
-    softening(it) > MAX_SOFTENING
 }
 
 /// Returns `true` if a displacement is so much larger than that of linear theory, whose norm is `linear`, m, that the

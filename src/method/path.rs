@@ -14,9 +14,7 @@ use std::borrow::Cow;
 
 use nalgebra::Vector2;
 
-use super::Workspace;
-use super::iteration::{assemble, measure};
-use crate::assembly::{Forces, Kinematics, Problem};
+use crate::assembly::{Forces, Kinematics, LinearSystem, Problem};
 use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure};
 use crate::element::Tangent;
 use crate::format::engineering;
@@ -24,6 +22,7 @@ use crate::rotation::Rotation;
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::solver::Factor;
 use crate::state::{State, largest_distance};
+use crate::step::{Iteration, Linearization, RotationUpdate, Workspace};
 use crate::timings::{Timings, timed};
 
 /// Equations of a body at rest under a growing load.
@@ -44,6 +43,13 @@ impl<'a> StaticEquations<'a> {
         timings: &'a mut Timings,
     ) -> Self {
         Self { problem, forces, workspace, timings, last_rate: Vec::new() }
+    }
+
+    /// Computes forces, and the matrix of a tangent, of a state at a load factor.
+    fn linearize_at(&mut self, state: &mut State, rotations: RotationUpdate, tangent: Tangent, load_factor: f64) {
+        let Self { problem, forces, workspace, timings, .. } = self;
+        let wanted = Linearization::corotated(tangent, load_factor);
+        Iteration { problem, state, forces, workspace, timings }.linearize(rotations, wanted);
     }
 }
 
@@ -87,7 +93,7 @@ impl StaticEquations<'_> {
         let largest = problem.supports().all().iter().map(|s| (s.displacement.norm() / height).max(s.rotation.abs()));
         let step = STEP / largest.fold(0.0, f64::max);
         rate.fill(0.0);
-        let Workspace { trial, free, .. } = &mut **workspace;
+        let Workspace { trial, linear: LinearSystem { correction: free, .. }, .. } = &mut **workspace;
         for (steps, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
             let at = factor + steps * step;
             trial.copy_from(state);
@@ -125,21 +131,19 @@ impl PathEquations for StaticEquations<'_> {
     fn linearize(&mut self, state: &mut State, factor: f64, correction: &mut [f64], rate: &mut [f64]) -> Option<usize> {
         /// Relative residual that is only rounding error: next to a singular tangent, it must not become a correction.
         const BALANCED: f64 = 2e-15;
-        let wanted = (Some(Tangent::EXACT), factor);
+        self.linearize_at(state, RotationUpdate::Follow, Tangent::EXACT, factor);
         let Self { problem, forces, workspace, timings, .. } = self;
-        let residual = measure(problem, state, (Kinematics::Corotated, true), wanted, forces, workspace, timings);
-        if residual > BALANCED {
+        if forces.relative_residual > BALANCED {
             problem.system().pattern().restrict(forces.residual(), correction);
         } else {
             correction.fill(0.0);
         }
-        let Workspace { matrix, factor: cholesky, .. } = &mut **workspace;
-        timed(&mut timings.factorize, || cholesky.factorize_symmetric(matrix.values()));
+        workspace.linear.factorize_symmetric(timings);
         self.load_rate(state, factor, rate);
         self.last_rate.clear();
         self.last_rate.extend_from_slice(rate);
         let Self { problem, workspace, timings, .. } = self;
-        let cholesky = &mut workspace.factor;
+        let cholesky = &mut workspace.linear.factor;
         timed(&mut timings.solve, || {
             cholesky.solve_in_place(correction);
             cholesky.solve_in_place(rate);
@@ -158,7 +162,7 @@ impl PathEquations for StaticEquations<'_> {
         /// Largest cosine that is the rounding error of differences: the unit roundoff over their step, times the size of
         /// the body over its height.
         const ROUNDING: f64 = 1e-10;
-        let (mode, stiffness) = softest_mode(&mut self.workspace.factor, self.last_rate.len(), &[]);
+        let (mode, stiffness) = softest_mode(&mut self.workspace.linear.factor, self.last_rate.len(), &[]);
         let mut cosine = dot(&mode, &self.last_rate).abs() / (norm(&mode) * norm(&self.last_rate));
         if self.problem.supports().move_the_body() && cosine.is_finite() {
             // The stiff elements beside a moved support hide the part of the load in a mode, however large it is.
@@ -692,28 +696,26 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     const MAX_HALVINGS: u32 = 40;
     /// Largest component of a step relative to the size of the body: the rotations of longer ones are not known.
     const LONGEST: f64 = 0.1;
-    let StaticEquations { problem, forces, workspace, timings, .. } = equations;
-    let wanted = (Some(Tangent::EXACT), factor);
-    let residual = measure(problem, state, (Kinematics::Corotated, true), wanted, forces, workspace, timings);
-    let definite = workspace.factor.factorize(workspace.matrix.values()).is_ok();
-    if definite && residual <= BALANCED {
+    equations.linearize_at(state, RotationUpdate::Follow, Tangent::EXACT, factor);
+    let definite = equations.workspace.linear.factorize(equations.timings).is_ok();
+    if definite && equations.forces.relative_residual <= BALANCED {
         return Descent::Stable;
     }
-    let moves = problem.supports().move_the_body();
-    let pattern = problem.system().pattern();
-    pattern.restrict(forces.residual(), &mut workspace.free);
-    if definite {
-        workspace.factor.solve_in_place(&mut workspace.free);
-    } else if !(moves && solve_downhill(workspace)) {
-        assemble(problem, state, forces, workspace, Tangent::DEFINITE, factor);
-        problem.balance(state, Kinematics::Corotated, factor, forces);
-        if workspace.factor.factorize(workspace.matrix.values()).is_err() {
+    let problem = equations.problem;
+    let (moves, pattern) = (problem.supports().move_the_body(), problem.system().pattern());
+    pattern.restrict(equations.forces.residual(), &mut equations.workspace.linear.correction);
+    let is_solved = !definite && moves && solve_downhill(&mut equations.workspace.linear);
+    if !definite && !is_solved {
+        equations.linearize_at(state, RotationUpdate::Keep, Tangent::DEFINITE, factor);
+        if equations.workspace.linear.factorize(equations.timings).is_err() {
             return Descent::Stuck;
         }
-        pattern.restrict(forces.residual(), &mut workspace.free);
-        workspace.factor.solve_in_place(&mut workspace.free);
     }
-    let Workspace { free, trial, .. } = &mut **workspace;
+    let StaticEquations { forces, workspace, timings, .. } = equations;
+    if !is_solved && workspace.linear.solve(pattern, forces.residual(), timings).is_err() {
+        return Descent::Stuck;
+    }
+    let Workspace { linear: LinearSystem { correction: free, .. }, trial, .. } = &mut **workspace;
     let longest = free.iter().fold(0.0, |longest: f64, v| longest.max(v.abs()));
     let scale = if moves { (LONGEST * problem.system().size() / longest).min(1.0) } else { 1.0 };
     free.iter_mut().for_each(|v| *v *= scale);
@@ -736,12 +738,12 @@ fn descend(equations: &mut StaticEquations<'_>, state: &mut State, factor: f64) 
     Descent::Stuck
 }
 
-/// Replaces the force r in the workspace by |K|⁻¹ r: Newton's step with the matrix K, with the opposite sign in the modes with
+/// Replaces the force r in the correction by |K|⁻¹ r: Newton's step with the matrix K, with the opposite sign in the modes with
 /// negative stiffness. Returns `false` if these are too many or not found, or if the step does not follow the force.
-fn solve_downhill(workspace: &mut Workspace) -> bool {
+fn solve_downhill(linear: &mut LinearSystem) -> bool {
     /// Largest number of modes with negative stiffness.
     const MAX_MODES: usize = 6;
-    let Workspace { factor: cholesky, matrix, free, .. } = workspace;
+    let LinearSystem { factor: cholesky, matrix, correction: free } = linear;
     cholesky.factorize_symmetric(matrix.values());
     let negative = cholesky.negative_eigenvalues();
     if !(1..=MAX_MODES).contains(&negative) {

@@ -1,11 +1,12 @@
 //! End of an iteration: converged, out of iterations, or diverging.
 
 use super::iteration::ROUNDING;
-use super::{Iteration, IterationError, Verdict};
+use super::{Criteria, IterationError, Verdict};
 use crate::assembly::System;
 use crate::format::{engineering, number, two_digits};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::state::{State, largest};
+use crate::step::Iteration;
 
 /// Reason why an iteration stopped before it converged.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -94,7 +95,6 @@ pub(super) struct StallDetector {
     best: Option<f64>,
     last: Option<f64>,
     waiting: u32,
-    pub(super) steps: StepLengths,
 }
 
 /// Lengths of the last two steps.
@@ -119,17 +119,17 @@ impl StepLengths {
 
 impl StallDetector {
     /// Decides whether the iteration has converged, stalled or diverged.
-    pub(super) fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
-        let residual = it.residual;
-        if residual <= it.tolerances.residual {
-            return Verdict::Converged;
+    pub(super) fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria) -> Verdict {
+        let residual = it.forces.relative_residual;
+        if residual <= criteria.residual {
+            return Verdict::Converged(None);
         }
         if self.last.replace(residual).is_some_and(|last| residual > FALLS * last)
             && let Some(floor) = it.floor()
         {
-            return Verdict::AtRounding(floor);
+            return Verdict::Converged(Some(floor));
         }
-        let farthest = farthest(it.system(), it.state);
+        let farthest = farthest(it.problem.system(), it.state);
         let best = *self.best.get_or_insert(f64::INFINITY);
         if residual < PROGRESS * best {
             self.best = Some(residual);

@@ -5,11 +5,12 @@
 //!
 //! Large rotations of supports are applied in parts, one iteration each, and the load with them.
 
-use super::status::StallDetector;
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
+use super::status::{StallDetector, StepLengths};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
+use crate::step::{Iteration, Linearization, Operation};
 
 pub(super) const ENTRY: MethodEntry = MethodEntry {
     kind: MethodKind::Warped,
@@ -24,13 +25,14 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
 #[derive(Clone, Debug)]
 pub struct Warped {
     stall: StallDetector,
+    steps: StepLengths,
     load_factor: f64,
     load_steps: u32,
 }
 
 impl Default for Warped {
     fn default() -> Self {
-        Self { stall: StallDetector::default(), load_factor: 1.0, load_steps: 1 }
+        Self { stall: StallDetector::default(), steps: StepLengths::default(), load_factor: 1.0, load_steps: 1 }
     }
 }
 
@@ -43,23 +45,15 @@ impl Method for Warped {
         *self = Self::default();
     }
 
-    fn tangent(&self) -> Option<Tangent> {
-        Some(Tangent::WARPED)
+    fn linearization(&self) -> Linearization {
+        Linearization::corotated(Tangent::WARPED, self.load_factor)
     }
 
-    fn load_factor(&self) -> f64 {
-        self.load_factor
+    fn report(&self) -> MethodReport {
+        MethodReport { load_steps: self.load_steps, step_ratio: self.steps.ratio(), ..MethodReport::DEFAULT }
     }
 
-    fn load_steps(&self) -> u32 {
-        self.load_steps
-    }
-
-    fn step_ratio(&self) -> Option<f64> {
-        self.stall.steps.ratio()
-    }
-
-    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+    fn plan(&mut self, it: &mut Iteration<'_>, _: &Criteria) -> Result<Operation, IterationError> {
         if it.supports_rotate_in_steps() {
             (self.load_factor, self.load_steps) = (0.0, 0);
         }
@@ -68,17 +62,16 @@ impl Method for Warped {
             self.load_steps += 1;
             it.workspace.tangent = None;
         }
-        it.carry(self.load_factor);
-        it.assemble(Tangent::WARPED, self.load_factor);
-        it.factorize()?;
-        it.put_supports(self.load_factor, Kinematics::Corotated);
-        it.step().map(|step| self.stall.steps.stepped(step))
+        it.carry(self.linearization());
+        it.put_supports(self.linearization());
+        Ok(Operation::Factorize)
     }
 
-    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
+        step.into_iter().for_each(|step| self.steps.stepped(step));
         if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
             return Verdict::Continue;
         }
-        self.stall.check_convergence(it)
+        self.stall.check_convergence(it, criteria)
     }
 }

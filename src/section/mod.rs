@@ -19,13 +19,14 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::assembly::{Kinematics, Problem, System};
-use crate::element::{Rotations, StrainRate};
+use crate::element::{Rotations, StrainRate, Sums};
 use crate::mesh::{axis_angle, straightened};
 use crate::model::{Beam, SectionLine};
 use crate::rotation::Rotation;
 use crate::scene::Plane;
 use crate::sentence::{Sentence, sentence};
 use crate::state::State;
+use crate::step::warped_stress;
 use crate::stress::NodalStress;
 use cut::{Cut, CutPoint};
 pub use load::Wrench;
@@ -286,7 +287,8 @@ fn element_forces(
     let mut forces = vec![Vector2::zeros(); mesh.nodes().len()];
     let mut magnitude = forces.clone();
     let moduli = problem.material().membrane();
-    elements.linearize(moduli, state.compensated(), Rotations::Given(&rotations), &mut forces, &mut magnitude, None);
+    let sums = Sums { force: &mut forces, magnitude: &mut magnitude, matrix: None };
+    elements.sweep(moduli, state.compensated(), warped_stress(moduli, Rotations::Given(&rotations)), sums);
     if let Some(MotionBalance { viscosity, damped, .. }) = motion {
         elements.viscous_force(*viscosity, damped, StrainRate::Velocity(state.velocity()), &mut forces);
     }

@@ -548,8 +548,7 @@ impl Simulation {
         self.update_status();
     }
 
-    /// Performs one iteration (assemble, factorize, solve, and the rotations and residual of the new state), or one
-    /// time step. A search does nothing once its status is no longer [`Status::Running`]; a motion continues until it
+    /// Performs one iteration (factorize, solve, advance, and the linearization of the new state), or one time step. A search does nothing once its status is no longer [`Status::Running`]; a motion continues until it
     /// is [`Status::Stopped`].
     pub fn step(&mut self) -> &Status {
         match &mut self.process {
@@ -907,7 +906,7 @@ impl Simulation {
     /// let mut beam = Simulation::new(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]))?;
     /// beam.solve();
     /// let timings: &Timings = beam.timings();
-    /// assert!(timings.total() >= timings.assemble + timings.factorize);
+    /// assert!(timings.total() >= timings.linearize + timings.factorize);
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
     #[must_use]

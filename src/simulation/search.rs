@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
-use crate::element::{Tangent, UNIT};
+use crate::element::UNIT;
 use crate::method::{
-    AutoReport, Certificate, Iteration, IterationError, Method, PathEvents, Reason, Restart, Tolerances, Verdict,
-    Workspace, fixed_point_rho, is_stable, measure,
+    AutoReport, Certificate, Criteria, Method, MethodReport, PathEvents, Reason, Restart, Verdict, Workspace,
+    fixed_point_rho, is_stable,
 };
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
 use crate::state::{State, largest};
+use crate::step::{Iteration, Linearization, Operation, RotationUpdate};
 use crate::timings::{Timings, timed};
 
 /// Search for an equilibrium with a method.
@@ -25,28 +26,30 @@ pub(super) struct Search {
     forces: Forces,
     /// Work memory, allocated on first use.
     workspace: Option<Workspace>,
-    residual: f64,
-    /// Bound of the residual's rounding error, if the solve ended at it.
-    floor: Option<f64>,
+    outcome: Outcome,
+    /// Results for display, taken over from the instance that made the iterations; `None` if this one made them.
+    figures: Option<Figures>,
+}
+
+/// Progress and results of a search.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Outcome {
     iterations: u32,
     status: Status,
+    /// Bound of the residual's rounding error, if the solve ended at it.
+    floor: Option<f64>,
     certificate: Option<Certificate>,
     timings: Timings,
     last_iteration: Timings,
-    /// Results for display, taken over from the instance that made the iterations; `None` if this one made them.
-    figures: Option<Figures>,
-    /// Critical points of the path, taken over likewise.
-    path_events: Option<PathEvents>,
 }
 
-/// Figures that a method computes for display.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+/// Results of a method for display.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Figures {
-    kinematics: Kinematics,
-    load_factor: f64,
-    load_steps: u32,
-    step_ratio: Option<f64>,
-    auto_report: Option<AutoReport>,
+    linearization: Linearization,
+    report: MethodReport,
+    /// Critical points of the path.
+    path_events: Option<PathEvents>,
 }
 
 /// State and results of a search, as data that can be sent to another instance of it.
@@ -54,21 +57,24 @@ struct Figures {
 pub struct Found {
     /// State that the search has reached.
     pub state: State,
-    /// Number of iterations.
-    pub iterations: u32,
     forces: Forces,
-    residual: f64,
-    floor: Option<f64>,
-    status: Status,
-    certificate: Option<Certificate>,
-    timings: Timings,
-    last_iteration: Timings,
+    outcome: Outcome,
     figures: Figures,
-    path_events: Option<PathEvents>,
 }
 
-fn tolerances(settings: &SolverSettings) -> Tolerances {
-    Tolerances { residual: settings.tolerance, error: 0.01 * settings.max_error_percent }
+impl Found {
+    /// Counts the iterations that an earlier instance has made.
+    pub fn add_iterations(&mut self, earlier: u32) {
+        self.outcome.iterations += earlier;
+    }
+}
+
+fn criteria(settings: &SolverSettings, iterations: u32) -> Criteria {
+    Criteria {
+        residual: settings.tolerance,
+        error: 0.01 * settings.max_error_percent,
+        solves_left: settings.max_iterations.saturating_sub(iterations).max(1),
+    }
 }
 
 impl Search {
@@ -81,38 +87,16 @@ impl Search {
         Ok(search)
     }
 
-    /// Returns a search whose state has not been measured, without work memory.
+    /// Returns a search without results and work memory.
     fn unmeasured(scene: &Scene, forces: Forces) -> Self {
-        Self {
-            method: (scene.solver.method.entry().start)(),
-            previous: (Displacement::zeros(0), Vec::new()),
-            forces,
-            workspace: None,
-            residual: 0.0,
-            floor: None,
-            iterations: 0,
-            status: Status::Running,
-            certificate: None,
-            timings: Timings::default(),
-            last_iteration: Timings::default(),
-            figures: None,
-            path_events: None,
-        }
+        let method = (scene.solver.method.entry().start)();
+        let previous = (Displacement::zeros(0), Vec::new());
+        Self { method, previous, forces, workspace: None, outcome: Outcome::default(), figures: None }
     }
 
     /// Returns a search with the results that another instance has found, and its state.
-    pub fn of(scene: &Scene, found: Found) -> (Self, State) {
-        let mut search = Self::unmeasured(scene, found.forces);
-        search.residual = found.residual;
-        search.floor = found.floor;
-        search.iterations = found.iterations;
-        search.status = found.status;
-        search.certificate = found.certificate;
-        search.timings = found.timings;
-        search.last_iteration = found.last_iteration;
-        search.figures = Some(found.figures);
-        search.path_events = found.path_events;
-        (search, found.state)
+    pub fn of(scene: &Scene, Found { state, forces, outcome, figures }: Found) -> (Self, State) {
+        (Self { outcome, figures: Some(figures), ..Self::unmeasured(scene, forces) }, state)
     }
 
     /// Copies the search without its work memory, which is allocated again if the copy is continued.
@@ -122,49 +106,33 @@ impl Search {
             previous: (Displacement::zeros(0), Vec::new()),
             forces: self.forces.clone(),
             workspace: None,
-            residual: self.residual,
-            floor: self.floor,
-            iterations: self.iterations,
-            status: self.status.clone(),
-            certificate: self.certificate,
-            timings: self.timings,
-            last_iteration: self.last_iteration,
-            figures: self.figures,
-            path_events: self.path_events.clone(),
+            outcome: self.outcome.clone(),
+            figures: self.figures.clone(),
         }
     }
 
     /// Returns the state and the results as data.
     pub fn found(&self, body: &Body) -> Found {
-        Found {
-            state: body.state.clone(),
-            iterations: self.iterations,
-            forces: self.forces.clone(),
-            residual: self.residual,
-            floor: self.floor,
-            status: self.status.clone(),
-            certificate: self.certificate,
-            timings: self.timings,
-            last_iteration: self.last_iteration,
-            figures: self.figures(),
+        let figures = self.figures.clone().unwrap_or_else(|| Figures {
+            linearization: self.linearization(),
+            report: self.report(),
             path_events: self.path_events(),
-        }
+        });
+        Found { state: body.state.clone(), forces: self.forces.clone(), outcome: self.outcome.clone(), figures }
     }
 
-    fn figures(&self) -> Figures {
-        self.figures.unwrap_or_else(|| Figures {
-            kinematics: self.method.kinematics(),
-            load_factor: self.method.load_factor(),
-            load_steps: self.method.load_steps(),
-            step_ratio: self.method.step_ratio(),
-            auto_report: self.method.report(),
-        })
+    fn linearization(&self) -> Linearization {
+        self.figures.as_ref().map_or_else(|| self.method.linearization(), |figures| figures.linearization)
+    }
+
+    fn report(&self) -> MethodReport {
+        self.figures.as_ref().map_or_else(|| self.method.report(), |figures| figures.report)
     }
 
     /// Takes the work memory out of the search, allocating it if necessary; the search ends if that fails.
     fn take_workspace(&mut self, problem: &Problem) -> Option<Workspace> {
         let workspace = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
-        workspace.map_err(|error| self.status = Reason::Iteration(error.into()).into()).ok()
+        workspace.map_err(|error| self.outcome.status = Reason::Iteration(error.into()).into()).ok()
     }
 
     /// Marks the workspace's matrix as outdated.
@@ -192,7 +160,7 @@ impl Search {
         let same_method = body.scene.solver.method == before.solver.method;
         let same_unknowns = change <= Change::Stiffness;
         let keeps_state = same_method
-            && !matches!(self.status, Status::Diverged(_))
+            && !matches!(self.outcome.status, Status::Diverged(_))
             && self.can_follow(&before.supports, &body.scene.supports)
             && body.is_useful_start(same_unknowns);
         if !same_method {
@@ -213,34 +181,34 @@ impl Search {
     fn can_follow(&self, before: &[Support], after: &[Support]) -> bool {
         let far = |angle: f64| angle.abs() > LARGEST_TURN;
         let mut pairs = before.iter().zip(after);
-        before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.status != Status::Converged)
+        before == after
+            || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.outcome.status != Status::Converged)
     }
 
     /// Resets counts and times, and computes the forces of the current state.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
-        self.iterations = 0;
-        self.floor = None;
-        self.status = Status::Running;
-        self.certificate = None;
-        self.timings = Timings::default();
-        self.last_iteration = Timings::default();
+        self.outcome = Outcome::default();
         self.figures = None;
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
-        let mut unmeasured = Timings::default();
-        if why == Restart::NewLoads {
-            // The internal forces are unchanged.
-            let (kinematics, load_factor) = (self.method.kinematics(), self.method.load_factor());
-            self.residual = body.problem.balance(&body.state, kinematics, load_factor, &mut self.forces);
-        } else {
-            if why == Restart::AtRest {
-                self.method.restart(why);
-            }
-            let wanted = (self.method.tangent(), self.method.load_factor());
-            self.measure_forces(body, &mut workspace, why == Restart::AtRest, wanted, &mut unmeasured);
+        let (criteria, mut untimed) = (criteria(&body.scene.solver, 0), Timings::default());
+        if why == Restart::AtRest {
+            self.method.restart(why);
         }
-        let verdict =
-            self.with_method(body, &mut workspace, &mut unmeasured, |method, it| method.check_convergence(it));
-        self.apply_verdict(body, &mut workspace, verdict, &mut unmeasured);
+        let mut it = iteration(body, &mut self.forces, &mut workspace, &mut untimed);
+        let wanted = self.method.linearization();
+        match why {
+            Restart::AtRest => relinearize(&mut it, wanted),
+            // The internal forces are unchanged.
+            Restart::NewLoads => {
+                it.problem.balance(it.state, wanted.kinematics, wanted.load_factor, it.forces);
+            }
+            Restart::NewStiffness | Restart::NewUnknowns => {
+                it.linearize(RotationUpdate::Keep, wanted);
+                settle(&mut it, wanted);
+            }
+        }
+        let verdict = self.method.check_convergence(&mut it, &criteria, None);
+        self.apply_verdict(verdict, body, &mut workspace, &mut untimed);
         self.workspace = Some(workspace);
     }
 
@@ -253,76 +221,55 @@ impl Search {
         self.restart(body, why);
     }
 
-    /// Performs one iteration; does nothing once the status is final.
+    /// Performs one step; does nothing once the status is final.
     pub fn step(&mut self, body: &mut Body) {
-        if self.status != Status::Running {
+        if self.outcome.status != Status::Running {
             return;
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         self.figures = None;
+        let criteria = criteria(&body.scene.solver, self.outcome.iterations);
         let mut timings = Timings::default();
-        let State { displacement, edge_angles, .. } = &body.state;
-        self.previous.0.copy_from(displacement);
-        self.previous.1.clone_from(edge_angles);
-        let iterated = self.with_method(body, &mut workspace, &mut timings, |method, it| method.iterate(it));
-        self.iterations += self.method.solves();
-        let measured = iterated.and_then(|()| {
-            self.measure(body, &mut workspace, &mut timings);
-            if self.residual.is_finite() { Ok(()) } else { Err(IterationError::NotFinite) }
+        self.previous.0.copy_from(&body.state.displacement);
+        self.previous.1.clone_from(&body.state.edge_angles);
+        let mut it = iteration(body, &mut self.forces, &mut workspace, &mut timings);
+        let planned = self.method.plan(&mut it, &criteria);
+        self.outcome.iterations += self.method.report().solves;
+        let stepped = planned.and_then(|first| {
+            it.step(first, self.method.linearization())?;
+            settle(&mut it, self.method.linearization());
+            Ok((first <= Operation::Advance).then(|| it.step_length()))
         });
-        if measured.is_err() {
-            body.state.displacement.copy_from(&self.previous.0);
-            body.state.edge_angles.copy_from_slice(&self.previous.1);
-            self.measure(body, &mut workspace, &mut timings);
-        }
-        let verdict = self.with_method(body, &mut workspace, &mut timings, |method, it| match measured {
-            Ok(()) => method.check_convergence(it),
-            Err(error) => method.recover(it, error),
-        });
-        self.apply_verdict(body, &mut workspace, verdict, &mut timings);
-        self.workspace = Some(workspace);
-        self.timings.add(&timings);
-        self.last_iteration = timings;
-    }
-
-    /// Runs `work` with the method on the current state.
-    fn with_method<T>(
-        &mut self,
-        body: &mut Body,
-        workspace: &mut Workspace,
-        timings: &mut Timings,
-        work: impl FnOnce(&mut dyn Method, &mut Iteration<'_>) -> T,
-    ) -> T {
-        let mut iteration = Iteration {
-            problem: &body.problem,
-            forces: &mut self.forces,
-            residual: self.residual,
-            tolerances: tolerances(&body.scene.solver),
-            state: &mut body.state,
-            workspace,
-            timings,
-            solves_left: body.scene.solver.max_iterations.saturating_sub(self.iterations).max(1),
+        let verdict = match stepped {
+            Ok(length) => self.method.check_convergence(&mut it, &criteria, length),
+            Err(error) => {
+                it.state.displacement.copy_from(&self.previous.0);
+                it.state.edge_angles.copy_from_slice(&self.previous.1);
+                relinearize(&mut it, self.method.linearization());
+                self.method.recover(&mut it, error)
+            }
         };
-        work(self.method.as_mut(), &mut iteration)
+        self.apply_verdict(verdict, body, &mut workspace, &mut timings);
+        self.workspace = Some(workspace);
+        self.outcome.timings.add(&timings);
+        self.outcome.last_iteration = timings;
     }
 
     /// Carries out the method's decision.
-    fn apply_verdict(&mut self, body: &mut Body, workspace: &mut Workspace, verdict: Verdict, timings: &mut Timings) {
+    fn apply_verdict(&mut self, verdict: Verdict, body: &mut Body, workspace: &mut Workspace, timings: &mut Timings) {
         match verdict {
             Verdict::Continue => {}
-            Verdict::Changed => self.measure(body, workspace, timings),
-            Verdict::Converged => self.status = Status::Converged,
-            Verdict::AtRounding(floor) => {
-                self.status = Status::Converged;
-                self.floor = Some(floor);
+            Verdict::Changed => {
+                relinearize(&mut iteration(body, &mut self.forces, workspace, timings), self.method.linearization())
             }
-            Verdict::Stop(reason) => self.status = reason.into(),
+            Verdict::Converged(floor) => (self.outcome.status, self.outcome.floor) = (Status::Converged, floor),
+            Verdict::Stop(reason) => self.outcome.status = reason.into(),
         }
         let solver = &body.scene.solver;
         let (most, enough) = (solver.max_iterations, solver.accept_after);
-        if self.status == Status::Running && enough != 0 && self.iterations >= enough {
+        if self.outcome.status == Status::Running && enough != 0 && self.outcome.iterations >= enough {
             self.end(body, workspace, Status::Accepted, timings);
-        } else if self.status == Status::Running && self.iterations >= most {
+        } else if self.outcome.status == Status::Running && self.outcome.iterations >= most {
             self.end(body, workspace, Reason::IterationLimit(most).into(), timings);
         }
     }
@@ -330,56 +277,22 @@ impl Search {
     /// Ends the search before convergence, and computes the residual under the whole load. An accepted result is kept;
     /// otherwise the method restores the best available state.
     fn end(&mut self, body: &mut Body, workspace: &mut Workspace, status: Status, timings: &mut Timings) {
-        self.status = status;
-        if self.status != Status::Accepted {
+        self.outcome.status = status;
+        if self.outcome.status != Status::Accepted {
             self.method.stop(&mut body.state);
         }
-        self.measure_forces(body, workspace, true, (None, 1.0), timings);
+        let wanted = Linearization { tangent: None, load_factor: 1.0, ..self.method.linearization() };
+        relinearize(&mut iteration(body, &mut self.forces, workspace, timings), wanted);
     }
 
     /// Interrupts a running search.
     pub fn stop(&mut self, body: &mut Body) {
-        if self.status != Status::Running {
+        if self.outcome.status != Status::Running {
             return;
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         self.end(body, &mut workspace, Reason::Interrupted.into(), &mut Timings::default());
         self.workspace = Some(workspace);
-    }
-
-    /// Computes rotations, forces and residual of the current state under the current load, and the tangent that the
-    /// next iteration needs.
-    fn measure(&mut self, body: &mut Body, workspace: &mut Workspace, timings: &mut Timings) {
-        let wanted = (self.method.tangent(), self.method.load_factor());
-        self.measure_forces(body, workspace, true, wanted, timings);
-    }
-
-    /// Computes forces and residual under a load factor, and a tangent if requested; if `follow` is `true`, the
-    /// displacement is new and the rotations are updated.
-    fn measure_forces(
-        &mut self,
-        body: &mut Body,
-        workspace: &mut Workspace,
-        follow: bool,
-        wanted: (Option<Tangent>, f64),
-        timings: &mut Timings,
-    ) {
-        let rotate = (self.method.kinematics(), follow);
-        let Body { problem, state, .. } = body;
-        self.residual = measure(problem, state, rotate, wanted, &mut self.forces, workspace, timings);
-        if self.residual > 0.0 && self.is_at_rest_within_rounding(problem, state) {
-            // Both the residual and the forces that it is relative to shrink with the displacement.
-            *state = problem.system().at_rest();
-            self.residual = measure(problem, state, rotate, wanted, &mut self.forces, workspace, timings);
-        }
-    }
-
-    /// Returns `true` if nothing loads the body and its nodes are where they are at rest, within the unit roundoff of
-    /// the body's size.
-    fn is_at_rest_within_rounding(&self, problem: &Problem, state: &State) -> bool {
-        self.forces.external.iter().all(|f| *f == Vector2::zeros())
-            && !problem.supports().move_the_body()
-            && largest(&state.displacement) <= UNIT * problem.system().size()
     }
 
     /// Returns `true` if the state is an equilibrium of large rotations without a mouse spring.
@@ -389,7 +302,7 @@ impl Search {
 
     /// Implements [`super::Simulation::certify`].
     pub fn certify(&mut self, problem: &Problem, state: &State) -> Certificate {
-        if let Some(certificate) = self.certificate {
+        if let Some(certificate) = self.outcome.certificate {
             return certificate;
         }
         if !self.can_be_certified(problem) {
@@ -400,16 +313,16 @@ impl Search {
         let load_factor = self.load_factor();
         let workspace = self.workspace.insert(made);
         let forces = &mut self.forces;
-        let certificate = timed(&mut self.timings.certify, || Certificate {
+        let certificate = timed(&mut self.outcome.timings.certify, || Certificate {
             fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
             stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
         });
-        *self.certificate.insert(certificate)
+        *self.outcome.certificate.insert(certificate)
     }
 
     /// Returns `true` if the state is an equilibrium: at the whole load, or at the part of it that was reached.
     fn is_equilibrium(&self) -> bool {
-        match self.status {
+        match self.outcome.status {
             Status::Converged => true,
             Status::NotConverged(_) => self.load_factor() < 1.0,
             _ => false,
@@ -417,11 +330,11 @@ impl Search {
     }
 
     pub fn certificate(&self) -> Option<Certificate> {
-        self.certificate
+        self.outcome.certificate
     }
 
     pub fn kinematics(&self) -> Kinematics {
-        self.figures().kinematics
+        self.linearization().kinematics
     }
 
     pub fn forces(&self) -> &Forces {
@@ -429,52 +342,81 @@ impl Search {
     }
 
     pub fn load_factor(&self) -> f64 {
-        self.figures().load_factor
+        self.linearization().load_factor
     }
 
     pub fn load_steps(&self) -> u32 {
-        self.figures().load_steps
+        self.report().load_steps
     }
 
     pub fn auto_report(&self) -> Option<AutoReport> {
-        self.figures().auto_report
+        self.report().auto_report
     }
 
     /// Returns the critical points of the path from rest, if it is known to lead to the result.
     pub fn path_events(&self) -> Option<PathEvents> {
-        let events = match self.figures {
-            Some(_) => self.path_events.clone(),
+        let events = match &self.figures {
+            Some(figures) => figures.path_events.clone(),
             None => self.method.path_events(),
         };
-        events.filter(|_| self.status.is_success())
+        events.filter(|_| self.outcome.status.is_success())
     }
 
     pub fn status(&self) -> &Status {
-        &self.status
+        &self.outcome.status
     }
 
     pub fn iterations(&self) -> u32 {
-        self.iterations
+        self.outcome.iterations
     }
 
     pub fn residual(&self) -> f64 {
-        self.forces.below_rounding.map_or(self.residual, |[residual, _]| residual)
+        self.forces.below_rounding.map_or(self.forces.relative_residual, |[residual, _]| residual)
     }
 
     pub fn residual_floor(&self) -> Option<f64> {
-        let below = self.forces.below_rounding.filter(|_| self.status == Status::Converged);
-        self.floor.or(below.map(|[_, bound]| bound))
+        let below = self.forces.below_rounding.filter(|_| self.outcome.status == Status::Converged);
+        self.outcome.floor.or(below.map(|[_, bound]| bound))
     }
 
     pub fn step_ratio(&self) -> Option<f64> {
-        self.figures().step_ratio
+        self.report().step_ratio
     }
 
     pub fn last_iteration(&self) -> &Timings {
-        &self.last_iteration
+        &self.outcome.last_iteration
     }
 
     pub fn timings(&self) -> &Timings {
-        &self.timings
+        &self.outcome.timings
+    }
+}
+
+fn iteration<'a>(
+    body: &'a mut Body,
+    forces: &'a mut Forces,
+    workspace: &'a mut Workspace,
+    timings: &'a mut Timings,
+) -> Iteration<'a> {
+    Iteration { problem: &body.problem, state: &mut body.state, forces, workspace, timings }
+}
+
+/// Linearizes a state with a new displacement.
+fn relinearize(it: &mut Iteration<'_>, wanted: Linearization) {
+    it.linearize(RotationUpdate::Follow, wanted);
+    settle(it, wanted);
+}
+
+/// Returns to rest exactly if nothing loads the body and its nodes are where they are at rest, within the unit roundoff
+/// of the body's size: both the residual and the forces that it is relative to shrink with the displacement.
+fn settle(it: &mut Iteration<'_>, wanted: Linearization) {
+    let system = it.problem.system();
+    let rests = it.forces.relative_residual > 0.0
+        && it.forces.external.iter().all(|f| *f == Vector2::zeros())
+        && !it.problem.supports().move_the_body()
+        && largest(&it.state.displacement) <= UNIT * system.size();
+    if rests {
+        *it.state = system.at_rest();
+        it.linearize(RotationUpdate::Follow, wanted);
     }
 }

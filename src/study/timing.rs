@@ -103,9 +103,10 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Ob
             };
             Timings {
                 rotate: median(|p| p.rotate),
-                assemble: median(|p| p.assemble),
+                linearize: median(|p| p.linearize),
                 factorize: median(|p| p.factorize),
                 solve: median(|p| p.solve),
+                advance: median(|p| p.advance),
                 certify: median(|p| p.certify),
             }
         })

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use libtest_mimic::Trial;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
-use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Tangent};
+use warpbeam::element::{ELEMENTS, ElementType, RulePoint, Sums, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;
@@ -618,7 +618,8 @@ fn the_work_between_two_states_is_the_difference_of_energies(kind: ElementKind) 
         let states = [(a.compensated(), a.rotations()), (b.compensated(), b.rotations())];
         let mut force = vec![Vector2::zeros(); nodes(&problem).len()];
         let mut magnitude = force.clone();
-        system.elements().linearize_between(moduli, states, &mut force, &mut magnitude, None);
+        let sums = Sums { force: &mut force, magnitude: &mut magnitude, matrix: None };
+        system.elements().linearize_between(moduli, states, sums);
         let energies = [a, b].map(|state| problem.elastic_energy(state));
         let moves = b.displacement().iter().zip(a.displacement()).map(|(b, a)| b - a);
         let work: f64 = moves.zip(&force).map(|(d, f)| d.dot(f)).sum();

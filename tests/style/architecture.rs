@@ -21,6 +21,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("scene files", &["scene"]),
     ("solver", &["solver"]),
     ("assembly", &["assembly"]),
+    ("step", &["step"]),
     ("methods", &["method", "dynamics", "stress", "section"]),
     ("simulation", &["simulation"]),
     ("study", &["export", "study"]),

@@ -205,7 +205,7 @@ impl RemoteSolve {
             }
         };
         let SentBodies { simulation: mut found, linear, residuals } = sent;
-        found.iterations += self.made;
+        found.add_iterations(self.made);
         let residuals = [self.residuals.as_slice(), &residuals].concat();
         let simulation = Simulation::with_found(&self.scene, system, found).map_err(rejected)?;
         let sent_linear =

@@ -5,10 +5,11 @@ use nalgebra::{Matrix2, Vector2};
 use super::AutoReport;
 use crate::assembly::{Forces, Kinematics, Matrix, Problem};
 use crate::element::Tangent;
+use crate::method::IterationError;
 use crate::method::certificate::is_stable;
-use crate::method::{Iteration, IterationError};
 use crate::solver::Factor;
 use crate::state::{State, largest};
+use crate::step::Iteration;
 use crate::timings::timed;
 
 /// Size of the displacement gradient at which the terms of g are computed: smaller values lose digits to rounding,
@@ -79,7 +80,7 @@ impl Expansion {
             Some(factor) => factor,
             None => {
                 let mut matrix = Matrix::new(system.pattern());
-                timed(&mut it.timings.assemble, || {
+                timed(&mut it.timings.linearize, || {
                     problem.linearize(rest, forces, Some((Tangent::WARPED, &mut matrix)));
                 });
                 let mut new = Factor::new(system.symbolic()?)?;
@@ -88,12 +89,12 @@ impl Expansion {
                 factor.insert(new)
             }
         };
-        timed(&mut it.timings.assemble, || {
+        timed(&mut it.timings.linearize, || {
             problem.loads().force(system, &rest.displacement, Kinematics::Linear, 1.0, sum);
         });
         solve_nodal(it, factor, sum, first)?;
         let mut gradient: f64 = 0.0;
-        timed(&mut it.timings.assemble, || {
+        timed(&mut it.timings.linearize, || {
             let lame = problem.material().lame();
             let visit = &mut |_, h: &Matrix2<f64>, _: &Matrix2<f64>| gradient = gradient.max(h.amax());
             system.elements().visit_strains(lame, first, &rest.rotations, visit);
@@ -103,7 +104,7 @@ impl Expansion {
         // Half the sum of g(±λ) is its even part, which begins with λ²; half the difference is its odd part. Along λ u₁
         // the linear part of g cancels, along λ u₁ + λ² u₂ the quadratic one too.
         for power in [2, 3] {
-            timed(&mut it.timings.assemble, || {
+            timed(&mut it.timings.linearize, || {
                 sum.fill(Vector2::zeros());
                 for scale in [scale, -scale] {
                     let terms = first.iter().zip(second.iter());
@@ -129,6 +130,7 @@ impl Expansion {
             return true;
         }
         let ExpansionScratch { probe, forces, .. } = scratch.get_or_insert_with(|| ExpansionScratch::new(it.problem));
+        it.workspace.tangent = None;
         for ahead in [CHECK_AHEAD, 1.0] {
             probe.displacement.overwrite().iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
             report.factorizations += 1;
@@ -156,7 +158,7 @@ pub(super) fn solve_nodal(
     force: &[Vector2<f64>],
     displacement: &mut [Vector2<f64>],
 ) -> Result<(), IterationError> {
-    let (free, pattern) = (&mut it.workspace.free, it.problem.system().pattern());
+    let (free, pattern) = (&mut it.workspace.linear.correction, it.problem.system().pattern());
     timed(&mut it.timings.solve, || {
         pattern.restrict(force, free);
         factor.solve_in_place(free);

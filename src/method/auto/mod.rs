@@ -11,17 +11,16 @@
 
 use nalgebra::Vector2;
 
-use self::expansion::{Expansion, relative_size, solve_nodal};
+use self::expansion::{Expansion, relative_size};
 use super::newton::{Newton, grows, size, softens};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
-use super::{Iteration, IterationError, Method, MethodEntry, MotionMethod, PathEvents, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, PathEvents, Restart, Verdict};
 use crate::assembly::{Forces, Kinematics};
 use crate::element::Tangent;
 use crate::rotation::Rotation;
 use crate::scene::MethodKind;
-use crate::solver::Factor;
 use crate::state::{State, largest};
-use crate::timings::timed;
+use crate::step::{Iteration, Linearization, Operation};
 
 mod expansion;
 mod report;
@@ -57,10 +56,9 @@ const MAX_STEPS: u32 = 15;
 /// Smallest resultant of the loads, relative to their norm, that is more than rounding error.
 const MIN_RESULTANT: f64 = 1e-9;
 
-/// Factorized tangent and its observed convergence.
+/// Observed convergence of the factorized tangent in the workspace.
 #[derive(Debug)]
 struct OldTangent {
-    factor: Factor,
     definite: bool,
     /// `true` if it is the tangent of a state close to equilibrium.
     trusted: bool,
@@ -102,7 +100,7 @@ struct Accepted {
 impl Auto {
     /// Tries linear theory. If the state is at rest or that of linear theory, the solution is also the first Newton
     /// step and is taken in any case; returns `true` if a step was made.
-    fn try_linear(&mut self, it: &mut Iteration<'_>) -> Result<bool, IterationError> {
+    fn try_linear(&mut self, it: &mut Iteration<'_>, criteria: &Criteria) -> Result<bool, IterationError> {
         if it.problem.mouse_spring().is_some() || it.problem.supports().move_the_body() {
             // The expansion supports dead loads and moments only.
             self.linear = false;
@@ -115,7 +113,7 @@ impl Auto {
         }
         let error = self.expansion.solve(it, &mut self.report)?;
         let from_rest = self.linear || largest(&it.state.displacement) == 0.0;
-        self.linear = error <= USABLE * it.tolerances.error && self.expansion.is_stable(it, &mut self.report);
+        self.linear = error <= USABLE * criteria.error && self.expansion.is_stable(it, &mut self.report);
         if self.linear {
             self.report.decision = Decision::Linear;
             self.report.estimated_error = error;
@@ -135,56 +133,46 @@ impl Auto {
         Ok(false)
     }
 
-    /// Performs one corotated step, with the old factor if it may be reused.
-    fn step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        self.step.resize(it.state.displacement.len(), Vector2::zeros());
+    /// Solves for a corotated step, with the old factor if it may be reused.
+    fn plan_corotated_step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
         let is_put = it.supports_are_at(1.0, Kinematics::Corotated);
         if is_put && self.tangent.as_ref().is_some_and(|t| t.serves) {
-            self.solve_for_step(it)?;
-            let step = relative_size(it.problem, &self.step, &it.state.displacement);
+            let step = self.solve(it)?;
             if step <= LONG {
-                self.advance(it, step, false);
+                self.take(step, false, it);
                 return Ok(());
             }
         }
-        it.carry(1.0);
-        it.assemble(Tangent::EXACT, 1.0);
-        let mut factor = match self.tangent.take() {
-            Some(tangent) => tangent.factor,
-            None => Factor::new(it.system().symbolic()?)?,
-        };
-        let values = it.workspace.matrix.values();
-        let definite = timed(&mut it.timings.factorize, || factor.factorize_symmetric(values));
+        let wanted = Linearization { tangent: Some(Tangent::EXACT), ..self.linearization() };
+        let trusted = it.forces.relative_residual <= TRUSTED;
+        it.carry(wanted);
+        self.tangent = None;
+        let definite = it.factorize_symmetric();
         self.report.factorizations += 1;
         self.report.decision = Decision::NewFactor;
-        self.tangent = Some(OldTangent { factor, definite, trusted: it.residual <= TRUSTED, serves: false });
-        let is_first = self.from_rest && self.steps == 1;
-        if is_first {
+        self.tangent = Some(OldTangent { definite, trusted, serves: false });
+        if self.from_rest && self.steps == 1 {
             it.workspace.trial.copy_from(it.state);
         }
-        it.put_supports(1.0, Kinematics::Corotated);
-        self.solve_for_step(it)?;
-        let step = relative_size(it.problem, &self.step, &it.state.displacement);
-        self.advance(it, step, true);
-        if is_first {
-            self.check_softening(it);
-        }
+        it.put_supports(wanted);
+        let step = self.solve(it)?;
+        self.take(step, true, it);
         Ok(())
     }
 
-    /// Computes the step M⁻¹ (f_ext − f_int) into `step` and the workspace.
-    fn solve_for_step(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
-        let Some(tangent) = &mut self.tangent else { return Ok(()) };
+    /// Solves for a step; returns its size relative to the displacement.
+    fn solve(&mut self, it: &mut Iteration<'_>) -> Result<f64, IterationError> {
         self.report.solves += 1;
-        let residual = std::mem::take(&mut it.forces.residual);
-        let solved = solve_nodal(it, &mut tangent.factor, &residual, &mut self.step);
-        it.forces.residual = residual;
-        solved
+        it.solve()?;
+        let Self { step, .. } = self;
+        step.clear();
+        step.resize(it.state.displacement.len(), Vector2::zeros());
+        it.problem.system().pattern().add_free(&it.workspace.linear.correction, 1.0, step);
+        Ok(relative_size(it.problem, step, &it.state.displacement))
     }
 
-    /// Applies the step in the workspace, whose size relative to the displacement is `step`.
-    fn advance(&mut self, it: &mut Iteration<'_>, step: f64, fresh: bool) {
-        it.advance(1.0);
+    /// Takes the step in the workspace, whose size relative to the displacement is `step`.
+    fn take(&mut self, step: f64, fresh: bool, it: &Iteration<'_>) {
         self.lengths.stepped(it.step_length());
         if let Some(tangent) = &mut self.tangent {
             let near = tangent.definite && tangent.trusted && (!fresh || step <= NEAR);
@@ -200,21 +188,12 @@ impl Auto {
         };
     }
 
-    /// Follows the path from rest if the first step, whose start is in the workspace, shows that the body softens.
-    fn check_softening(&mut self, it: &mut Iteration<'_>) {
-        self.linear_size = size(&it.state.displacement);
-        if softens(it) {
-            self.start_load_steps(it.state);
-        }
-    }
-
     /// Returns `true` if the resultant of the residual force is within the requested error, relative to that of the
     /// loads. On a slender body a small error of the displacement does not imply this.
-    fn is_balanced(it: &Iteration<'_>) -> bool {
-        let pattern = it.system().pattern();
+    fn is_balanced(it: &Iteration<'_>, tolerance: f64) -> bool {
+        let pattern = it.problem.system().pattern();
         let Forces { external, residual, .. } = &*it.forces;
         let total = |force: &[Vector2<f64>]| pattern.resultant(force).norm();
-        let tolerance = USABLE * it.tolerances.error;
         let all = pattern.norm(external);
         // A load without a resultant, such as a moment, gives nothing to compare with.
         let resultant = total(external);
@@ -230,16 +209,13 @@ impl Auto {
         Verdict::Changed
     }
 
-    fn accept(&mut self, it: &Iteration<'_>) -> Verdict {
+    fn accept(&mut self, it: &Iteration<'_>, criteria: &Criteria) -> Verdict {
         // Reuse the allocated vector.
         let mut residual_force = self.accepted.take().map_or_else(Vec::new, |accepted| accepted.residual_force);
         residual_force.clone_from(&it.forces.residual);
-        self.accepted = Some(Accepted {
-            residual_force,
-            max_error: it.tolerances.error,
-            estimated_error: self.report.estimated_error,
-        });
-        Verdict::Converged
+        self.accepted =
+            Some(Accepted { residual_force, max_error: criteria.error, estimated_error: self.report.estimated_error });
+        Verdict::Converged(None)
     }
 }
 
@@ -285,24 +261,15 @@ impl Method for Auto {
         }
     }
 
-    fn kinematics(&self) -> Kinematics {
-        if self.linear { Kinematics::Linear } else { Kinematics::Corotated }
+    fn linearization(&self) -> Linearization {
+        let kinematics = if self.linear { Kinematics::Linear } else { Kinematics::Corotated };
+        let own = Linearization { kinematics, tangent: None, load_factor: 1.0 };
+        self.newton.as_ref().map_or(own, Method::linearization)
     }
 
-    fn tangent(&self) -> Option<Tangent> {
-        self.newton.as_ref().and_then(Method::tangent)
-    }
-
-    fn load_factor(&self) -> f64 {
-        self.newton.as_ref().map_or(1.0, Method::load_factor)
-    }
-
-    fn load_steps(&self) -> u32 {
-        self.newton.as_ref().map_or(1, Method::load_steps)
-    }
-
-    fn solves(&self) -> u32 {
-        self.newton.as_ref().map_or(1, Method::solves)
+    fn report(&self) -> MethodReport {
+        let report = self.newton.as_ref().map_or(MethodReport::DEFAULT, Method::report);
+        MethodReport { step_ratio: self.lengths.ratio(), auto_report: Some(self.report), ..report }
     }
 
     fn path_events(&self) -> Option<PathEvents> {
@@ -312,87 +279,85 @@ impl Method for Auto {
         }
     }
 
-    fn step_ratio(&self) -> Option<f64> {
-        self.lengths.ratio()
-    }
-
-    fn report(&self) -> Option<AutoReport> {
-        Some(self.report)
-    }
-
-    fn iterate(&mut self, it: &mut Iteration<'_>) -> Result<(), IterationError> {
+    fn plan(&mut self, it: &mut Iteration<'_>, criteria: &Criteria) -> Result<Operation, IterationError> {
         self.steps += 1;
-        if let Some(newton) = &mut self.newton {
-            let iterated = newton.iterate(it);
-            self.report.solves += newton.solves();
-            self.report.factorizations += newton.solves();
-            return iterated;
-        }
-        if self.steps == 1 {
+        if self.newton.is_none() && self.steps == 1 {
             self.from_rest = it.is_at_rest();
             if self.from_rest {
                 it.workspace.trial.copy_from(it.state);
             }
-            if self.try_linear(it)? {
-                if self.from_rest && !self.linear {
-                    self.check_softening(it);
-                }
-                return Ok(());
+            if self.try_linear(it, criteria)? {
+                return Ok(Operation::Linearize);
             }
         }
         let leaves_rest = self.from_rest && self.steps == 1 && it.problem.supports().move_the_body();
-        if leaves_rest || it.supports_rotate_in_steps() {
+        if self.newton.is_none() && (leaves_rest || it.supports_rotate_in_steps()) {
             self.start_load_steps(it.state);
             it.workspace.tangent = None;
-            return self.iterate(it);
+        }
+        if let Some(newton) = &mut self.newton {
+            let first = newton.plan(it, criteria);
+            let solves = newton.report().solves;
+            self.report.solves += solves;
+            self.report.factorizations += solves;
+            return first;
         }
         if self.report.decision == Decision::Undecided {
             self.report.decision = Decision::OldFactor;
         }
-        self.step(it)
+        self.plan_corotated_step(it)?;
+        Ok(Operation::Advance)
     }
 
-    fn check_convergence(&mut self, it: &mut Iteration<'_>) -> Verdict {
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
         if let Some(newton) = &mut self.newton {
-            let verdict = newton.check_convergence(it);
-            if matches!(verdict, Verdict::Converged | Verdict::AtRounding(_)) {
-                self.report.estimated_error = it.residual;
-                self.accept(it);
+            let verdict = newton.check_convergence(it, criteria, step);
+            if matches!(verdict, Verdict::Converged(_)) {
+                self.report.estimated_error = it.forces.relative_residual;
+                self.accept(it, criteria);
             }
             return verdict;
         }
+        if self.from_rest && self.steps == 1 && !self.linear {
+            // The first step from rest, whose start is in the workspace, shows whether the body softens.
+            self.linear_size = size(&it.state.displacement);
+            if softens(it) {
+                return self.start_load_steps(it.state);
+            }
+        }
         if self.steps == 0 {
-            if !it.supports_are_at(1.0, self.kinematics()) {
+            if !it.supports_are_at(1.0, self.linearization().kinematics) {
                 return Verdict::Continue;
             }
             let same = self
                 .accepted
                 .as_ref()
-                .filter(|last| last.residual_force == it.forces.residual && last.max_error <= it.tolerances.error);
+                .filter(|last| last.residual_force == it.forces.residual && last.max_error <= criteria.error);
             if let Some(last) = same {
                 self.report.decision = Decision::Unchanged;
                 self.report.estimated_error = last.estimated_error;
-                return Verdict::Converged;
+                return Verdict::Converged(None);
             }
-            if !self.linear && it.residual == 0.0 {
+            if !self.linear && it.forces.relative_residual == 0.0 {
                 self.report.decision = Decision::Unchanged;
-                return self.accept(it);
+                return self.accept(it, criteria);
             }
             return Verdict::Continue;
         }
         if self.linear {
-            return self.accept(it);
+            return self.accept(it, criteria);
         }
         let trusted = self.tangent.as_ref().is_some_and(|t| t.trusted);
-        let within = trusted && self.report.estimated_error <= USABLE * it.tolerances.error && Self::is_balanced(it);
-        let done = within || it.residual <= it.tolerances.residual;
+        let tolerance = USABLE * criteria.error;
+        let within = trusted && self.report.estimated_error <= tolerance && Self::is_balanced(it, tolerance);
+        let done = within || it.forces.relative_residual <= criteria.residual;
         match &self.tangent {
             Some(tangent) if done => {
                 let grows = self.from_rest && grows(it.state, self.linear_size);
-                if tangent.definite && !grows { self.accept(it) } else { self.start_load_steps(it.state) }
+                if tangent.definite && !grows { self.accept(it, criteria) } else { self.start_load_steps(it.state) }
             }
             Some(tangent) if self.from_rest && !tangent.definite => self.start_load_steps(it.state),
-            _ if self.steps >= MAX_STEPS || farthest(it.system(), it.state) > LONGEST_STEP => {
+            _ if self.steps >= MAX_STEPS || farthest(it.problem.system(), it.state) > LONGEST_STEP => {
                 self.start_load_steps(it.state)
             }
             _ => Verdict::Continue,
