@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod architecture;
+mod chain;
 #[path = "../common/files.rs"]
 mod files;
 mod public_api;
