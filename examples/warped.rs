@@ -8,10 +8,7 @@ const POISSON: f64 = 0.3;
 const FORCE: f64 = -30e3; // N, downwards on the free end
 
 fn main() {
-    match tip() {
-        Some(u) => println!("tip ({:.6}, {:.6}) m", u.x, u.y),
-        None => eprintln!("no equilibrium was found"),
-    }
+    println!("tip of the beam, m: {:.6?}", tip().map(|u| [u.x, u.y]));
 }
 
 /// Returns the displacement of the middle of the free end, m; `None` if the iteration does not converge.
