@@ -36,6 +36,20 @@ const LINES: [Line; 10] = [
     Line { indent: 0, code: "`until` r `is within the tolerance`", numbers: Some(verdict) },
 ];
 
+/// Functions that execute each line, with their files.
+const SOURCES: [&str; 10] = [
+    "src/element/isoparametric.rs: sweep",
+    "src/assembly/system.rs: at_rest",
+    "src/simulation/search.rs: step",
+    "src/step.rs: linearize",
+    "src/step.rs: linearize",
+    "src/step.rs: linearize, warped_stress",
+    "src/step.rs: linearize, warped_stress",
+    "src/step.rs: step (factorize, solve, advance)",
+    "src/step.rs: linearize",
+    "src/method/warped.rs: check_convergence",
+];
+
 /// Indices of the lines that a step treats differently, from 0.
 pub(crate) const AT_REST: usize = 1;
 const FIRST_OF_LOOP: usize = 4;
@@ -171,6 +185,7 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
         };
         WidgetInfo::labeled(Role::Label, true, text)
     });
+    response.on_hover_text(SOURCES[number]);
     rect
 }
 
