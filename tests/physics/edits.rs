@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::common::{scene, scene_with, solved};
 use warpbeam::element::ELEMENTS;
-use warpbeam::method::METHODS;
+use warpbeam::method::{Decision, METHODS};
 use warpbeam::{Load, LoadId, Mesh, MethodKind, Scene, Simulation, Status};
 
 fn largest(simulation: &Simulation) -> f64 {
@@ -88,6 +88,25 @@ fn equations_are_shared_and_kept() {
     assert!(!Arc::ptr_eq(&system, body.system()));
     fn shared_between_threads<T: Send + Sync>(_: &T) {}
     shared_between_threads(&body);
+}
+
+/// After load steps, an edit of the material discards the matrix of the last one: the next iteration is that of a copy, which has
+/// no matrix.
+#[test]
+fn an_edit_of_the_material_after_load_steps_discards_their_matrix() {
+    let mut start = scene("column");
+    start.solver.method = MethodKind::Auto;
+    let mut body = solved(&start);
+    assert_eq!(body.equilibrium().unwrap().auto_report().unwrap().decision, Decision::LoadSteps);
+    let mut copy = body.equilibrium().unwrap().snapshot();
+    let mut material = start.material;
+    material.young *= 1.2;
+    for body in [&mut body, &mut copy] {
+        body.set_material(material).unwrap();
+        assert_eq!(*body.step(), Status::Running);
+        assert!(!body.is_linear());
+    }
+    assert!(copy.displacement() == body.displacement(), "the matrix is that of the last load step");
 }
 
 /// A mesh given by the caller is kept by every edit and never replaced by the scene's own.
