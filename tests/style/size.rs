@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 28_070),
-    ("study", &["src/study"], 8_118),
+    ("app", &["src/app"], 28_086),
+    ("study", &["src/study"], 8_119),
     ("model", &["src/model", "src/scene"], 3_586),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_545),
-    ("simulation", &["src/simulation"], 3_021),
-    ("assembly", &["src/assembly"], 2_983),
+    ("simulation", &["src/simulation"], 2_962),
+    ("assembly", &["src/assembly"], 3_040),
     ("cli", &["src/cli"], 2_817),
-    ("dynamics", &["src/dynamics"], 2_055),
+    ("dynamics", &["src/dynamics"], 2_042),
     ("render", &["src/render"], 1_945),
-    ("element", &["src/element"], 2_005),
+    ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_029),
-    ("the rest of src", &["src"], 5_214),
-    ("tests", &["tests"], 23_575),
+    ("the rest of src", &["src"], 5_222),
+    ("tests", &["tests"], 23_639),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 66_231;
+const SRC: usize = 66_263;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 
