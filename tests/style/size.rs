@@ -13,7 +13,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 28_086),
     ("study", &["src/study"], 8_119),
     ("model", &["src/model", "src/scene"], 3_586),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_545),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
     ("simulation", &["src/simulation"], 2_962),
     ("assembly", &["src/assembly"], 3_040),
     ("cli", &["src/cli"], 2_817),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_029),
     ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 23_639),
+    ("tests", &["tests"], 23_663),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 66_263;
+const SRC: usize = 66_281;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 
