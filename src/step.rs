@@ -3,7 +3,7 @@
 //! An element maps its nodes from X to x with the gradient F = R S (eqs. 37 to 39 of the article), R a rotation and S
 //! the stretch. S − I is the strain, so that a rotation costs no energy. Rotated back by R, the element is one of linear
 //! theory (eq. 3) with the stiffness Ke; rotated forward again, its force is R Ke (Rᵀ x − X). With A = Σ R Ke Rᵀ,
-//! equilibrium is A x = f_ext + Σ R Ke X (eq. 2). [`Iteration::step`] moves A x to the right-hand side, where
+//! equilibrium is A x = f_ext + Σ R Ke X (eq. 2). `Iteration::step` moves A x to the right-hand side, where
 //! f_int = A x − Σ R Ke X:
 //!
 //! ```text
