@@ -249,7 +249,8 @@ fn the_solver_solves_or_refuses_small_scenes() {
     });
     let [set_up, converged] = counts.map(AtomicU32::into_inner);
     println!("{set_up} of 8000 scenes set up, {converged} converged after some steps");
-    assert!(set_up > 800 && converged > 200, "too few of the random scenes are scenes: {set_up}, {converged}");
+    // About 810 and 300, with deviations of 27 and 17.
+    assert!(set_up > 600 && converged > 200, "too few of the random scenes are scenes: {set_up}, {converged}");
 }
 
 /// Bodies whose points are held, and whose supports turn and move: the result, its path and the curve of the loads are
