@@ -38,16 +38,16 @@ const LINES: [Line; 10] = [
 
 /// Functions that execute each line, with their files.
 const SOURCES: [&str; 10] = [
-    "src/element/isoparametric.rs: sweep",
-    "src/assembly/system.rs: at_rest",
-    "src/simulation/search.rs: step",
-    "src/step.rs: linearize",
-    "src/step.rs: linearize",
-    "src/step.rs: linearize, warped_stress",
-    "src/step.rs: linearize, warped_stress",
-    "src/step.rs: step (factorize, solve, advance)",
-    "src/step.rs: linearize",
-    "src/method/warped.rs: check_convergence",
+    "`src/element/isoparametric.rs: sweep`",
+    "`src/assembly/system.rs: at_rest`",
+    "`src/simulation/search.rs: step`",
+    "`src/step.rs: linearize`",
+    "`src/step.rs: linearize`",
+    "`src/step.rs: linearize, warped_stress`",
+    "`src/step.rs: linearize, warped_stress`",
+    "`src/step.rs: step, factorize, solve, advance`",
+    "`src/step.rs: linearize`",
+    "`src/method/warped.rs: check_convergence`",
 ];
 
 /// Indices of the lines that a step treats differently, from 0.
