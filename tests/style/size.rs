@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_029),
     ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 23_664),
+    ("tests", &["tests"], 23_669),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 66_281;
