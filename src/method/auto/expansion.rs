@@ -130,7 +130,6 @@ impl Expansion {
             return true;
         }
         let ExpansionScratch { probe, forces, .. } = scratch.get_or_insert_with(|| ExpansionScratch::new(it.problem));
-        it.workspace.tangent = None;
         for ahead in [CHECK_AHEAD, 1.0] {
             probe.displacement.overwrite().iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
             report.factorizations += 1;
