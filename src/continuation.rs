@@ -323,7 +323,7 @@ impl<S: Clone> Continuation<S> {
                 step = (SHORTER * step).max(BIFURCATION_STEP);
                 continue;
             }
-            // Of two bifurcations within a step, the second one may undo the first.
+            // A second bifurcation within a step may undo the first: both ends then have as many unstable modes.
             let places = (self.places * (point.factor - from.factor).abs()) as u32;
             let mut hides_two = || {
                 (1..=places).any(|place| {

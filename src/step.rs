@@ -55,8 +55,9 @@ pub struct Workspace {
     pub(crate) tangent: Option<Tangent>,
     /// Nodal vector.
     pub(crate) nodal: Vec<Vector2<f64>>,
-    /// State and forces for trials.
+    /// State for trials.
     pub(crate) trial: State,
+    /// Forces of trials.
     pub(crate) trial_forces: Forces,
     /// Factor for checks of a result, allocated on first use.
     pub(crate) check_factor: Option<Factor>,
@@ -98,9 +99,9 @@ pub enum Operation {
 /// Rotations with which a state is linearized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RotationUpdate {
-    /// Those of the displacement.
+    /// New rotations: the polar factors of the displacement's gradients.
     Follow,
-    /// Those that the state has.
+    /// The rotations that the state already has.
     Keep,
 }
 

@@ -246,7 +246,7 @@ impl Supports {
         let (elements, moduli) = (system.elements(), material.membrane());
         matrix.sum(|values| {
             let sum = MatrixSum { tangent: Tangent::WARPED, slots: system.slots(), values };
-            let states = [(rest.compensated(), &*rest.rotations); 2];
+            let states = [(rest.compensated(), &*rest.rotations); 2]; // Between equal states: the tangent there.
             elements.linearize_between(moduli, states, Sums { force, magnitude, matrix: Some(sum) });
         });
         self.diagonal = matrix.diagonal(system.pattern()).collect();

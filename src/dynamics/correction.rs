@@ -122,10 +122,9 @@ impl Corrector {
         kept.is_some_and(|kept| kept.are_about(&weights)) && f64::from(*last) * f64::from(*stages) <= price
     }
 
-    /// Solves for the correction under a residual force, to a relative accuracy in the
-    /// norm of the matrix, with the kept factor. Returns the number of back substitutions, and `true` if the accuracy
-    /// was reached; if not, the vector is unchanged. If a guess of the correction, m, is given, the accuracy is
-    /// relative to the remaining correction.
+    /// Solves for the correction under a residual force, to a relative accuracy in the norm of the matrix, with the kept
+    /// factor. Returns the number of back substitutions, and `true` if the accuracy was reached; if not, there is no
+    /// correction. If a guess of the correction, m, is given, the accuracy is relative to the remaining correction.
     ///
     /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952); √(r·P⁻¹r) is used as the norm of the error. The
     /// last preconditioned residual is added without a further step length: with a good factor this is as good as

@@ -548,8 +548,8 @@ impl Simulation {
         self.update_status();
     }
 
-    /// Performs one iteration (factorize, solve, advance, and the linearization of the new state), or one time step. A search does nothing once its status is no longer [`Status::Running`]; a motion continues until it
-    /// is [`Status::Stopped`].
+    /// Performs one iteration (factorize, solve, advance, linearize the new state), or one time step. A search does
+    /// nothing once its status is no longer [`Status::Running`]; a motion goes on until it is [`Status::Stopped`].
     pub fn step(&mut self) -> &Status {
         match &mut self.process {
             Process::Search(search) => search.step(&mut self.body),

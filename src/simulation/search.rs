@@ -26,14 +26,14 @@ pub(super) struct Search {
     forces: Forces,
     /// Work memory, allocated on first use.
     workspace: Option<Workspace>,
-    outcome: Outcome,
+    outcome: SearchOutcome,
     /// Results for display, taken over from the instance that made the iterations; `None` if this one made them.
     figures: Option<Figures>,
 }
 
 /// Progress and results of a search.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Outcome {
+struct SearchOutcome {
     iterations: u32,
     status: Status,
     /// Bound of the residual's rounding error, if the solve ended at it.
@@ -58,7 +58,7 @@ pub struct Found {
     /// State that the search has reached.
     pub state: State,
     forces: Forces,
-    outcome: Outcome,
+    outcome: SearchOutcome,
     figures: Figures,
 }
 
@@ -91,7 +91,7 @@ impl Search {
     fn unmeasured(scene: &Scene, forces: Forces) -> Self {
         let method = (scene.solver.method.entry().start)();
         let previous = (Displacement::zeros(0), Vec::new());
-        Self { method, previous, forces, workspace: None, outcome: Outcome::default(), figures: None }
+        Self { method, previous, forces, workspace: None, outcome: SearchOutcome::default(), figures: None }
     }
 
     /// Returns a search with the results that another instance has found, and its state.
@@ -187,7 +187,7 @@ impl Search {
 
     /// Resets counts and times, and computes the forces of the current state.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
-        self.outcome = Outcome::default();
+        self.outcome = SearchOutcome::default();
         self.figures = None;
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let (criteria, mut untimed) = (criteria(&body.scene.solver, 0), Timings::default());

@@ -17,16 +17,16 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("simulation", &["src/simulation"], 2_962),
     ("assembly", &["src/assembly"], 3_040),
     ("cli", &["src/cli"], 2_817),
-    ("dynamics", &["src/dynamics"], 2_042),
+    ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 1_029),
     ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 23_669),
+    ("tests", &["tests"], 23_664),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 66_281;
+const SRC: usize = 66_280;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 
