@@ -38,7 +38,7 @@ pub enum Change {
 }
 
 /// Nodal forces of a state, N.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Forces {
     /// f_int, internal force of the elements.
     pub(crate) internal: Vec<Vector2<f64>>,

@@ -143,7 +143,7 @@ pub enum Restart {
 }
 
 /// Figures of a method for display.
-#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct MethodReport {
     /// Number of load steps so far, including the current one.
     pub load_steps: u32,

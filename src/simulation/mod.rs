@@ -35,7 +35,6 @@ mod status;
 mod view;
 
 pub use self::motion::Moment;
-pub use self::search::Found;
 pub use self::view::{Equilibrium, Motion};
 pub use field::Field;
 pub use point::{PointState, PointValues};
@@ -264,7 +263,7 @@ impl Simulation {
 
     fn update_status(&mut self) {
         self.status = match &self.process {
-            Process::Search(search) => search.status().clone(),
+            Process::Search(search) => search.outcome.status.clone(),
             Process::Motion(motion) => motion.status(&self.body.scene, &self.body.state),
         };
     }
@@ -320,30 +319,6 @@ impl Simulation {
         self.body.state.copy_from(state);
         self.begin();
         Ok(())
-    }
-
-    /// Returns the state and the results of a search, as data for [`Self::with_found`]; `None` for a motion.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn found(&self) -> Option<Found> {
-        match &self.process {
-            Process::Search(search) => Some(search.found(&self.body)),
-            Process::Motion(_) => None,
-        }
-    }
-
-    /// Returns a simulation with the state and the results that another simulation of the same scene has computed. Work
-    /// memory is allocated if the search is continued.
-    ///
-    /// # Errors
-    /// Same errors as [`Self::new`].
-    #[doc(hidden)]
-    pub fn with_found(scene: &Scene, system: Arc<System>, found: Found) -> Result<Self, SimulationError> {
-        let problem = Problem::new(scene, system)?;
-        let (search, state) = Search::of(scene, found);
-        let status = search.status().clone();
-        let body = Body { scene: scene.clone(), problem, state };
-        Ok(Self { body, process: Process::Search(Box::new(search)), status })
     }
 
     /// Returns to an earlier moment of this motion. Steps from there are the same as after [`Self::restore`]; energies
@@ -843,7 +818,7 @@ impl Simulation {
     #[must_use]
     pub fn forces(&self) -> &Forces {
         match &self.process {
-            Process::Search(search) => search.forces(),
+            Process::Search(search) => &search.forces,
             Process::Motion(motion) => motion.forces(),
         }
     }
@@ -874,7 +849,7 @@ impl Simulation {
     #[must_use]
     pub fn iterations(&self) -> u32 {
         match &self.process {
-            Process::Search(search) => search.iterations(),
+            Process::Search(search) => search.outcome.iterations,
             Process::Motion(motion) => u32::try_from(motion.counts().solves).unwrap_or(u32::MAX),
         }
     }
@@ -893,7 +868,7 @@ impl Simulation {
     #[must_use]
     pub fn last_iteration(&self) -> &Timings {
         match &self.process {
-            Process::Search(search) => search.last_iteration(),
+            Process::Search(search) => &search.outcome.last_iteration,
             Process::Motion(motion) => motion.last_step(),
         }
     }
@@ -912,7 +887,7 @@ impl Simulation {
     #[must_use]
     pub fn timings(&self) -> &Timings {
         match &self.process {
-            Process::Search(search) => search.timings(),
+            Process::Search(search) => &search.outcome.timings,
             Process::Motion(motion) => motion.timings(),
         }
     }

@@ -1,15 +1,14 @@
 //! Search for an equilibrium by iteration.
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 
 use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
 use crate::element::UNIT;
 use crate::method::{
-    AutoReport, Certificate, Criteria, Method, MethodReport, PathEvents, Reason, Restart, Verdict, Workspace,
-    fixed_point_rho, is_stable,
+    AutoReport, Certificate, Criteria, Method, PathEvents, Reason, Restart, Verdict, Workspace, fixed_point_rho,
+    is_stable,
 };
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
@@ -23,50 +22,22 @@ pub(super) struct Search {
     method: Box<dyn Method>,
     /// Displacement and edge angles before the current iteration.
     previous: (Displacement, Vec<f64>),
-    forces: Forces,
+    pub forces: Forces,
     /// Work memory, allocated on first use.
     workspace: Option<Workspace>,
-    outcome: SearchOutcome,
-    /// Results for display, taken over from the instance that made the iterations; `None` if this one made them.
-    figures: Option<Figures>,
+    pub outcome: SearchOutcome,
 }
 
 /// Progress and results of a search.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct SearchOutcome {
-    iterations: u32,
-    status: Status,
+#[derive(Clone, Debug, Default)]
+pub(super) struct SearchOutcome {
+    pub iterations: u32,
+    pub status: Status,
     /// Bound of the residual's rounding error, if the solve ended at it.
     floor: Option<f64>,
-    certificate: Option<Certificate>,
-    timings: Timings,
-    last_iteration: Timings,
-}
-
-/// Results of a method for display.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Figures {
-    linearization: Linearization,
-    report: MethodReport,
-    /// Critical points of the path.
-    path_events: Option<PathEvents>,
-}
-
-/// State and results of a search, as data that can be sent to another instance of it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Found {
-    /// State that the search has reached.
-    pub state: State,
-    forces: Forces,
-    outcome: SearchOutcome,
-    figures: Figures,
-}
-
-impl Found {
-    /// Counts the iterations that an earlier instance has made.
-    pub fn add_iterations(&mut self, earlier: u32) {
-        self.outcome.iterations += earlier;
-    }
+    pub certificate: Option<Certificate>,
+    pub timings: Timings,
+    pub last_iteration: Timings,
 }
 
 fn criteria(settings: &SolverSettings, iterations: u32) -> Criteria {
@@ -80,23 +51,15 @@ fn criteria(settings: &SolverSettings, iterations: u32) -> Criteria {
 impl Search {
     /// Returns a search that starts from the current state.
     pub fn new(body: &mut Body) -> Result<Self, SolverError> {
-        let mut search = Self::unmeasured(&body.scene, Forces::new(body.state.displacement.len()));
-        search.workspace = Some(Workspace::new(body.problem.system())?);
-        search.previous = (body.state.displacement.clone(), body.state.edge_angles.clone());
+        let mut search = Self {
+            method: (body.scene.solver.method.entry().start)(),
+            previous: (body.state.displacement.clone(), body.state.edge_angles.clone()),
+            forces: Forces::new(body.state.displacement.len()),
+            workspace: Some(Workspace::new(body.problem.system())?),
+            outcome: SearchOutcome::default(),
+        };
         search.restart(body, Restart::AtRest);
         Ok(search)
-    }
-
-    /// Returns a search without results and work memory.
-    fn unmeasured(scene: &Scene, forces: Forces) -> Self {
-        let method = (scene.solver.method.entry().start)();
-        let previous = (Displacement::zeros(0), Vec::new());
-        Self { method, previous, forces, workspace: None, outcome: SearchOutcome::default(), figures: None }
-    }
-
-    /// Returns a search with the results that another instance has found, and its state.
-    pub fn of(scene: &Scene, Found { state, forces, outcome, figures }: Found) -> (Self, State) {
-        (Self { outcome, figures: Some(figures), ..Self::unmeasured(scene, forces) }, state)
     }
 
     /// Copies the search without its work memory, which is allocated again if the copy is continued.
@@ -107,26 +70,7 @@ impl Search {
             forces: self.forces.clone(),
             workspace: None,
             outcome: self.outcome.clone(),
-            figures: self.figures.clone(),
         }
-    }
-
-    /// Returns the state and the results as data.
-    pub fn found(&self, body: &Body) -> Found {
-        let figures = self.figures.clone().unwrap_or_else(|| Figures {
-            linearization: self.linearization(),
-            report: self.report(),
-            path_events: self.path_events(),
-        });
-        Found { state: body.state.clone(), forces: self.forces.clone(), outcome: self.outcome.clone(), figures }
-    }
-
-    fn linearization(&self) -> Linearization {
-        self.figures.as_ref().map_or_else(|| self.method.linearization(), |figures| figures.linearization)
-    }
-
-    fn report(&self) -> MethodReport {
-        self.figures.as_ref().map_or_else(|| self.method.report(), |figures| figures.report)
     }
 
     /// Takes the work memory out of the search, allocating it if necessary; the search ends if that fails.
@@ -188,7 +132,6 @@ impl Search {
     /// Resets counts and times, and computes the forces of the current state.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
         self.outcome = SearchOutcome::default();
-        self.figures = None;
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
         let (criteria, mut untimed) = (criteria(&body.scene.solver, 0), Timings::default());
         if why == Restart::AtRest {
@@ -227,7 +170,6 @@ impl Search {
             return;
         }
         let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
-        self.figures = None;
         let criteria = criteria(&body.scene.solver, self.outcome.iterations);
         let mut timings = Timings::default();
         self.previous.0.copy_from(&body.state.displacement);
@@ -322,52 +264,29 @@ impl Search {
 
     /// Returns `true` if the state is an equilibrium: at the whole load, or at the part of it that was reached.
     fn is_equilibrium(&self) -> bool {
-        match self.outcome.status {
-            Status::Converged => true,
-            Status::NotConverged(_) => self.load_factor() < 1.0,
-            _ => false,
-        }
-    }
-
-    pub fn certificate(&self) -> Option<Certificate> {
-        self.outcome.certificate
+        let status = &self.outcome.status;
+        *status == Status::Converged || matches!(status, Status::NotConverged(_)) && self.load_factor() < 1.0
     }
 
     pub fn kinematics(&self) -> Kinematics {
-        self.linearization().kinematics
-    }
-
-    pub fn forces(&self) -> &Forces {
-        &self.forces
+        self.method.linearization().kinematics
     }
 
     pub fn load_factor(&self) -> f64 {
-        self.linearization().load_factor
+        self.method.linearization().load_factor
     }
 
     pub fn load_steps(&self) -> u32 {
-        self.report().load_steps
+        self.method.report().load_steps
     }
 
     pub fn auto_report(&self) -> Option<AutoReport> {
-        self.report().auto_report
+        self.method.report().auto_report
     }
 
     /// Returns the critical points of the path from rest, if it is known to lead to the result.
     pub fn path_events(&self) -> Option<PathEvents> {
-        let events = match &self.figures {
-            Some(figures) => figures.path_events.clone(),
-            None => self.method.path_events(),
-        };
-        events.filter(|_| self.outcome.status.is_success())
-    }
-
-    pub fn status(&self) -> &Status {
-        &self.outcome.status
-    }
-
-    pub fn iterations(&self) -> u32 {
-        self.outcome.iterations
+        self.method.path_events().filter(|_| self.outcome.status.is_success())
     }
 
     pub fn residual(&self) -> f64 {
@@ -380,15 +299,7 @@ impl Search {
     }
 
     pub fn step_ratio(&self) -> Option<f64> {
-        self.report().step_ratio
-    }
-
-    pub fn last_iteration(&self) -> &Timings {
-        &self.outcome.last_iteration
-    }
-
-    pub fn timings(&self) -> &Timings {
-        &self.outcome.timings
+        self.method.report().step_ratio
     }
 }
 

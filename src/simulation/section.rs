@@ -80,7 +80,7 @@ impl Simulation {
         match &self.process {
             Process::Search(search) => NodalBalance {
                 load_factor: search.load_factor(),
-                residual: search.forces().residual().into(),
+                residual: self.forces().residual().into(),
                 mouse_spring: mouse_spring * search.load_factor(),
                 motion: None,
             },

@@ -28,13 +28,13 @@ impl Equilibrium<'_> {
     /// Returns the result of [`Simulation::certify`], if it was called since the last change.
     #[must_use]
     pub fn certificate(self) -> Option<Certificate> {
-        self.search.certificate()
+        self.search.outcome.certificate
     }
 
     /// Returns `true` if the state can be certified, and has not been since the last change.
     #[cfg(feature = "app")]
     pub(crate) fn needs_certificate(self) -> bool {
-        self.search.certificate().is_none() && self.search.can_be_certified(&self.body.problem)
+        self.search.outcome.certificate.is_none() && self.search.can_be_certified(&self.body.problem)
     }
 
     /// Returns the decisions of `auto`; `None` for other methods.
@@ -81,7 +81,7 @@ impl Equilibrium<'_> {
     #[must_use]
     pub fn snapshot(self) -> Simulation {
         let search = self.search.copy();
-        let status = search.status().clone();
+        let status = search.outcome.status.clone();
         Simulation { body: self.body.clone(), process: super::Process::Search(Box::new(search)), status }
     }
 }

@@ -79,17 +79,11 @@ impl Default for Background {
 
 impl SolveState {
     fn solve(&self) -> Option<&BackgroundSolve> {
-        match self {
-            Self::Running { solve, .. } => Some(solve),
-            Self::Idle | Self::Waiting { .. } => None,
-        }
+        if let Self::Running { solve, .. } = self { Some(solve) } else { None }
     }
 
     fn solve_mut(&mut self) -> Option<&mut BackgroundSolve> {
-        match self {
-            Self::Running { solve, .. } => Some(solve),
-            Self::Idle | Self::Waiting { .. } => None,
-        }
+        if let Self::Running { solve, .. } = self { Some(solve) } else { None }
     }
 
     fn rollback(&mut self) -> Option<&mut Rollback> {
@@ -267,7 +261,7 @@ impl Session {
     /// Handles the updates of the background solve, and starts the next solve if one is needed.
     pub(crate) fn poll(&mut self) {
         while let Some(solve) = self.background.work.solve_mut() {
-            match solve.poll() {
+            match solve.next(false) {
                 SolveUpdate::None => return,
                 update => self.take_update(update),
             }
@@ -279,7 +273,7 @@ impl Session {
     pub(super) fn wait_for_background(&mut self) {
         self.poll();
         while let Some(solve) = self.background.work.solve_mut() {
-            let update = solve.wait();
+            let update = solve.next(true);
             self.take_update(update);
             self.poll();
         }
@@ -298,7 +292,6 @@ impl Session {
                     Err(rejected) => self.receive_rejection(&solve, is_cancelled, *rejected),
                 }
             }
-            SolveUpdate::Cancelled => _ = self.background.work.take_solve(),
             SolveUpdate::Died => {
                 self.roll_back();
                 self.background.work = SolveState::Idle;

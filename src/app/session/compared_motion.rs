@@ -121,7 +121,7 @@ impl ComparedMotion {
                 self.geometry = solved.snapshot.geometry;
                 self.simulation = Some(Box::new(solved.snapshot.bodies.simulation));
             }
-            Err(reason) => self.refused = reason,
+            Err(reason) => self.refused = Some(reason),
         }
         true
     }

@@ -263,11 +263,7 @@ impl ComparedSolve {
                 self.geometry = solved.snapshot.geometry.or_else(|| self.geometry.take());
                 ComparedBody::Here(Box::new(solved.snapshot.bodies.simulation))
             }
-            Err(Some(reason)) => ComparedBody::Refused(reason),
-            Err(None) => {
-                self.given = None;
-                ComparedBody::None
-            }
+            Err(reason) => ComparedBody::Refused(reason),
         };
         if self.given == self.wanted {
             self.conclude();

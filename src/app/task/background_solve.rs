@@ -2,30 +2,18 @@
 
 use web_time::{Duration, Instant};
 
-use crate::app::platform::IS_PAGE;
-use crate::app::task::remote_solve::RemoteSolve;
 use crate::app::task::solve::{Model, Phase, Snapshot, SolveOutcome, SolveProgress, SolveRequest, Solved, run};
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::scene::{Analysis, Scene};
+use crate::scene::Scene;
 use crate::sentence::{Sentence, sentence};
 
-/// Update of a background solve.
-#[derive(Debug)]
-pub(crate) enum SolveUpdate {
-    /// Nothing new.
-    None,
-    Progress(Box<Snapshot>),
-    Done(SolveOutcome),
-    /// The solve was cancelled before it had a model.
-    Cancelled,
-    /// The solve has ended without a result.
-    Died,
-}
+/// Update of a background solve: a snapshot, or the result.
+pub(crate) type SolveUpdate = Update<Box<Snapshot>, SolveOutcome>;
 
-/// Solve in a background thread, or in a worker of a web page. Dropping it cancels it.
+/// Solve in a background thread, or on a web page after the current frame. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct BackgroundSolve {
-    runner: Runner,
+    task: Task<SolveProgress, SolveOutcome>,
     scene: Scene,
     since: Instant,
     is_new: bool,
@@ -34,28 +22,16 @@ pub(crate) struct BackgroundSolve {
     phase: Phase,
 }
 
-#[derive(Debug)]
-enum Runner {
-    Thread(Task<SolveProgress, SolveOutcome>),
-    Worker(Box<RemoteSolve>),
-}
-
 impl BackgroundSolve {
-    /// Starts the thread or the worker.
+    /// Starts the thread.
     ///
     /// # Errors
     /// The system cannot start another thread.
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
         let (scene, is_new) = (request.scene.clone(), matches!(request.model, Model::New));
         let phase = if is_new { Phase::Meshing } else { Phase::Iterating(0) };
-        // A motion is only meshed in the background.
-        let runner = if IS_PAGE && scene.analysis == Analysis::Static {
-            Runner::Worker(Box::new(RemoteSolve::start(request)?))
-        } else {
-            let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
-            Runner::Thread(Task::start("solve", work)?)
-        };
-        Ok(Self { runner, scene, since: Instant::now(), is_new, is_discarded: false, phase })
+        let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
+        Ok(Self { task: Task::start("solve", work)?, scene, since: Instant::now(), is_new, is_discarded: false, phase })
     }
 
     /// Returns the scene that is solved.
@@ -80,10 +56,7 @@ impl BackgroundSolve {
     /// Cancels the solve, whose snapshots and result are not to be displayed.
     pub(crate) fn discard(&mut self) {
         self.is_discarded = true;
-        match &self.runner {
-            Runner::Thread(task) => task.cancel(),
-            Runner::Worker(solve) => solve.end(),
-        }
+        self.task.cancel();
     }
 
     /// Returns `true` if the snapshots and the result are not to be displayed.
@@ -93,61 +66,38 @@ impl BackgroundSolve {
 
     /// Cancels the solve; it ends with the model that it has.
     pub(crate) fn cancel(&self) {
-        match &self.runner {
-            Runner::Thread(task) => task.cancel(),
-            Runner::Worker(solve) => solve.cancel(),
-        }
-    }
-
-    /// Returns the next update without waiting for it.
-    pub(crate) fn poll(&mut self) -> SolveUpdate {
-        self.next(false)
+        self.task.cancel();
     }
 
     /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended. Snapshots are
-    /// dropped. A solve that was cancelled before it had a model has no reason.
-    pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Solved>, Option<Sentence>>> {
+    /// dropped.
+    pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Solved>, Sentence>> {
         loop {
-            return Some(match self.poll() {
+            return Some(match self.next(false) {
                 SolveUpdate::None => return None,
                 SolveUpdate::Progress(_) => continue,
                 SolveUpdate::Done(Ok(solved)) => Ok(solved),
-                SolveUpdate::Done(Err(rejected)) => Err(Some((&rejected.error).into())),
-                SolveUpdate::Cancelled => Err(None),
-                SolveUpdate::Died => {
-                    Err(Some(sentence!("the solve ended unexpectedly: change a value to solve again")))
-                }
+                SolveUpdate::Done(Err(rejected)) => Err((&rejected.error).into()),
+                SolveUpdate::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
             });
         }
     }
 
-    /// Waits for the next update.
-    pub(crate) fn wait(&mut self) -> SolveUpdate {
-        self.next(true)
-    }
-
-    /// Returns the next update, and records the phases that are reported before it.
-    fn next(&mut self, waits: bool) -> SolveUpdate {
+    /// Returns the next update, and records the phases that are reported before it; waits for it if `waits` is `true`.
+    pub(crate) fn next(&mut self, waits: bool) -> SolveUpdate {
         loop {
-            let update = match &mut self.runner {
-                Runner::Thread(task) => task.next(waits),
-                Runner::Worker(solve) => solve.next(waits),
-            };
-            return match update {
-                Update::None => SolveUpdate::None,
+            return match self.task.next(waits) {
                 Update::Progress(SolveProgress::Phase(phase)) => {
                     self.phase = phase;
                     continue;
                 }
                 Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
                     drop(receipt);
-                    SolveUpdate::Progress(snapshot)
+                    Update::Progress(snapshot)
                 }
-                Update::Done(outcome) => SolveUpdate::Done(outcome),
-                Update::Died => match &self.runner {
-                    Runner::Worker(solve) if solve.is_cancelled() => SolveUpdate::Cancelled,
-                    _ => SolveUpdate::Died,
-                },
+                Update::Done(outcome) => Update::Done(outcome),
+                Update::None => Update::None,
+                Update::Died => Update::Died,
             };
         }
     }

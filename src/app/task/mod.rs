@@ -3,7 +3,6 @@
 pub(crate) mod background_solve;
 pub(crate) mod keyed;
 pub(crate) mod quality;
-pub(crate) mod remote_solve;
 pub(crate) mod sent_scene;
 pub(crate) mod solve;
 pub(crate) mod thread;

@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use web_time::{Duration, Instant};
 
+use crate::app::platform::IS_PAGE;
 use crate::app::task::quality::Quality;
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, MethodKind, Scene, SolverSettings};
+use crate::scene::{Analysis, Invalid, MethodKind, Scene, SolverSettings};
+use crate::sentence::sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 
@@ -103,7 +105,7 @@ pub(crate) struct Snapshot {
 }
 
 /// Current phase of a solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Meshing,
     LinearSolve,
@@ -112,7 +114,7 @@ pub(crate) enum Phase {
     Certifying,
 }
 
-/// SolveProgress of a solve.
+/// Progress of a solve.
 #[derive(Debug)]
 pub(crate) enum SolveProgress {
     Phase(Phase),
@@ -176,6 +178,28 @@ pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Si
     Some(linear)
 }
 
+/// Refuses a model that takes too long for a web page, which solves it on its own thread.
+///
+/// # Errors
+/// The number of unknowns that a page solves.
+pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
+    let (most, n) = (MAX_UNKNOWNS, scene.unknowns());
+    if !IS_PAGE || n <= most {
+        return Ok(());
+    }
+    let key = if scene.mesh.is_some() { "mesh.file" } else { "beam.cells" };
+    let [most, n] = [most, n].map(|n| n as usize);
+    Err(Invalid::new(
+        key,
+        sentence!(
+            "expected at most %{most} unknowns on a web page, got %{n}; the program for desktops solves larger models",
+            most,
+            n
+        ),
+    )
+    .into())
+}
+
 impl Model {
     /// Sets up the model of a scene, before its first iteration.
     ///
@@ -191,7 +215,7 @@ impl Model {
                 };
             }
             Self::Equations(system) => Simulation::with_system(scene, system),
-            Self::New => Simulation::new(scene),
+            Self::New => check_size(scene).and_then(|()| Simulation::new(scene)),
         };
         let simulation = made.map_err(|error| Box::new(Rejected { error, model: None }))?;
         Ok((Bodies { simulation, linear: None }, None))

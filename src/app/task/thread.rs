@@ -95,12 +95,7 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
 
     /// Returns the next update; waits for it if `waits` is `true`.
     pub(crate) fn next(&self, waits: bool) -> Update<P, T> {
-        if waits { self.wait() } else { self.poll() }
-    }
-
-    /// Waits for the next update.
-    pub(crate) fn wait(&self) -> Update<P, T> {
-        self.receiver.recv().map_or(Update::Died, Into::into)
+        if waits { self.receiver.recv().map_or(Update::Died, Into::into) } else { self.poll() }
     }
 }
 
@@ -211,19 +206,19 @@ mod tests {
         let task = counter();
         let mut last = 0;
         while last < 100 {
-            let Update::Progress(n) = task.wait() else { panic!("it ended") };
+            let Update::Progress(n) = task.next(true) else { panic!("it ended") };
             last = n;
         }
         task.cancel();
         let done = loop {
-            match task.wait() {
+            match task.next(true) {
                 Update::Progress(n) => last = n,
                 Update::Done(done) => break done,
                 Update::None | Update::Died => panic!("no result"),
             }
         };
         assert_eq!(done, last);
-        assert!(matches!(task.wait(), Update::Died), "there is more after the end");
+        assert!(matches!(task.next(true), Update::Died), "there is more after the end");
     }
 
     #[test]
@@ -237,7 +232,7 @@ mod tests {
             }
         })
         .unwrap();
-        assert!(matches!(task.wait(), Update::Progress(())));
+        assert!(matches!(task.next(true), Update::Progress(())));
         drop(task);
         while there.upgrade().is_some() {
             thread::yield_now();
@@ -250,6 +245,6 @@ mod tests {
             std::panic::panic_any("meant");
         })
         .unwrap();
-        assert!(matches!(task.wait(), Update::Died));
+        assert!(matches!(task.next(true), Update::Died));
     }
 }

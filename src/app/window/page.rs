@@ -8,7 +8,8 @@ use crate::app::language::{self, Language, tr};
 use crate::app::platform::page::{self, Address};
 use crate::app::platform::{self, files};
 use crate::app::shell::settings::Settings;
-use crate::app::window::{App, Display, opens_in_background, worker};
+use crate::app::task::solve::check_size;
+use crate::app::window::{App, Display, worker};
 use crate::scene::{Source, registry};
 use crate::simulation::Simulation;
 
@@ -46,9 +47,9 @@ fn open(address: Address) -> Result<(), Box<dyn Error>> {
     };
     let source = Source { name, assignments: Vec::new() };
     let scene = files::open(&source)?;
-    // A large model is meshed in the background.
-    let simulation = if opens_in_background(&scene) { None } else { Some(Simulation::new(&scene)?) };
-    let app = App::new((source, scene, simulation), (settings, unreadable), address.card, is_default)?;
+    check_size(&scene)?;
+    let simulation = Simulation::new(&scene)?;
+    let app = App::new((source, scene, Some(simulation)), (settings, unreadable), address.card, is_default)?;
     // Shortcuts have the Cmd key on systems of Apple.
     app.ctx.set_os(OperatingSystem::from_user_agent(&page::user_agent()));
     Ok(app.run(Display::open()?)?)

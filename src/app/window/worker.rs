@@ -7,7 +7,6 @@ use crate::app::session::facts::{
     CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, TimeFact,
 };
 use crate::app::task::keyed::FactWork;
-use crate::app::task::remote_solve::SolveWork;
 use crate::app::task::thread::{Work, serve};
 
 /// Work by its name.
@@ -28,7 +27,6 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<RhoFact>>(),
     entry::<FactWork<ElementErrors>>(),
     entry::<StudyWork>(),
-    entry::<SolveWork>(),
 ];
 
 /// Waits for requests of the page.
