@@ -28,8 +28,8 @@ pub fn tip() -> Option<Vector2<f64>> {
             let inverse = sides(&rest).try_inverse()?;
             // The rotation R of F = R S, by the polar decomposition in closed form (equations (37) to (39)).
             let f = sides(&x) * inverse;
-            let (c, s) = (f.m11 + f.m22, f.m21 - f.m12);
-            let r = Matrix2::new(c, -s, s, c) / c.hypot(s);
+            let (cos, sin) = (f.m11 + f.m22, f.m21 - f.m12);
+            let r = Matrix2::new(cos, -sin, sin, cos) / cos.hypot(sin);
             // The stiffness Ke = ∫ Bᵀ C B dA of linear theory; B takes displacements to strains.
             let (g, h) = (inverse.row(0), inverse.row(1));
             let gradients = [-g - h, g.into_owned(), h.into_owned()];

@@ -106,7 +106,7 @@ pub enum RotationUpdate {
 }
 
 /// Strain, matrix and load of a linearization.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization {
     /// Strain measure.
     pub kinematics: Kinematics,
@@ -218,7 +218,7 @@ impl Problem {
 }
 
 /// Returns the function of a quadrature point with H = F − I, in four elements at once. From its result the loop over
-/// the elements adds Σ R T ∇N, which is Σ R Ke (Rᵀ x − X), and Σ R Ke Rᵀ.
+/// the elements (`Isoparametric::sweep`) adds Σ R T ∇N, which is Σ R Ke (Rᵀ x − X), and Σ R Ke Rᵀ (`ElementMatrix::add`).
 #[inline(always)]
 pub(crate) fn warped_stress(
     lame: Lame,
