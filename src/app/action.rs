@@ -43,8 +43,6 @@ pub(crate) enum Action {
     Forward,
     /// Return to rest, or to the start of the motion.
     Reset,
-    /// Make the current state the start that a reset returns to; if one is set, remove it.
-    Mark,
     /// Set the playback speed, simulated seconds per second.
     Speed(f64),
     /// Show the same motion with another integrator; if it is shown, hide it.

@@ -63,8 +63,6 @@ pub(crate) enum MotionPlot {
     Energy,
     /// Displacement of the first probe against time.
     Tip,
-    /// Velocity of the first probe against its displacement.
-    Phase,
 }
 
 /// Quantities that a load curve shows.
@@ -119,7 +117,7 @@ pub(crate) enum Toggle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Drawer {
-    /// Energy, tip and phase of a motion.
+    /// Energy and tip of a motion.
     Motion,
     /// Stress along the sections of the scene, and N, V and M along its beam.
     Section,
@@ -143,7 +141,7 @@ impl Drawer {
     pub(crate) fn text(self) -> (&'static str, &'static str) {
         match self {
             Self::Section => ("Sections", "Stress along the sections, and N, V and M along the beam (Q)"),
-            Self::Motion => ("Energy and tip", "Energy, tip and phase of the motion (E)"),
+            Self::Motion => ("Energy and tip", "Energy and tip of the motion (E)"),
         }
     }
 }

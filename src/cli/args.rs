@@ -231,9 +231,6 @@ pub(super) struct LimitsArgs {
     pub json: bool,
     #[command(flatten)]
     pub outputs: OutputArgs,
-    /// Draw the picture with linear axes instead of logarithmic ones.
-    #[arg(long, requires = "picture")]
-    pub linear: bool,
 }
 
 #[derive(Debug, Args)]

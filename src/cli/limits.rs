@@ -10,14 +10,14 @@ use super::args::LimitsArgs;
 use super::progress::Watch;
 use super::{CliError, json, named, text, validated};
 use crate::format::{engineering, percent, three_digits};
-use crate::plot::{self, AxisScale};
+use crate::plot;
 use crate::scene::{self, Scene};
 use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::moved_points;
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
-    let LimitsArgs { scene, json, outputs, linear } = args;
+    let LimitsArgs { scene, json, outputs } = args;
     let source = scene::Source::from(scene);
     outputs.check()?;
     let (scene, system) = validated(&source)?;
@@ -28,9 +28,8 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
     let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
-    let scale = if linear { AxisScale::Linear } else { AxisScale::Logarithmic };
     outputs.write_table(|| table(&limits, &scene))?;
-    outputs.write_picture(|| Ok(plot::limits(&limits, &scene, scale)))?;
+    outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
     text::print(&match json {
         true => as_json(&limits, &scene, &notes),
         false => summary(&limits, &scene) + &text::notes(&notes),

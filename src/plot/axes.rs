@@ -1,7 +1,7 @@
 //! Axes of drawings: margins, scales, grids and the marks of elements.
 
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, Outline, Shape, Text, solid};
-use crate::format::{number, ticks};
+use crate::format::number;
 use crate::scene::ElementKind;
 
 /// Size of a drawing.
@@ -22,36 +22,20 @@ pub(super) struct PlotMargins {
 pub(super) const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0 };
 
-/// Scale of the axes of a chart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AxisScale {
-    /// Equal distances are equal ratios.
-    #[default]
-    Logarithmic,
-    /// Equal distances are equal differences.
-    Linear,
-}
-
-impl AxisScale {
-    /// Returns an axis between two places. It shows a range of positive values, a linear one from 0. `full` is the
-    /// displayed value of 1: its multiples are round at the ticks of a linear axis.
-    pub(crate) fn axis(self, [low, high]: [f64; 2], full: f64, ends: [f64; 2]) -> ScaledAxis {
-        let [from, to] = if self == Self::Linear { [0.0, high] } else { [low.log10(), high.log10()] };
-        ScaledAxis { scale: self, from, to, full, ends }
-    }
-}
-
-/// Axis of positive values.
+/// Logarithmic axis of positive values.
 pub(crate) struct ScaledAxis {
-    scale: AxisScale,
-    /// Values at the ends, or their logarithms.
+    /// Logarithms of the values at the ends.
     from: f64,
     to: f64,
-    full: f64,
     ends: [f64; 2],
 }
 
 impl ScaledAxis {
+    /// Returns an axis between two places that shows a range of values.
+    pub fn of([low, high]: [f64; 2], ends: [f64; 2]) -> Self {
+        Self { from: low.log10(), to: high.log10(), ends }
+    }
+
     /// Decades around these values, between two places.
     pub fn decades(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
         let (low, high) = values
@@ -59,7 +43,7 @@ impl ScaledAxis {
             .map(f64::log10)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         let [from, to] = if low > high { [0.0, 1.0] } else { [low.floor(), high.ceil().max(low.floor() + 1.0)] };
-        Self { scale: AxisScale::Logarithmic, from, to, full: 1.0, ends }
+        Self { from, to, ends }
     }
 
     /// Returns the value at a place; the inverse of [`Self::place`].
@@ -68,37 +52,25 @@ impl ScaledAxis {
         let [start, end] = self.ends;
         let fraction = if end == start { 0.0 } else { (place - start) / (end - start) };
         let at = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
-        if self.scale == AxisScale::Linear { at } else { 10f64.powf(at) }
+        10f64.powf(at)
     }
 
     pub fn place(&self, value: f64) -> f64 {
-        let at = if self.scale == AxisScale::Linear { value } else { value.max(f64::MIN_POSITIVE).log10() };
-        let fraction = (at - self.from) / (self.to - self.from);
+        let fraction = (value.max(f64::MIN_POSITIVE).log10() - self.from) / (self.to - self.from);
         let [start, end] = self.ends;
         start + (end - start) * fraction.clamp(0.0, 1.0)
     }
 
-    /// Returns the positions and the values of the decades, with those of 2 and 5 if there are fewer than two decades, or of
-    /// the ticks of a linear axis.
+    /// Returns the positions and the values of the decades, with those of 2 and 5 if there are fewer than two decades.
     pub fn values(&self) -> Vec<(f64, f64)> {
-        /// Largest number of ticks of a linear axis.
-        const TICKS: u32 = 6;
-        let values: Vec<f64> = match self.scale {
-            AxisScale::Logarithmic => {
-                let [from, to] = [self.from.floor() as i32, self.to.floor() as i32];
-                let of = |digits: &'static [f64]| {
-                    let all = (from..=to).flat_map(|e| digits.iter().map(move |digit| digit * 10f64.powi(e)));
-                    all.filter(|value| (self.from..=self.to).contains(&value.log10())).collect::<Vec<f64>>()
-                };
-                // One decade alone does not show the scale.
-                let decades = of(&[1.0]);
-                if decades.len() > 1 { decades } else { of(&[1.0, 2.0, 5.0]) }
-            }
-            AxisScale::Linear => {
-                let texts = ticks(self.from * self.full, self.to * self.full, TICKS);
-                texts.into_iter().map(|text| text / self.full).collect()
-            }
+        let [from, to] = [self.from.floor() as i32, self.to.floor() as i32];
+        let of = |digits: &'static [f64]| {
+            let all = (from..=to).flat_map(|e| digits.iter().map(move |digit| digit * 10f64.powi(e)));
+            all.filter(|value| (self.from..=self.to).contains(&value.log10())).collect::<Vec<f64>>()
         };
+        // One decade alone does not show the scale.
+        let decades = of(&[1.0]);
+        let values = if decades.len() > 1 { decades } else { of(&[1.0, 2.0, 5.0]) };
         values.into_iter().map(|value| (self.place(value), value)).collect()
     }
 

@@ -1,6 +1,6 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
-use super::axes::{AxisScale, ScaledAxis};
+use super::axes::ScaledAxis;
 use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
@@ -27,9 +27,9 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
 }
 
 /// Draws the limits of a scene over the load.
-pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing {
+pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     let loads = load_axis(scene);
-    let axis = scale.axis(limits.range, loads.full, ACROSS);
+    let axis = ScaledAxis::of(limits.range, ACROSS);
     // A motion has no load curve.
     let top = 44.0 + if limits.reference.is_empty() { CURVE[0] } else { CURVE[1] };
     let bottom = top + ROW * limits.strips.len() as f64;
@@ -52,7 +52,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
     }
     if !limits.reference.is_empty() {
-        curve(&mut drawing, limits, scale, &axis);
+        curve(&mut drawing, limits, &axis);
     }
     for (row, strip) in limits.strips.iter().enumerate() {
         let y = top + ROW * row as f64;
@@ -68,14 +68,10 @@ pub fn limits(limits: &MethodLimits, scene: &Scene, scale: AxisScale) -> Drawing
 }
 
 /// Draws the length of the reference displacement over the load.
-fn curve(drawing: &mut Drawing, limits: &MethodLimits, scale: AxisScale, axis: &ScaledAxis) {
+fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &ScaledAxis) {
     let lengths = limits.reference.iter().map(|(factor, u)| (*factor, u.map(|u| u.norm()).filter(|u| *u > 0.0)));
     let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
-    let (known, ends) = (lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
-    let up = match scale {
-        AxisScale::Logarithmic => ScaledAxis::decades(known, ends),
-        AxisScale::Linear => scale.axis([0.0, known.fold(f64::MIN_POSITIVE, f64::max)], 1.0, ends),
-    };
+    let up = ScaledAxis::decades(lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
     for (y, length) in up.values() {
         drawing.line(vec![[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
         drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, engineering(length, "m"));

@@ -8,7 +8,6 @@ mod limits;
 mod trade;
 
 pub use atlas::{atlas, motion_atlas};
-pub use axes::AxisScale;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;

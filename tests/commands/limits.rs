@@ -104,28 +104,6 @@ fn an_early_stop_has_a_strip() {
     assert!(solved["status"] == "accepted" && (at_load[3] / wanted - 1.0).abs() < 1e-6, "{at_load:?} {wanted}");
 }
 
-/// A linear axis begins at 0; its ticks are round loads. Without a picture there is no axis.
-#[test]
-fn a_picture_can_have_linear_axes() {
-    let folder = tempfile::tempdir().unwrap();
-    let texts = |more: &[&str]| {
-        let output = warpbeam_in(folder.path(), &[&["limits", "article", "--picture", "t.svg"], more].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let svg = fs::read_to_string(folder.path().join("t.svg")).unwrap();
-        let document = roxmltree::Document::parse(&svg).unwrap();
-        let texts = document.descendants().filter(|node| node.has_tag_name("text"));
-        let x = |node: roxmltree::Node<'_, '_>| node.attribute("x").unwrap().parse().unwrap();
-        texts.filter_map(|node| Some((node.text()?.to_owned(), x(node)))).collect::<Vec<(String, f64)>>()
-    };
-    let at = |texts: &[(String, f64)], text: &str| texts.iter().find(|(own, _)| own == text).map(|(_, x)| *x);
-    let (logarithmic, linear) = (texts(&[]), texts(&["--linear"]));
-    let [low, own, high] = ["300 N", "30 kN", "300 kN"].map(|text| at(&logarithmic, text));
-    assert!((own.unwrap() - low.unwrap() - 2.0 * (high.unwrap() - own.unwrap())).abs() < 0.2);
-    let [low, middle, high] = ["0 N", "100 kN", "300 kN"].map(|text| at(&linear, text));
-    assert!((high.unwrap() - low.unwrap() - 3.0 * (middle.unwrap() - low.unwrap())).abs() < 0.2, "{linear:?}");
-    assert_eq!(warpbeam(&["limits", "article", "--linear"]).status.code(), Some(2));
-}
-
 /// The load at which linear theory is 5 % off the exact beam is that of `curve`.
 #[test]
 fn the_limit_of_linear_theory_is_that_of_the_exact_beam() {

@@ -114,22 +114,6 @@ fn strips_appear_one_after_another() {
     until(&mut harness, &|[complete, _]| complete > 0);
 }
 
-/// A linear axis begins at 0, and the pointer sets the load where the axis has it.
-#[test]
-fn the_axis_can_be_linear() {
-    let mut harness = opened(scene("article"));
-    let before = force(harness.state());
-    harness.get_by_label("linear axis").click();
-    harness.run_steps(2);
-    let area = harness.get_by_role_and_label(Role::Slider, "Load").rect();
-    let start = Pos2::new(area.left() + 0.1 * area.width(), area.top() + 4.0);
-    for (part, factor) in [(0.5, 5.0), (0.0, 0.01)] {
-        drag(&mut harness, start, Pos2::new(area.left() + part * area.width(), start.y));
-        let ratio = force(harness.state()) / before;
-        assert!((ratio - factor).abs() < 0.02, "{ratio}");
-    }
-}
-
 /// A click on a strip sets its method and element; one undo takes both back. The limits stay.
 #[test]
 fn a_click_on_a_strip_sets_method_and_element() {

@@ -114,8 +114,7 @@ pub fn shot(
     }
     let mut study_error = None;
     if options.study {
-        let extent = if options.learn.is_some() { Extent::Quick } else { Extent::Full };
-        match Study::until_cancelled(lab.scene(), extent, observe) {
+        match Study::until_cancelled(lab.scene(), Extent::Full, observe) {
             Ok((study, _)) => lab.show_study(study),
             Err(error) => study_error = Some(error),
         }

@@ -98,13 +98,6 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, act
             button(speed, &fraction(speed), &tip);
         }
     });
-    ui.horizontal(|ui| {
-        let marked = input.playback.is_marked();
-        let tip = "Reset returns to the present state instead of the start; again: to the start (H)";
-        if ui.add(option_button(marked, tr("Set reset point"))).on_hover_text(tr(tip)).clicked() {
-            actions.push(Action::Mark);
-        }
-    });
     let chosen = settings.integrator.entry();
     let entries = INTEGRATORS.iter().map(|entry| (entry.id, entry.about));
     let picked = picker(ui, "Integrator", (chosen.id, chosen.about), entries);

@@ -21,8 +21,6 @@ pub(crate) struct MotionSample {
     pub position: Vector2<f64>,
     /// Displacement of the first probe, m.
     pub displacement: Vector2<f64>,
-    /// Velocity of the first probe, m/s.
-    pub velocity: Vector2<f64>,
 }
 
 /// Samples ordered by time.
@@ -62,7 +60,6 @@ impl History {
             ledger: *motion.ledger(),
             position: see(simulation.system().mesh().nodes()) + displacement,
             displacement,
-            velocity: see(state.velocity()),
         });
     }
 
@@ -90,11 +87,6 @@ impl History {
             self.samples.partition_point(|s| s.time <= time),
         ];
         self.samples.range(first.min(end)..end)
-    }
-
-    /// Returns the last sample that is not after `time`, s.
-    pub(crate) fn at(&self, time: f64) -> Option<&MotionSample> {
-        self.samples.get(self.samples.partition_point(|s| s.time <= time).checked_sub(1)?)
     }
 
     /// Returns the axis along which the probe's displacement varies most: 0 for x, 1 for y.

@@ -932,13 +932,6 @@ impl Session {
         }
     }
 
-    /// Marks the current state as the one that a reset returns to, or removes the mark. Returns `true` if a state is
-    /// marked now.
-    pub(crate) fn toggle_mark(&mut self) -> bool {
-        self.playback.mark(&self.simulation);
-        self.playback.is_marked()
-    }
-
     /// Sets the speed of a motion, simulated seconds per second.
     pub(crate) fn set_speed(&mut self, speed: f64) {
         self.playback.clock.set_speed(speed);

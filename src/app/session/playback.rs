@@ -1,4 +1,4 @@
-//! Playback of a motion: clock, recorded past, marked start, and the same motion under other integrators.
+//! Playback of a motion: clock, recorded past, and the same motion under other integrators.
 
 use nalgebra::Vector2;
 
@@ -8,7 +8,6 @@ use crate::app::session::past::Past;
 use crate::mesh::MaterialPoint;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status};
-use crate::state::State;
 
 /// Largest memory for the recorded moments of all motions, bytes.
 const MAX_BYTES: usize = 64 << 20;
@@ -39,8 +38,6 @@ pub(crate) struct Playback {
     played: f64,
     /// Playing time at which the last moment was recorded, s.
     kept: f64,
-    /// State that a reset returns to in place of the start.
-    here: Option<State>,
     companions: Vec<Companion>,
     /// Integrators that became unstable and were removed from the comparison since the last [`Self::take_unstable`],
     /// with their longest stable step, s, if they have one.
@@ -200,28 +197,11 @@ impl Playback {
         self.companions.iter().any(|c| !c.simulation.is_at_rest())
     }
 
-    /// Returns to the start of the scene, or to the marked state.
+    /// Returns to the start of the scene.
     pub(crate) fn reset(&mut self, simulation: &mut Simulation) {
-        let here = self.here.clone();
         let bodies = std::iter::once(simulation).chain(self.companions.iter_mut().map(|c| &mut c.simulation));
-        for body in bodies {
-            body.reset();
-            if let Some(here) = &here {
-                // Cannot fail: the mark is removed when the body changes.
-                let _ = body.restore(here);
-            }
-        }
+        bodies.for_each(Simulation::reset);
         self.restart();
-    }
-
-    /// Marks the current state as the one that a reset returns to, or removes the mark.
-    pub(crate) fn mark(&mut self, simulation: &Simulation) {
-        self.here = if self.here.is_none() { Some(simulation.state().clone()) } else { None };
-    }
-
-    /// Returns `true` if a reset returns to a marked state.
-    pub(crate) fn is_marked(&self) -> bool {
-        self.here.is_some()
     }
 
     fn restart(&mut self) {
@@ -242,7 +222,6 @@ impl Playback {
         self.discard_past();
         self.history.truncate_after(simulation.state().time());
         if is_another {
-            self.here = None;
             self.restart();
         }
         let moves = scene.analysis == Analysis::Dynamic;
@@ -305,6 +284,7 @@ fn with(scene: &Scene, integrator: IntegratorKind) -> Scene {
 mod tests {
     use super::*;
     use crate::dynamics::INTEGRATORS;
+    use crate::state::State;
 
     /// Returns a falling beam, to which a companion is added after five of ten steps, with its last five pairs of
     /// states.

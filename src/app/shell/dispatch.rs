@@ -1,7 +1,7 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
 use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
+use crate::app::language::{fill, said};
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::figure;
 use crate::app::modes::learn;
@@ -117,7 +117,7 @@ impl Lab {
                 self.desk.motions.step();
             }
             Action::Step => self.step(),
-            Action::Scrub(_) | Action::Back | Action::Mark if self.compares_motions() => {}
+            Action::Scrub(_) | Action::Back if self.compares_motions() => {}
             Action::Scrub(_) | Action::Back | Action::Forward
                 if !self.desk.session.is_motion() || self.desk.session.is_in_background() => {}
             Action::Scrub(time) => {
@@ -134,11 +134,6 @@ impl Lab {
                 if self.lesson.as_ref().is_some_and(|lesson| lesson.learn.waits_for_steps()) {
                     self.desk.session.set_running(false);
                 }
-            }
-            Action::Mark => {
-                let is_marked = self.desk.session.toggle_mark();
-                let text = if is_marked { "Reset now returns to this state" } else { "Reset now returns to the start" };
-                self.say(ctx, tr(text).to_owned());
             }
             Action::Speed(speed) => {
                 self.desk.session.set_speed(speed);
@@ -192,9 +187,9 @@ impl Lab {
             Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {
                 // A full study of a motion takes many minutes.
-                let is_quick = self.lesson.is_some() || self.desk.session.is_motion();
-                let extent = if is_quick { Extent::Quick } else { Extent::Full };
-                if self.desk.session.is_motion() {
+                let is_motion = self.desk.session.is_motion();
+                let extent = if is_motion { Extent::Quick } else { Extent::Full };
+                if is_motion {
                     // A motion that runs beside would take the time that is measured.
                     self.desk.session.pause();
                 }

@@ -154,8 +154,6 @@ pub struct Lab {
     pub(super) lesson: Option<Box<Lesson>>,
     /// Number of the last displayed card, from 0.
     pub(super) card: usize,
-    /// Measurements of the last lesson.
-    pub(super) card_study: Budget,
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
@@ -183,7 +181,6 @@ impl Lab {
             desk: Desk::new(Session::new(source, scene, simulation)),
             lesson: None,
             card: 0,
-            card_study: Budget::default(),
             story: None,
             dialog: None,
             question: Question::None,

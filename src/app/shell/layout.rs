@@ -9,7 +9,7 @@ use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{self, spaced, tr};
 use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
 use crate::app::modes::explore::motion_plot;
-use crate::app::modes::learn::{self, Shown};
+use crate::app::modes::learn;
 use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::readout::Readout;
 use crate::app::session::undo::Press;
@@ -263,8 +263,7 @@ impl Lab {
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // The state of the cards is taken out of the lab, because the readout borrows the lab.
         let Some(mut lesson) = self.lesson.take() else { return };
-        let budget = &self.desk.budget;
-        let shown = Shown { input: self.readout(), study: budget.study(), progress: budget.progress() };
+        let shown = self.readout();
         // Escape closes the panel over the body and the explanation first.
         let view = &self.desk.view;
         let is_covered = view.help || view.why || view.narrow && view.sheet;

@@ -24,7 +24,7 @@ impl Lab {
         let (bars, narrow) = (own.view.bars, own.view.narrow);
         own.view.mode = Mode::Explore;
         let Some(session) = session else { return };
-        let mut desk = Desk { budget: std::mem::take(&mut self.card_study), ..Desk::new(session) };
+        let mut desk = Desk::new(session);
         desk.viewport.set_easing(own.viewport.eases());
         desk.viewport.set_rect(own.viewport.rect());
         // A card has the controls that it needs, so the panel is closed until the user opens it.
@@ -37,8 +37,7 @@ impl Lab {
 
     fn leave(&mut self, lesson: Lesson) {
         let (mode, drawer) = (self.desk.view.mode, self.desk.view.drawer);
-        // The measurements stay for the next lesson.
-        self.card_study = std::mem::replace(&mut self.desk, lesson.aside).budget;
+        self.desk = lesson.aside;
         let view = &mut self.desk.view;
         view.mode = mode;
         // A drawer opened from a card stays open.

@@ -4,7 +4,6 @@ use egui::{Context, Event, Key, Modifiers};
 
 use crate::app::action::Action;
 use crate::app::view_options::{Drawer, Mode, Toggle};
-use crate::simulation::Field;
 
 /// Key with its modifiers, description and action.
 pub(crate) struct Shortcut {
@@ -52,22 +51,16 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::Comma, "In motion: pause, and go back by a frame", || Action::Back),
     key(Key::Period, "In motion: pause, and go forward by a frame or a time step", || Action::Forward),
     key(Key::R, "Solve again from rest, or return to the start of the motion", || Action::Reset),
-    key(Key::H, "In motion: make Reset return to this state; again: to the start", || Action::Mark),
     key(Key::F, "Fit the view", || Action::Fit),
     key(Key::W, "Wireframe on or off", || Action::Toggle(Toggle::Wireframe)),
     key(Key::O, "Outline of the body at rest on or off", || Action::Toggle(Toggle::RestOutline)),
     key(Key::G, "Outline of the linear solution on or off", || Action::Toggle(Toggle::Ghost)),
     key(Key::X, "Outline of the reference solution on or off", || Action::Toggle(Toggle::Exact)),
-    key(Key::Num1, "Colour: von Mises (Cauchy)", || Action::Color(Field::VonMises)),
-    key(Key::Num2, "Colour: strain energy density", || Action::Color(Field::EnergyDensity)),
-    key(Key::Num3, "Colour: largest strain", || Action::Color(Field::LargestStrain)),
-    key(Key::Num4, "Colour: rotation angle", || Action::Color(Field::RotationAngle)),
-    key(Key::Num5, "Colour: mesh error", || Action::Color(Field::MeshError)),
     key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Curve)),
     key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
         Action::Toggle(Toggle::Drawer(Drawer::Section))
     }),
-    key(Key::E, "Energy, tip and phase of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
+    key(Key::E, "Energy and tip of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
     key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
     key(Key::M, "Limits: up to which load each method and element holds, on or off", || {

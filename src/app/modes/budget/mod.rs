@@ -109,11 +109,6 @@ impl Budget {
         }
     }
 
-    /// Returns the fraction done and the current measurement, while a study is in progress.
-    pub(crate) fn progress(&self) -> Option<(f32, &Sentence)> {
-        self.background.as_ref().map(BackgroundStudy::progress)
-    }
-
     /// Returns `true` while a study is in progress.
     pub(crate) fn runs(&self) -> bool {
         self.background.is_some()

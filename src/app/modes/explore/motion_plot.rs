@@ -1,8 +1,8 @@
-//! Plots of a motion: energy by kind, displacement of the first probe over time, and its phase diagram.
+//! Plots of a motion: energy by kind, and displacement of the first probe over time.
 
 use crate::app::view_options::MotionPlot;
 use egui::{Color32, Ui, Vec2, vec2};
-use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
+use egui_plot::{Line, PlotPoint, PlotPoints, VLine};
 
 use crate::app::language::{fill, tr};
 use crate::app::session::history::{History, MotionSample};
@@ -13,10 +13,9 @@ use crate::app::widgets::palette::Palette;
 use crate::app::widgets::plot::still;
 use crate::scene::IntegratorKind;
 
-const PLOTS: [(MotionPlot, &str, &str); 3] = [
+const PLOTS: [(MotionPlot, &str, &str); 2] = [
     (MotionPlot::Energy, "Energy", "Energy over time, by kind"),
     (MotionPlot::Tip, "Tip", "Displacement of the first probe over time"),
-    (MotionPlot::Phase, "Phase", "Velocity of the first probe against its displacement"),
 ];
 
 /// Duration that is shown, s; more if the displayed moment is earlier.
@@ -70,10 +69,6 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
             let lines = lines(&|history| thinned(history, duration, |s| [s.time, s.displacement[axis]]));
             LinePlot { id: "tip", axes: [time, (&name, "m")], lines }
         }
-        MotionPlot::Phase => {
-            let lines = lines(&|history| thinned(history, duration, |s| [s.displacement[axis], s.velocity[axis]]));
-            LinePlot { id: "phase", axes: [(&name, "m"), (tr("velocity"), "m/s")], lines }
-        }
     };
     ui.horizontal_wrapped(|ui| {
         for (plot, word, tip) in PLOTS {
@@ -99,17 +94,8 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
         for PlotLine { name, color, width, points } in lines {
             plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(width));
         }
-        match (chosen, cursor) {
-            (MotionPlot::Energy | MotionPlot::Tip, Some(time)) => {
-                plot.vline(VLine::new("", time).color(palette.text).width(1.0));
-            }
-            (MotionPlot::Phase, Some(time)) => {
-                if let Some(sample) = playback.history.at(time) {
-                    let at = Points::new("", [sample.displacement[axis], sample.velocity[axis]]);
-                    plot.points(at.color(palette.text).radius(4.0));
-                }
-            }
-            _ => {}
+        if let Some(time) = cursor {
+            plot.vline(VLine::new("", time).color(palette.text).width(1.0));
         }
     });
 }

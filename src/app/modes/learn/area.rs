@@ -3,9 +3,10 @@
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
 
-use super::{Learn, Shown, triangle};
+use super::{Learn, triangle};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, spaced, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::format::{number, three_digits};
@@ -16,25 +17,24 @@ use crate::scene::{Load, LoadId, MethodKind};
 pub(super) const LARGEST_FORCE: f64 = 4e4;
 
 /// Shows the slider of the force, and the growth of the body's area compared with the reference solution.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     force(ui, shown, learn, actions);
     ui.add_space(4.0);
-    let method = shown.input.scene.solver.method;
+    let method = shown.scene.solver.method;
     let palette = Palette::new(ui.visuals());
-    let own = triangle::area_growth(shown.input.simulation);
+    let own = triangle::area_growth(shown.simulation);
     row(ui, &palette, method.id(), Some(own), palette.method(method));
     if method != MethodKind::Linear {
-        let linear = shown.input.linear.map(triangle::area_growth);
+        let linear = shown.linear.map(triangle::area_growth);
         row(ui, &palette, MethodKind::Linear.id(), linear, palette.method(MethodKind::Linear));
     }
-    let outline =
-        shown.input.reference.filter(|_| shown.input.simulation.is_at_rest()).map(|reference| &reference.outline);
+    let outline = shown.reference.filter(|_| shown.simulation.is_at_rest()).map(|reference| &reference.outline);
     let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
-        let rest: f64 = shown.input.simulation.system().nodal_areas().iter().sum();
+        let rest: f64 = shown.simulation.system().nodal_areas().iter().sum();
         100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
     });
     row(ui, &palette, "reference", exact, palette.exact);
-    let linear = Some(shown.input.simulation).filter(|_| method == MethodKind::Linear).or(shown.input.linear);
+    let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.linear);
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
         let text = fill!(
             "linear: \u{3b8} up to %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",
@@ -57,8 +57,8 @@ const SOURCES: &str = "The article: \u{201c}\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6
                        2004.";
 
 /// Shows the slider for the magnitude of the first force, which keeps its direction.
-fn force(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let scene = shown.input.scene;
+fn force(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let scene = shown.scene;
     let first = scene.loads.iter().enumerate().find_map(|(i, load)| match load {
         Load::Force { force, .. } if force[0].hypot(force[1]) > 0.0 => Some((i, *force)),
         _ => None,

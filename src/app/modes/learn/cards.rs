@@ -2,8 +2,9 @@
 
 use egui::{Painter, Ui};
 
-use super::{CardView, Learn, Needs, Shown, area, code, exploded, frames, locking, matrices, residuals, trade};
+use super::{CardView, Learn, Needs, area, code, exploded, frames, locking, matrices, residuals, to_budget};
 use crate::app::action::Action;
+use crate::app::readout::Readout;
 use crate::scene::{Load, MethodKind, Scene};
 use crate::simulation::Field;
 
@@ -22,7 +23,7 @@ pub(crate) struct Card {
     /// Expensive results that the card shows.
     pub needs: Needs,
     /// Shows numbers and controls next to the text.
-    pub show: fn(&mut Ui, &Shown<'_>, &mut Learn, &mut Vec<Action>),
+    pub show: fn(&mut Ui, &Readout<'_>, &mut Learn, &mut Vec<Action>),
     /// Paints over the body.
     pub paint: fn(&Painter, &CardView<'_>, &Learn),
     /// `true` if the elements are drawn apart from each other.
@@ -251,12 +252,11 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "The trade-off",
         text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on \
-                your machine. The table has the time of the fastest setting within the error you ask for. The mode \
-                Budget shows all settings and their Pareto front: those that no other setting beats in both time and \
-                error.",
+                your machine. Budget measures all of them for your own scene. It shows their Pareto front: the \
+                settings that no other one beats in both time and error.",
         formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
-        task: "Press \u{201c}Measure\u{201d}; it runs in the background. Then ask for another error.",
+        task: "Open Budget, and press \u{201c}Measure\u{201d}.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Newton, NEAR),
             field: Field::VonMises,
@@ -266,7 +266,7 @@ pub(crate) const CARDS: &[Card] = &[
             reach: None,
         },
         needs: Needs::Nothing,
-        show: trade::show,
+        show: to_budget,
         paint: nothing,
         apart: false,
         lines: false,

@@ -4,9 +4,10 @@ use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::frames::angle_text;
 use super::triangle::Triangle;
-use super::{Learn, Shown, formula, not_triangles, step_buttons};
+use super::{Learn, formula, not_triangles, step_buttons};
 use crate::app::action::Action;
 use crate::app::language::{count, fill, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::format::{engineering, three_digits};
 use crate::rotation::Rotation;
@@ -113,8 +114,8 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
 }
 
 /// Shows the buttons that step, and the lines.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let simulation = shown.input.simulation;
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = shown.simulation;
     if !describes(simulation) {
         return not_triangles(
             ui,

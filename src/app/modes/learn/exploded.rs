@@ -5,9 +5,10 @@ use nalgebra::Vector2;
 
 use super::frames::{angle_text, paint_picked};
 use super::triangle::Triangle;
-use super::{CardView, Learn, NOT_TRIANGLES, Shown, not_triangles};
+use super::{CardView, Learn, NOT_TRIANGLES, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::rotation::Rotation;
 use crate::simulation::Simulation;
@@ -53,7 +54,7 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
 }
 
 /// Shows the slider between the two views, and the strain of the selected triangle.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let small = |text: &str| RichText::new(text).size(SMALL).color(palette.secondary);
     ui.horizontal(|ui| {
@@ -67,7 +68,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
             .on_hover_text(tr("From the bent beam to its triangles, each rotated back by its own R"));
     });
     ui.add_space(6.0);
-    let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
+    let Some(triangle) = Triangle::of(shown.simulation, learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let angle = angle_text(triangle.rotation);

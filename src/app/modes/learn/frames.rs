@@ -4,9 +4,10 @@ use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, 
 use nalgebra::{Matrix2, Vector2};
 
 use super::triangle::Triangle;
-use super::{CardView, Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
+use super::{CardView, Learn, NOT_TRIANGLES, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::rotation::Rotation;
 
@@ -61,8 +62,8 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
 }
 
 /// Shows F = R S with the numbers of the selected triangle.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let Some(triangle) = Triangle::of(shown.input.simulation, learn.picked) else {
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let Some(triangle) = Triangle::of(shown.simulation, learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());

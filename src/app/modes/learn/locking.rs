@@ -2,9 +2,10 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::{Learn, Shown};
+use super::Learn;
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::progress::{Observer, Progress};
 use crate::scene::{ElementKind, MethodKind, Scene};
@@ -40,9 +41,9 @@ pub(super) fn errors(scene: &Scene, observe: Observer<'_>) -> Option<Vec<Element
 }
 
 /// Shows one button per element.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
-    let scene = shown.input.scene;
+    let scene = shown.scene;
     let known = learn.errors(scene).map(<[ElementError]>::to_vec);
     for element in scene.elements() {
         let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));

@@ -4,9 +4,10 @@ use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeK
 use nalgebra::DMatrix;
 
 use super::triangle::{Triangle, assembled};
-use super::{Learn, NOT_TRIANGLES, Shown, formula, not_triangles};
+use super::{Learn, NOT_TRIANGLES, formula, not_triangles};
 use crate::app::action::Action;
 use crate::app::language::{fill, spaced, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, three_digits};
 use crate::render::colormap;
@@ -20,8 +21,8 @@ const GAP: f32 = 18.0;
 const MAX_UNKNOWNS: usize = 96;
 
 /// Shows the matrices.
-pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let simulation = shown.input.simulation;
+pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = shown.simulation;
     let triangle = Triangle::of(simulation, learn.picked);
     let stiffness = triangle.and_then(|triangle| Some((triangle, triangle.stiffness(simulation)?)));
     let Some((triangle, stiffness)) = stiffness else {
@@ -59,8 +60,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown<'_>, learn: &mut Learn, actions: &
 }
 
 /// Shows the matrix of the body before the supports are applied, and the rows and columns that they remove.
-fn whole(ui: &mut Ui, shown: &Shown<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
-    let simulation = shown.input.simulation;
+fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
+    let simulation = shown.simulation;
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
     ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));

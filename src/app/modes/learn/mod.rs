@@ -17,9 +17,7 @@ use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{self, Scene, Source, registry};
-use crate::sentence::Sentence;
 use crate::simulation::{Simulation, Status};
-use crate::study::Study;
 
 mod area;
 mod cards;
@@ -30,7 +28,6 @@ mod frames;
 mod locking;
 mod matrices;
 mod residuals;
-mod trade;
 mod triangle;
 
 pub(crate) use cards::{CARDS, Card};
@@ -77,8 +74,6 @@ pub(crate) struct Learn {
     picked: usize,
     /// Fraction of the exploded view: 0 for the body itself, 1 for separate, rotated-back elements.
     rotation_part: f64,
-    /// Largest error in the table of the trade-off, percent.
-    asked: f64,
     errors: Keyed<ElementErrors>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
@@ -87,15 +82,6 @@ pub(crate) struct Learn {
     shown_line: usize,
     /// Largest body that the card's slider reaches.
     pub reach: Option<Simulation>,
-}
-
-/// Content of a card.
-pub(crate) struct Shown<'a> {
-    pub input: Readout<'a>,
-    /// Speed–accuracy study, if there is one.
-    pub study: Option<&'a Study>,
-    /// Fraction done and current measurement, while a study is in progress.
-    pub progress: Option<(f32, &'a Sentence)>,
 }
 
 /// View that a card paints over.
@@ -150,7 +136,6 @@ impl Learn {
             card: card.min(CARDS.len() - 1),
             picked: 6,
             rotation_part: 1.0,
-            asked: 1.0,
             errors: Keyed::default(),
             messages: Messages::new(),
             line: 0,
@@ -241,8 +226,8 @@ impl Learn {
     }
 
     /// Shows the card.
-    pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, keys: bool, actions: &mut Vec<Action>) {
-        self.request(shown.input.scene, ui.ctx());
+    pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Readout<'_>, keys: bool, actions: &mut Vec<Action>) {
+        self.request(shown.scene, ui.ctx());
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
@@ -340,8 +325,8 @@ impl Learn {
 }
 
 /// Shows the buttons that step (name, tooltip, and `true` if it can), return to rest, and iterate to the end.
-fn step_buttons(ui: &mut Ui, shown: &Shown<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
-    let goes_on = *shown.input.simulation.status() == Status::Running && !shown.input.running;
+fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
+    let goes_on = *shown.simulation.status() == Status::Running && !shown.running;
     for (name, tip, on, action) in [
         (step.0, step.1, step.2, Action::Step),
         ("From rest", "Back to rest (R)", true, Action::Reset),
@@ -350,6 +335,13 @@ fn step_buttons(ui: &mut Ui, shown: &Shown<'_>, step: (&'static str, &'static st
         if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
             actions.push(action);
         }
+    }
+}
+
+/// Shows the button that leads to Budget.
+fn to_budget(ui: &mut Ui, _: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+    if ui.button(tr("Open Budget")).on_hover_text(tr("Leave the cards, and measure your own scene (B)")).clicked() {
+        actions.push(Action::Toggle(Toggle::Mode(Mode::Budget)));
     }
 }
 

@@ -3,10 +3,11 @@
 
 use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{Learn, Shown, step_buttons};
+use super::{Learn, step_buttons};
 use crate::app::action::Action;
 use crate::app::diagnosis::rho_number;
 use crate::app::language::{count, fill, tr};
+use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::method::METHODS;
@@ -14,11 +15,11 @@ use crate::scene::MethodKind;
 use crate::simulation::Status;
 
 /// Shows the buttons that iterate, and the residuals.
-pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let ended = *shown.input.simulation.status() != Status::Running;
+        let ended = *shown.simulation.status() != Status::Running;
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
-        if let Some(ratio) = last_ratio(shown.input.residuals) {
+        if let Some(ratio) = last_ratio(shown.residuals) {
             let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
             ui.add(egui::Label::new(text).extend());
         }
@@ -27,18 +28,18 @@ pub(super) fn steps(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut
 }
 
 /// Shows the buttons that choose a method, and the residuals.
-pub(super) fn methods(ui: &mut Ui, shown: &Shown<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
-            let chosen = shown.input.scene.solver.method == method.kind;
+            let chosen = shown.scene.solver.method == method.kind;
             let text = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
             if ui.add(option_button(chosen, tr(text))).on_hover_text(tr(method.about)).clicked() && !chosen {
-                let mut scene = Box::new(shown.input.scene.clone());
+                let mut scene = Box::new(shown.scene.clone());
                 scene.solver.method = method.kind;
                 actions.push(Action::Edit("Method", scene));
             }
         }
-        let simulation = shown.input.simulation;
+        let simulation = shown.simulation;
         let iterations = count(simulation.iterations(), "iteration");
         let text = match simulation.status() {
             Status::Converged => fill!("converged after %{iterations}", iterations = iterations),
@@ -57,7 +58,7 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
     (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
-fn plot(ui: &mut Ui, shown: &Shown<'_>) {
+fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     /// Smallest number of iterations on the horizontal axis, and decimal exponent at the top of the vertical axis.
     const MIN_ITERATIONS: usize = 12;
     const HIGHEST: f64 = 1.0;
@@ -65,13 +66,13 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>) {
     const BELOW: f32 = 20.0;
     let palette = Palette::new(ui.visuals());
     // The residuals of other methods do not follow it.
-    let is_warped = shown.input.scene.solver.method == MethodKind::Warped;
-    let rho = shown.input.equilibrium_rho.filter(|_| is_warped);
+    let is_warped = shown.scene.solver.method == MethodKind::Warped;
+    let rho = shown.equilibrium_rho.filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
-    let asked = shown.input.scene.solver.tolerance.max(1e-300).log10();
-    let residuals = shown.input.residuals;
+    let asked = shown.scene.solver.tolerance.max(1e-300).log10();
+    let residuals = shown.residuals;
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
     let most = residuals.len().max(MIN_ITERATIONS) as f64;
@@ -91,7 +92,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>) {
         let line = |at: f64| place(at, r + (at - k) * rho.log10());
         dashed(&inside, line(0.0), line(most), Stroke::new(1.8, palette.exact));
     }
-    let color = palette.method(shown.input.scene.solver.method);
+    let color = palette.method(shown.scene.solver.method);
     let points: Vec<_> = residuals.iter().enumerate().map(|(i, &r)| place(i as f64 + 1.0, decade(r))).collect();
     for point in &points {
         inside.circle_filled(*point, 3.0, color);
@@ -116,7 +117,7 @@ fn plot(ui: &mut Ui, shown: &Shown<'_>) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if is_warped && shown.input.is_computing_rho {
+    if is_warped && shown.is_computing_rho {
         ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }

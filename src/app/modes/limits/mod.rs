@@ -18,7 +18,7 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{number, prefix, six_digits, three_digits};
-use crate::plot::{AxisScale, ScaledAxis, rating_color};
+use crate::plot::{ScaledAxis, rating_color};
 use crate::scene::{Analysis, Load, Scene};
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
@@ -50,13 +50,11 @@ pub(crate) struct LimitMap {
     base: Option<Scene>,
     /// Part of the base's loads, or of its time step, that the lab's scene has.
     factor: f64,
-    /// Scale of loads and displacements.
-    scale: AxisScale,
 }
 
 impl Default for LimitMap {
     fn default() -> Self {
-        Self { base: None, factor: 1.0, scale: AxisScale::default() }
+        Self { base: None, factor: 1.0 }
     }
 }
 
@@ -65,7 +63,7 @@ impl LimitMap {
     pub(crate) fn turn_to(&mut self, scene: &Scene) {
         match self.base.as_ref().and_then(|base| part_of(base, scene)) {
             Some(factor) => self.factor = factor,
-            None => *self = Self { base: Some(scene.clone()), scale: self.scale, ..Self::default() },
+            None => *self = Self { base: Some(scene.clone()), ..Self::default() },
         }
     }
 
@@ -92,7 +90,7 @@ impl LimitMap {
         let moves = scene.analysis == Analysis::Dynamic;
         ui.horizontal_wrapped(|ui| {
             ui.add_space(8.0);
-            self.views(ui, scene, view);
+            Self::views(ui, scene, view);
             if limits.is_some() && !shows_curve {
                 key(ui, moves);
             }
@@ -129,7 +127,7 @@ impl LimitMap {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let size = vec2(ui.available_width(), ui.available_height().max(least));
             let (below, _) = ui.allocate_exact_size(size, Sense::hover());
-            let chart = StripChart::new(ui, below, limits, &axis, self.scale);
+            let chart = StripChart::new(ui, below, limits, &axis);
             self.chart(ui, &chart, &base, (scene, shown), actions);
         });
     }
@@ -164,20 +162,14 @@ impl LimitMap {
         }
     }
 
-    /// Shows the choice of the scale of the strips, and the load curve.
-    fn views(&mut self, ui: &mut Ui, scene: &Scene, view: &mut ViewOptions) {
+    /// Shows the choice between the strips and the load curve.
+    fn views(ui: &mut Ui, scene: &Scene, view: &mut ViewOptions) {
         let shows_curve = view.shows_curve(scene);
-        let mut option = |is_chosen, name| {
+        for (curve, name) in [(false, "Strips"), (true, "Load curve")] {
             let text = RichText::new(tr(name)).size(SMALL);
-            ui.add(option_button(is_chosen, text)).clicked()
-        };
-        for (scale, name) in [(AxisScale::Logarithmic, "logarithmic axis"), (AxisScale::Linear, "linear axis")] {
-            if option(self.scale == scale && !shows_curve, name) {
-                (self.scale, view.curve) = (scale, false);
+            if scene.analysis == Analysis::Static && ui.add(option_button(shows_curve == curve, text)).clicked() {
+                view.curve = curve;
             }
-        }
-        if scene.analysis == Analysis::Static && option(shows_curve, "Load curve") {
-            view.curve = true;
         }
     }
 }
@@ -295,7 +287,6 @@ struct StripChart<'a> {
     limits: &'a MethodLimits,
     axis: &'a LoadAxis,
     across: ScaledAxis,
-    scale: AxisScale,
     palette: Palette,
     curve: Rect,
     strips: Rect,
@@ -309,7 +300,7 @@ struct StripChart<'a> {
 }
 
 impl<'a> StripChart<'a> {
-    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis, scale: AxisScale) -> Self {
+    fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, axis: &'a LoadAxis) -> Self {
         let widths =
             limits.strips.iter().filter_map(|strip| strip.end(axis, limits.range)).map(|end| {
                 ui.painter().layout_no_wrap(said(&end), FontId::proportional(SMALL), Color32::WHITE).size().x
@@ -328,8 +319,7 @@ impl<'a> StripChart<'a> {
         Self {
             limits,
             axis,
-            across: scale.axis(limits.range, axis.full, [left, right].map(f64::from)),
-            scale,
+            across: ScaledAxis::of(limits.range, [left, right].map(f64::from)),
             palette: Palette::new(ui.visuals()),
             curve: Rect::from_min_max(pos2(left, whole.top() + LINE), pos2(right, top - 8.0)),
             strips: Rect::from_min_max(pos2(left, top), pos2(right, bottom)),
@@ -432,7 +422,7 @@ impl<'a> StripChart<'a> {
         let range = lengths.fold([f64::INFINITY, 0.0_f64], |[low, high], u| [low.min(u), high.max(u)]);
         let ends = [self.curve.bottom(), self.curve.top()].map(f64::from);
         let range = [range[0] / EDGE, range[1] * EDGE];
-        (self.has_curve && range[1].is_finite() && range[1] > 0.0).then(|| self.scale.axis(range, 1.0, ends))
+        (self.has_curve && range[1].is_finite() && range[1] > 0.0).then(|| ScaledAxis::of(range, ends))
     }
 
     /// Shows a strip; a click uses its method and element.
