@@ -5,8 +5,7 @@ use std::process::Command;
 /// Environment variable that names the test which the process was started for.
 const TEST: &str = "WARPBEAM_TEST_ALONE";
 
-/// Runs a test, `topic::name`, in a process of its own, and fails if it fails there. Returns `false` in that process,
-/// which then runs the body of the test.
+/// Runs a test, `topic::name`, in a process of its own; returns `false` in that process, which then runs the body.
 pub fn ran_alone(test: &str) -> bool {
     if std::env::var_os(TEST).is_some_and(|alone| alone == *test) {
         return false;

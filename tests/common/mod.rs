@@ -1,5 +1,5 @@
 //! Functions shared by the test programs.
-#![allow(dead_code, reason = "each program uses its part")]
+#![allow(dead_code, unused_imports, reason = "each program uses its part")]
 
 pub mod alone;
 #[cfg(all(feature = "app", target_os = "linux"))]
@@ -86,11 +86,68 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
+/// Runs the program in a folder; fails unless it ends with this exit code. Returns standard output and standard error.
+pub fn ends_in(folder: &Path, code: i32, args: &[&str]) -> [String; 2] {
+    let output = warpbeam_in(folder, args);
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {}", stderr(&output));
+    [stdout(&output), stderr(&output)]
+}
+
+/// Returns the standard output of a command that succeeds.
+pub fn succeeds(args: &[&str]) -> String {
+    succeeds_in(Path::new("."), args)
+}
+
+pub fn succeeds_in(folder: &Path, args: &[&str]) -> String {
+    let [text, _] = ends_in(folder, 0, args);
+    text
+}
+
+/// Fails unless a command is refused with a message that contains this text.
+pub fn refuses(args: &[&str], message: &str) {
+    refuses_in(Path::new("."), args, message);
+}
+
+pub fn refuses_in(folder: &Path, args: &[&str], message: &str) {
+    let [_, said] = ends_in(folder, 2, args);
+    assert!(said.contains(message), "{args:?}: {said}");
+}
+
+/// Returns the JSON object that a command prints, whatever its exit code.
+pub fn parsed(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", stderr(output)))
+}
+
+/// Returns the header of a CSV file, and its rows.
+pub fn table(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut rows = text.lines().map(|line| line.split(',').collect());
+    (rows.next().unwrap_or_default(), rows.collect())
+}
+
+/// Returns the rows of a CSV file of numbers, without the header.
+pub fn numbers(text: &str) -> Vec<Vec<f64>> {
+    table(text).1.iter().map(|row| row.iter().map(|value| value.parse().unwrap()).collect()).collect()
+}
+
 /// Returns the output of `solve --json`; fails unless the solve converges.
 pub fn solve_json(args: &[&str]) -> serde_json::Value {
-    let output = warpbeam(&[&["solve", "--json"], args].concat());
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
+    serde_json::from_str(&succeeds(&[&["solve", "--json"], args].concat())).unwrap()
+}
+
+/// Returns the displacement of the first probe, as `solve --json` prints it.
+pub fn solve_u(args: &[&str]) -> nalgebra::Vector2<f64> {
+    let json = solve_json(args);
+    [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap()).into()
+}
+
+/// Returns the error of the first probe, percent, as `solve --json` prints it.
+pub fn solve_error(args: &[&str]) -> f64 {
+    solve_json(args)["probes"][0]["error_percent"].as_f64().unwrap()
+}
+
+/// Returns the largest distance of the points of two lists.
+pub fn largest_distance(a: &[nalgebra::Vector2<f64>], b: &[nalgebra::Vector2<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
 /// Row of `tests/data/cantilever.csv`. Lengths are in units of the beam's length.

@@ -81,9 +81,6 @@ fn vibration(simulation: &Simulation) -> (DVector<f64>, f64) {
 }
 
 pub fn beam(cells: u32, slenderness: f64) -> Scene {
-    Scene::beam(1.0, 1.0 / slenderness)
-        .with_cells(cells, 1)
-        .clamp("left")
-        .probe("tip", "right")
-        .moving(IntegratorKind::TrBdf2, 1e-3)
+    let beam = Scene::beam(1.0, 1.0 / slenderness).with_cells(cells, 1).clamp("left").probe("tip", "right");
+    beam.moving(IntegratorKind::TrBdf2, 1e-3)
 }

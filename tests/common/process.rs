@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::Path;
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use nix::pty::openpty;
@@ -65,19 +65,14 @@ impl Running {
     }
 }
 
-/// Runs the program with standard error connected to a terminal. Returns its exit code and the
-/// text written to the terminal.
+/// Runs the program with standard error on a terminal; returns its exit code and the text written there.
 pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let terminal = openpty(None, None).unwrap();
-    let child = program(folder, args)
-        .env("TERM", "xterm")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(terminal.slave)
-        .spawn()
-        .unwrap();
-    let mut running = Running(Some(child));
-    // Reading the terminal fails once the program has ended.
+    let start = |mut program: Command| {
+        program.env("TERM", "xterm").stdin(Stdio::null()).stdout(Stdio::null()).stderr(terminal.slave).spawn().unwrap()
+    };
+    let mut running = Running(Some(start(program(folder, args))));
+    // Reading the terminal fails once the program has ended, and nobody else holds its other side.
     let (mut screen, mut text) = (File::from(terminal.master), Vec::new());
     let _ = screen.read_to_end(&mut text);
     let code = running.0.take().unwrap().wait().unwrap().code();

@@ -62,16 +62,13 @@ pub fn scene(seed: u64) -> Scene {
     toml += &match kind {
         0 | 1 => clamp(start),
         2 => clamp(start) + &clamp(end),
-        // Simply supported at two points of a side.
         3 => {
             let (a, b) = (at(random.between(0.0, 0.3), -0.5), at(random.between(0.7, 1.0), -0.5));
             format!(
                 "[[support]]\nat = {a:?}\nfix = [\"x\", \"y\"]\n[[support]]\nat = {b:?}\nfix = [\"{across_axis}\"]\n"
             )
         }
-        // A roller at the other end.
         4 => clamp(start) + &format!("[[support]]\nedge = \"{end}\"\nfix = [\"{across_axis}\"]\n"),
-        // The other end is displaced or rotated.
         _ => {
             let moved = vector(0.0, random.between(-0.02, 0.02) * long);
             let turn = if random.unit() < 0.3 { random.between(-0.2, 0.2) } else { 0.0 };

@@ -10,13 +10,9 @@ use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use crate::common::drop::drop_file;
-use crate::common::{scene, solve_json, warpbeam};
-use egui::accesskit::Role;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use warpbeam::Simulation;
-use warpbeam::app::{Lab, RecoveryCopies};
-use warpbeam::scene::{Load, Source};
+use crate::common::lab::*;
+use crate::common::{solve_json, warpbeam};
+use warpbeam::app::RecoveryCopies;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
 
 /// Longest time to wait for a condition: a busy machine takes half a minute to compile shaders for the first time.
@@ -62,12 +58,9 @@ impl Desktop {
                 writeln!(std::io::stderr(), "skipped: {missing:?} not installed; `scripts/setup test` installs them");
             return None;
         }
-        let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1600x1100x24", "-nolisten", "tcp", "-noreset"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-screen", "0", "1600x1100x24", "-nolisten", "tcp", "-noreset"]);
+        let mut server = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
@@ -75,12 +68,9 @@ impl Desktop {
         // openbox announces itself before it has read its files, and loses windows that are mapped in the meantime. It
         // runs this command when it is ready.
         let ready = config.path().join("ready");
-        let manager = Command::new("openbox")
-            .args(["--startup", &format!("touch '{}'", ready.display())])
-            .env("DISPLAY", &name)
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut manager = Command::new("openbox");
+        manager.args(["--startup", &format!("touch '{}'", ready.display())]);
+        let manager = manager.env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
         let desktop = Self { _turn: turn, server, manager, name, config };
         wait_for("the window manager", || ready.exists().then_some(()));
         Some(desktop)
@@ -123,14 +113,8 @@ impl<'a> Window<'a> {
     fn open_in(desktop: &'a Desktop, folder: &std::path::Path, args: &[&str]) -> Self {
         let output = tempfile::NamedTempFile::new().unwrap();
         let stream = || Stdio::from(output.as_file().try_clone().unwrap());
-        let process = desktop
-            .command(env!("CARGO_BIN_EXE_warpbeam"))
-            .args(args)
-            .current_dir(folder)
-            .stderr(stream())
-            .stdout(stream())
-            .spawn()
-            .unwrap();
+        let mut program = desktop.command(env!("CARGO_BIN_EXE_warpbeam"));
+        let process = program.args(args).current_dir(folder).stderr(stream()).stdout(stream()).spawn().unwrap();
         let mut window = Self { desktop, process, id: String::new(), output };
         let start = Instant::now();
         while window.id.is_empty() {
@@ -200,6 +184,11 @@ impl<'a> Window<'a> {
         image.len() == picture.len() && changed(&image, picture) < 2_000
     }
 
+    /// Waits until more than this number of pixels differ from a picture.
+    fn wait_for_change(&self, what: &str, picture: &[u8], pixels: usize) {
+        wait_for(what, || (changed(picture, &self.image()) > pixels).then_some(()));
+    }
+
     /// Waits until the window shows this picture.
     fn wait_for_picture(&self, what: &str, picture: &[u8]) {
         wait_for(what, || self.shows(picture).then_some(()));
@@ -210,8 +199,8 @@ impl<'a> Window<'a> {
         self.desktop.key(&self.id, key)
     }
 
-    fn point(&self, x: f32, y: f32) {
-        self.desktop.xdotool(&["mousemove", "--window", &self.id, &format!("{x:.0}"), &format!("{y:.0}")]);
+    fn point(&self, at: Pos2) {
+        self.desktop.xdotool(&["mousemove", "--window", &self.id, &format!("{:.0}", at.x), &format!("{:.0}", at.y)]);
     }
 
     /// Returns the processor time used since the start, in clock ticks.
@@ -269,24 +258,12 @@ fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
 }
 
 /// Returns the article's scene at rest, with the layout of the window but without a display.
-fn laid_out() -> Harness<'static, Lab> {
-    let scene = scene("article");
-    let simulation = Simulation::new(&scene).unwrap();
-    let mut lab = Lab::new(Source { name: "article".into(), assignments: Vec::new() }, scene, simulation);
+fn laid_out() -> Ui {
+    let mut lab = lab_of("article", scene("article"));
     lab.solve();
-    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.ui(ui);
-        },
-        lab,
-    );
-    harness.run_steps(3);
-    harness
-}
-
-/// Returns the rectangle of the panel's force slider.
-fn force_slider() -> egui::Rect {
-    laid_out().get_by_role_and_label(Role::Slider, "Force").rect()
+    let mut ui = window(SIZE, lab);
+    ui.run_steps(3);
+    ui
 }
 
 /// Reads a PNG file in the order of X images, BGRx; returns `None` if the file is incomplete.
@@ -306,22 +283,16 @@ fn changed(a: &[u8], b: &[u8]) -> usize {
 fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
     let Some(desktop) = Desktop::start() else { return };
     let window = Window::open(&desktop, &["run", "article"]);
-    let slider = force_slider();
-    let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
+    let at = laid_out().slider("Force");
     let before = window.settle();
     // The slider's handle at 30 000 N; the beam springs back when it is dragged to a smaller force.
-    window.point(at(0.67).0, at(0.67).1);
+    window.point(at(0.67));
     desktop.xdotool(&["mousedown", "1"]);
-    for place in [0.6, 0.5, 0.4, 0.3] {
-        window.point(at(place).0, at(place).1);
-    }
-    // The picture changes before the button is released.
-    wait_for("the beam to spring back", || (changed(&before, &window.image()) > 20_000).then_some(()));
+    [0.6, 0.5, 0.4, 0.3].into_iter().for_each(|share| window.point(at(share)));
+    window.wait_for_change("the beam to spring back", &before, 20_000);
     desktop.xdotool(&["mouseup", "1"]);
-    window.point(900.0, 700.0);
-    let after = window.settle();
-    // The beam and its ghost cover tens of thousands of 1 024 000 pixels.
-    let moved = changed(&before, &after);
+    window.point(Pos2::new(900.0, 700.0));
+    let moved = changed(&before, &window.settle());
     assert!(moved > 20_000, "only {moved} pixels changed");
     window.discard_well();
 }
@@ -345,12 +316,7 @@ fn the_window_survives_being_minimized_and_resized() {
         wait_for("the window's new size", || (window.geometry().0 == size).then_some(()));
     }
     window.wait_for_picture("the same picture after resizing", &before);
-    for key in [
-        "F1", "Escape", "w", "o", "g", "x", "t", "2", "3", "4", "1", "p", "p", "b", "b", "space", "n", "r", "space",
-        "f", "c",
-    ] {
-        window.key(key);
-    }
+    "F1 Escape w o g x t 2 3 4 1 p p b b space n r space f c".split(' ').for_each(|key| _ = window.key(key));
     window.settle();
     window.close_well();
 }
@@ -360,7 +326,7 @@ fn the_window_survives_being_minimized_and_resized() {
 fn an_idle_window_uses_no_processor() {
     let Some(desktop) = Desktop::start() else { return };
     let window = Window::open(&desktop, &["run", "gravity"]);
-    window.point(1000.0, 850.0);
+    window.point(Pos2::new(1000.0, 850.0));
     window.settle();
     let least = (0..15).map(|_| {
         let before = window.ticks();
@@ -372,8 +338,7 @@ fn an_idle_window_uses_no_processor() {
     assert_eq!(window.close().0, Some(0));
 }
 
-/// A motion ends at rest, where nothing is redrawn. The body follows the pointer, comes to rest again after release,
-/// and a reset shows the same motion with the same end.
+/// A motion ends at rest, also after a release, and a reset shows the same motion with the same end.
 #[test]
 fn a_body_in_motion_is_pulled_released_and_reset() {
     let Some(desktop) = Desktop::start() else { return };
@@ -381,17 +346,15 @@ fn a_body_in_motion_is_pulled_released_and_reset() {
     let window = Window::open(&desktop, &["run", "jelly", "--set", "dynamics.damping.mass=15"]);
     let before = window.settle();
     // The body is in the middle of the view.
-    let (x, y) = (498.0, 330.0);
-    window.point(x, y);
+    let at = Pos2::new(498.0, 330.0);
+    window.point(at);
     desktop.xdotool(&["mousedown", "1"]);
     wait_for("the pointer to hold the body and to pull it", || {
-        for reach in [40.0, 80.0, 120.0] {
-            window.point(x + reach, y - 0.5 * reach);
-        }
+        [40.0, 80.0, 120.0].into_iter().for_each(|reach| window.point(at + vec2(reach, -0.5 * reach)));
         (changed(&before, &window.image()) > 20_000).then_some(())
     });
     desktop.xdotool(&["mouseup", "1"]);
-    window.point(1200.0, 735.0);
+    window.point(Pos2::new(1200.0, 735.0));
     window.settle();
     window.key("r");
     // The range of colours grows with the displayed frames of the motion, so that the pictures differ slightly.
@@ -408,7 +371,7 @@ fn s_saves_a_screenshot() {
     let Some(desktop) = Desktop::start() else { return };
     let folder = tempfile::tempdir().unwrap();
     let window = Window::open_in(&desktop, folder.path(), &["run", "article"]);
-    window.point(1000.0, 700.0);
+    window.point(Pos2::new(1000.0, 700.0));
     let shown = window.settle();
     let path = folder.path().join("warpbeam-001.png");
     let bgrx = ask_until("the whole screenshot", || _ = window.key("s"), || read_bgrx(&path));
@@ -418,8 +381,7 @@ fn s_saves_a_screenshot() {
     assert_eq!(window.close().0, Some(0));
 }
 
-/// A file dropped on the window is opened, and a click changes the language of the whole window. The picture is that of
-/// `shot`, and the language is kept for the next start.
+/// The picture is that of `shot`, and the language is kept for the next start.
 #[test]
 fn a_dropped_file_is_opened_and_shown_in_chinese() {
     let Some(desktop) = Desktop::start() else { return };
@@ -432,26 +394,29 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
     let title = || desktop.xdotool(&["getwindowname", &window.id]);
     wait_for("the dropped scene", || title().starts_with("Bracket").then_some(()));
     let english = window.settle();
-    window.point(switch.x, switch.y);
-    let settings = desktop.config.path().join("warpbeam").join("settings.toml");
+    window.point(switch);
     desktop.xdotool(&["click", "1"]);
-    wait_for("another language", || (changed(&english, &window.image()) > 5_000).then_some(()));
-    // A position without a control that the pointer would highlight.
-    window.point(420.0, 735.0);
-    let chinese = window.settle();
-    let picture = folder.path().join("chinese.png");
-    let options = ["--size", "1280x800", "--language", "zh", "-o", picture.to_str().unwrap()];
-    let shot = warpbeam(&[&["shot", path.to_str().unwrap()][..], &options].concat());
-    assert_eq!(shot.status.code(), Some(0));
-    let different = changed(&read_bgrx(&picture).unwrap(), &chinese);
-    assert!(different < 5_000, "{different} pixels differ from what `shot` makes in Chinese");
+    window.wait_for_change("another language", &english, 5_000);
+    window.point(FREE);
+    shot_is(&path, &["--language", "zh"], &window.settle());
     window.close_well();
-    let kept = std::fs::read_to_string(&settings).unwrap();
+    let kept = std::fs::read_to_string(desktop.config.path().join("warpbeam").join("settings.toml")).unwrap();
     assert!(kept.contains("language = \"zh\""), "{kept}");
 }
 
-/// When the tip of the arrow is dragged, the force follows the pointer. Ctrl+S saves it, `solve` converges to the
-/// displayed result, and Ctrl+Z restores the previous force. A screenshot during the drag shows it, and does not end it.
+/// Position without a control that the pointer would highlight.
+const FREE: Pos2 = Pos2::new(420.0, 735.0);
+
+/// Asserts that `shot` makes a picture of a scene file; only times and numbers of iterations may differ.
+fn shot_is(scene: &std::path::Path, options: &[&str], picture: &[u8]) {
+    let path = scene.with_extension("png");
+    let args = ["shot", scene.to_str().unwrap(), "--size", "1280x800", "-o", path.to_str().unwrap()];
+    assert_eq!(warpbeam(&[&args, options].concat()).status.code(), Some(0));
+    let different = changed(&read_bgrx(&path).unwrap(), picture);
+    assert!(different < 5_000, "{different} pixels differ from what `shot` makes");
+}
+
+/// `solve` converges to the displayed result. A screenshot during the drag shows it, and does not end it.
 #[test]
 fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let Some(desktop) = Desktop::start() else { return };
@@ -459,18 +424,15 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene("article").to_toml().unwrap()).unwrap();
     let window = Window::open_in(&desktop, folder.path(), &["run", path.to_str().unwrap()]);
-    let harness = laid_out();
-    // A position without a control that the pointer would highlight.
-    let (tip, corner) = (harness.state().arrow_tips()[0].1, (420.0, 735.0));
-    window.point(corner.0, corner.1);
+    let tip = laid_out().tip();
+    window.point(FREE);
     let before = window.settle();
-    window.point(tip.x, tip.y);
+    window.point(tip);
     desktop.xdotool(&["mousedown", "1"]);
     // To the left and up: a smaller force in another direction.
-    let increment = egui::vec2(-60.0, -45.0);
-    let drag = |parts: [f32; 2]| parts.map(|part| window.point(tip.x + part * increment.x, tip.y + part * increment.y));
+    let drag = |parts: [f32; 2]| parts.map(|part| window.point(tip + vec2(-60.0, -45.0) * part));
     drag([0.25, 0.5]);
-    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 5_000).then_some(()));
+    window.wait_for_change("the beam to follow the arrow", &before, 5_000);
     let held = window.settle();
     let screenshot = folder.path().join("warpbeam-001.png");
     // The window has the focus: to give it again would end the drag.
@@ -481,43 +443,33 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     assert!(different < 20, "{different} pixels differ from the window");
     window.wait_for_picture("the message to vanish", &held);
     drag([0.75, 1.0]);
-    wait_for("the drag to go on after the screenshot", || (changed(&held, &window.image()) > 5_000).then_some(()));
-    wait_for("the beam to follow the arrow", || (changed(&before, &window.image()) > 10_000).then_some(()));
+    window.wait_for_change("the drag to go on after the screenshot", &held, 5_000);
+    window.wait_for_change("the beam to follow the arrow", &before, 10_000);
     desktop.xdotool(&["mouseup", "1"]);
-    window.point(corner.0, corner.1);
+    window.point(FREE);
     let after = window.settle();
-    let force = || {
-        let saved = warpbeam::Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap();
-        saved.loads.iter().find_map(|l| if let Load::Force { force, .. } = l { Some(*force) } else { None }).unwrap()
-    };
+    let force = || force(&Scene::from_toml(&std::fs::read_to_string(&path).unwrap()).unwrap());
     press_until(&window, "ctrl+s", "the saved scene", || force() != [0.0, -30_000.0]);
     let [fx, fy] = force();
     assert!(fx < 0.0 && fy < 0.0 && fx.hypot(fy) < 30_000.0, "{fx} {fy}");
     let json = solve_json(&[path.to_str().unwrap()]);
     assert_eq!(json["status"], "converged", "{json}");
-    // The saved scene gives the displayed picture; only times and numbers of iterations differ.
-    let picture = folder.path().join("saved.png");
-    let shot = warpbeam(&["shot", path.to_str().unwrap(), "-o", picture.to_str().unwrap(), "--size", "1280x800"]);
-    assert_eq!(shot.status.code(), Some(0));
-    let different = changed(&read_bgrx(&picture).unwrap(), &after);
-    assert!(different < 5_000, "{different} pixels differ from what `shot` makes of the saved scene");
+    shot_is(&path, &[], &after);
     press_until(&window, "ctrl+z", "the scene as it was", || changed(&before, &window.image()) < 2_000);
     window.discard_well();
 }
 
-/// Edits survive when the program is killed: the next window offers them, and Restore brings them back. An answered
-/// offer is not repeated.
+/// The next window offers them, and Restore brings them back. An answered offer is not repeated.
 #[test]
 fn edits_survive_a_killed_window() {
     let Some(desktop) = Desktop::start() else { return };
     let mut window = Window::open(&desktop, &["run", "article"]);
-    let slider = force_slider();
-    let at = |place: f32| (slider.left() + place * slider.width(), slider.center().y);
-    window.point(at(0.5).0, at(0.5).1);
+    let at = laid_out().slider("Force");
+    window.point(at(0.5));
     desktop.xdotool(&["mousedown", "1"]);
-    window.point(at(0.3).0, at(0.3).1);
+    window.point(at(0.3));
     desktop.xdotool(&["mouseup", "1"]);
-    window.point(420.0, 735.0);
+    window.point(FREE);
     let copies = desktop.config.path().join("warpbeam").join("unsaved");
     let edited = window.settle();
     wait_for("a copy of the edits", || copies.join("0.toml").exists().then_some(()));
@@ -525,15 +477,14 @@ fn edits_survive_a_killed_window() {
     window.process.wait().unwrap();
     let restore = {
         let (_place, left) = RecoveryCopies::open(&copies).unwrap();
-        let mut harness = laid_out();
-        harness.state_mut().offer(left.unwrap());
+        let mut ui = laid_out();
+        ui.state_mut().offer(left.unwrap());
         // Learn shows a scene of its own, to which the edits do not belong.
-        harness.state_mut().show_card(1);
-        harness.run_steps(3);
-        assert!(harness.query_by_role_and_label(Role::Button, "Restore").is_none());
-        harness.get_by_role_and_label(Role::Button, "Leave").click();
-        harness.run_steps(3);
-        harness.get_by_role_and_label(Role::Button, "Restore").rect().center()
+        ui.state_mut().show_card(1);
+        ui.run_steps(3);
+        assert!(!ui.has(Role::Button, "Restore"));
+        ui.click_for("Leave", 3);
+        ui.rect(Role::Button, "Restore").center()
     };
     let next = Window::open(&desktop, &["run", "article"]);
     let offered = next.settle();
@@ -541,9 +492,9 @@ fn edits_survive_a_killed_window() {
     let click = || {
         // A second click after the first one would inspect the body under the button.
         if next.shows(&offered) {
-            next.point(restore.x, restore.y);
+            next.point(restore);
             desktop.xdotool(&["click", "1"]);
-            next.point(420.0, 735.0);
+            next.point(FREE);
         }
     };
     ask_until("the restored edits", click, || next.shows(&edited).then_some(()));
@@ -553,7 +504,7 @@ fn edits_survive_a_killed_window() {
     assert!(!copies.join("1.toml").exists());
 }
 
-/// The last edit before another program destroys the window is kept: so the menu of macOS ends the program.
+/// So the menu of macOS ends the program.
 #[test]
 fn edits_survive_a_destroyed_window() {
     let Some(desktop) = Desktop::start() else { return };
@@ -563,15 +514,14 @@ fn edits_survive_a_destroyed_window() {
         let copy = std::fs::read_to_string(copies.join("0.toml")).ok()?;
         Some(toml::from_str::<toml::Table>(&copy).unwrap()["scene"].clone())
     };
-    let slider = force_slider();
-    let at = |place: f32| window.point(slider.left() + place * slider.width(), slider.center().y);
-    at(0.4);
+    let at = laid_out().slider("Force");
+    window.point(at(0.4));
     desktop.xdotool(&["mousedown", "1"]);
     let first = wait_for("a copy of the first edit", scene);
     // The body iterates to the equilibrium of the first edit, which changes the picture, too.
     let before = window.settle();
-    at(0.7);
-    wait_for("the second edit", || (changed(&window.image(), &before) > 1_000).then_some(()));
+    window.point(at(0.7));
+    window.wait_for_change("the second edit", &before, 1_000);
     desktop.xdotool(&["windowclose", &window.id]);
     let status = window.process.wait().unwrap();
     Window::check_end(&(status.code(), window.said()));

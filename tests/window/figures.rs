@@ -1,61 +1,37 @@
 //! Tests of load curves in the window: plotted quantities, their table, and exported files.
 
-use std::time::{Duration, Instant};
-
 use crate::common::alone::ran_alone;
-use crate::common::{scene, scene_with};
-use egui::accesskit::Role;
-use egui::{Key, Rect};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use warpbeam::Simulation;
-use warpbeam::app::{Lab, parse_panes};
-use warpbeam::scene::{Load, Scene, Source};
+use crate::common::lab::*;
+use warpbeam::app::parse_panes;
+use warpbeam::scene::Load;
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::{LoadCurve, Reference};
 
 /// Force under which linear theory's tip moves as far as the exact one, but in another direction.
 const FORCE: &str = "load.0.force=[0,-553]";
 
-fn lab_of(scene: Scene) -> Lab {
-    let simulation = Simulation::new(&scene).unwrap();
-    Lab::new(Source { name: "scene".into(), assignments: Vec::new() }, scene, simulation)
-}
-
-fn harness_of(lab: Lab) -> Harness<'static, Lab> {
-    Harness::builder().with_size([1280.0, 800.0]).with_max_steps(400).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.advance(ui.input(|i| i.time));
-            lab.ui(ui);
-        },
-        lab,
-    )
-}
-
 /// Returns a solved scene with its load curve.
-fn with_curve(scene: Scene) -> Harness<'static, Lab> {
-    let mut lab = lab_of(scene);
+fn with_curve(scene: Scene) -> Ui {
+    let mut lab = lab_of("scene", scene);
     lab.show_curve();
     lab.solve();
-    harness_of(lab)
+    let mut ui = window(SIZE, lab);
+    ui.run();
+    ui
 }
 
-fn compared(scene: Scene, panes: &str) -> Harness<'static, Lab> {
-    let mut lab = lab_of(scene);
+fn compared(scene: Scene, panes: &str) -> Ui {
+    let mut lab = lab_of("scene", scene);
     lab.show_comparison(&parse_panes(panes).unwrap());
     lab.solve();
-    let mut harness = harness_of(lab);
-    harness.run();
-    harness
+    let mut ui = window(SIZE, lab);
+    ui.run();
+    ui
 }
 
 /// Returns the label with this beginning.
-fn label(harness: &Harness<'_, Lab>, begin: &str) -> String {
-    let labels = harness.get_all_by_role(Role::Label).filter_map(|node| {
-        let node = node.accesskit_node();
-        node.label().or_else(|| node.value())
-    });
-    let all: Vec<String> = labels.collect();
+fn label(ui: &Ui, begin: &str) -> String {
+    let all = ui.texts();
     all.iter().find(|l| l.starts_with(begin)).unwrap_or_else(|| unreachable!("{begin}: {all:?}")).clone()
 }
 
@@ -63,63 +39,59 @@ fn label(harness: &Harness<'_, Lab>, begin: &str) -> String {
 fn a_wrong_displacement_of_the_right_length_has_an_error() {
     let cantilever = scene_with("cantilever", &[FORCE]);
     let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
-    let harness = compared(cantilever.clone(), "linear,newton");
-    let pane = &harness.state().panes()[0];
+    let ui = compared(cantilever.clone(), "linear,newton");
+    let pane = &ui.state().panes()[0];
     let linear = pane.end().unwrap().probes[0].u;
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
     let error = 100.0 * (linear - exact).norm() / exact.norm();
     assert!(error > 12.0 && (pane.error_percent().unwrap() - error).abs() < 1e-6, "{:?}", pane.error_percent());
 
-    let mut harness = with_curve(cantilever);
-    harness.run();
-    assert_eq!(label(&harness, "linear beam theory: "), "linear beam theory: (0, -2.23) m");
-    assert!(label(&harness, "exact beam: ").starts_with("exact beam: (-0.27"));
+    let ui = with_curve(cantilever);
+    assert_eq!(label(&ui, "linear beam theory: "), "linear beam theory: (0, -2.23) m");
+    assert!(label(&ui, "exact beam: ").starts_with("exact beam: (-0.27"));
 }
 
 /// Returns the painted titles of the axes.
-fn axis_names(harness: &Harness<'_, Lab>) -> Vec<String> {
+fn axis_names(ui: &Ui) -> Vec<String> {
     let names = ["force", "u_x of tip", "u_y of tip"];
-    let mut found: Vec<String> = texts(harness).into_iter().map(|(text, _, _)| text).collect();
+    let mut found: Vec<String> = texts(ui).into_iter().map(|(text, _, _)| text).collect();
     found.retain(|text| names.contains(&text.as_str()));
     found
 }
 
 #[test]
 fn the_path_and_both_components_can_be_chosen() {
-    let mut harness = with_curve(scene_with("cantilever", &[FORCE]));
-    harness.run();
-    assert_eq!(axis_names(&harness), ["force", "u_y of tip"]);
+    let mut ui = with_curve(scene_with("cantilever", &[FORCE]));
+    assert_eq!(axis_names(&ui), ["force", "u_y of tip"]);
     for (button, x, y) in [("Path", "u_x of tip", "u_y of tip"), ("u_x", "force", "u_x of tip")] {
-        harness.get_by_label(button).click();
-        harness.run();
-        assert_eq!(axis_names(&harness), [x, y]);
+        ui.click(button);
+        assert_eq!(axis_names(&ui), [x, y]);
     }
     // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
-    let mut harness = with_curve(scene("stretch"));
-    harness.run();
-    assert!(texts(&harness).iter().any(|(text, _, _)| text == "force"));
+    let ui = with_curve(scene("stretch"));
+    assert!(texts(&ui).iter().any(|(text, _, _)| text == "force"));
 }
 
 #[test]
 fn loads_are_plotted_in_their_unit() {
     let mut scene = scene_with("cantilever", &[FORCE]);
-    let words = |scene: &Scene| {
-        let axis = LoadAxis::of(scene);
-        (axis.name.to_string(), axis.unit, axis.full)
-    };
-    assert_eq!(words(&scene), ("force".to_owned(), "N", 553.0));
-    scene.loads.push(Load::force("top", [0.0, 0.0]));
-    assert_eq!(words(&scene), ("force".to_owned(), "N", 553.0));
-    scene.loads.push(Load::force("top", [3.0, 4.0]));
-    assert_eq!(words(&scene), ("first force, the others in proportion".to_owned(), "N", 553.0));
-    scene.loads.push(Load::moment("right", 7.0));
-    assert_eq!(words(&scene), ("load factor".to_owned(), "", 1.0));
-    scene.loads = vec![Load::moment("right", -7.0)];
-    assert_eq!(words(&scene), ("moment".to_owned(), "N m", 7.0));
+    let (idle, small) = (Load::force("top", [0.0, 0.0]), Load::force("top", [3.0, 4.0]));
+    let (own, moment) = (scene.loads[0].clone(), |size| Load::moment("right", size));
+    for (loads, name, unit, full) in [
+        (vec![own.clone()], "force", "N", 553.0),
+        (vec![own.clone(), idle], "force", "N", 553.0),
+        (vec![own.clone(), small.clone()], "first force, the others in proportion", "N", 553.0),
+        (vec![own, small, moment(7.0)], "load factor", "", 1.0),
+        (vec![moment(-7.0)], "moment", "N m", 7.0),
+    ] {
+        scene.loads = loads;
+        let axis = LoadAxis::of(&scene);
+        assert_eq!((&*axis.name.to_string(), axis.unit, axis.full), (name, unit, full));
+    }
 }
 
 /// Returns every painted text with its rectangle and its clip rectangle.
-fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
+fn texts(ui: &Ui) -> Vec<(String, Rect, Rect)> {
     fn of(shape: &egui::Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
         match shape {
             egui::Shape::Text(text) => found.push((text.galley.text().to_owned(), text.visual_bounding_rect(), clip)),
@@ -128,7 +100,7 @@ fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
         }
     }
     let mut found = Vec::new();
-    harness.output().shapes.iter().for_each(|clipped| of(&clipped.shape, clipped.clip_rect, &mut found));
+    ui.output().shapes.iter().for_each(|clipped| of(&clipped.shape, clipped.clip_rect, &mut found));
     found
 }
 
@@ -136,22 +108,11 @@ fn texts(harness: &Harness<'_, Lab>) -> Vec<(String, Rect, Rect)> {
 #[test]
 fn the_first_frame_is_as_the_others() {
     for (id, sets) in [("cantilever", &[FORCE][..]), ("article", &[]), ("snap", &[]), ("stretch", &[])] {
-        let mut lab = lab_of(scene_with(id, sets));
-        lab.solve();
-        let mut harness = harness_of(lab);
-        harness.run();
-        harness.key_press(Key::L);
+        let mut ui = open_solved("scene", scene_with(id, sets));
+        ui.key_press(Key::L);
         let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "reaction in this direction"];
-        let start = Instant::now();
-        let texts = loop {
-            harness.step();
-            let texts = texts(&harness);
-            if texts.iter().any(|(text, _, _)| names[1..].contains(&text.as_str())) {
-                break texts;
-            }
-            assert!(start.elapsed() < Duration::from_secs(60), "{id}: no curve");
-            std::thread::sleep(Duration::from_millis(5));
-        };
+        ui.wait_until("a curve", |ui| texts(ui).iter().any(|(text, _, _)| names[1..].contains(&text.as_str())));
+        let texts = texts(&ui);
         let is_title = |text: &str| names.contains(&text) || text.starts_with("displacement of");
         let titles: Vec<_> = texts.iter().filter(|(text, _, _)| is_title(text)).collect();
         assert_eq!(titles.len(), 2, "{id}: {titles:?}");
@@ -187,11 +148,9 @@ fn csv(text: &str) -> Vec<Vec<String>> {
 }
 
 /// Selects a file format in the export menu.
-fn export(harness: &mut Harness<'_, Lab>, kind: &str) {
-    harness.get_by_label("Export").click();
-    harness.run();
-    harness.get_by_label(kind).click();
-    harness.run();
+fn export(ui: &mut Ui, kind: &str) {
+    ui.click("Export");
+    ui.click(kind);
 }
 
 /// Returns the rows of a series as numbers: load, u_x, u_y.
@@ -208,11 +167,10 @@ fn curves_are_saved_as_files() {
     }
     let folder = tempfile::tempdir().unwrap();
     let cantilever = scene_with("cantilever", &[FORCE]);
-    let mut harness = with_curve(cantilever.clone());
-    harness.run();
+    let mut ui = with_curve(cantilever.clone());
     std::env::set_current_dir(folder.path()).unwrap();
-    export(&mut harness, "CSV");
-    assert_eq!(label(&harness, "Saved"), "Saved warpbeam-001.csv");
+    export(&mut ui, "CSV");
+    assert_eq!(label(&ui, "Saved"), "Saved warpbeam-001.csv");
     let rows = csv(&std::fs::read_to_string("warpbeam-001.csv").unwrap());
     assert_eq!(rows[0][..4], ["series", "force (N)", "u_x of tip (m)", "u_y of tip (m)"]);
     let curve = LoadCurve::new(&cantilever).unwrap();
@@ -222,7 +180,7 @@ fn curves_are_saved_as_files() {
     assert_eq!(points(&rows, "linear beam theory"), linear);
     assert_eq!(points(&rows, "beam theory off by 3, 5, 10 %").len(), 3);
 
-    export(&mut harness, "SVG");
+    export(&mut ui, "SVG");
     let svg = std::fs::read_to_string("warpbeam-001.svg").unwrap();
     let document = roxmltree::Document::parse(&svg).unwrap();
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
@@ -234,7 +192,7 @@ fn curves_are_saved_as_files() {
     // In a deleted folder no file can be saved, which is reported.
     folder.close().unwrap();
     for kind in ["CSV", "SVG"] {
-        export(&mut harness, kind);
-        assert!(label(&harness, "Not saved: ").contains("warpbeam-001"), "{kind}");
+        export(&mut ui, kind);
+        assert!(label(&ui, "Not saved: ").contains("warpbeam-001"), "{kind}");
     }
 }

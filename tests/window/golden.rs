@@ -7,7 +7,6 @@ use std::path::PathBuf;
 
 use crate::common::pictures::{difference, lab, read_png};
 use egui::{Key, Theme};
-use egui_kittest::Harness;
 use warpbeam::app::{Lab, Language, Picture, parse_panes, picture};
 use warpbeam::render::Gpu;
 
@@ -110,13 +109,8 @@ fn limits() {
 fn budget() {
     let mut solved = lab("article");
     solved.solve();
-    let mut harness = Harness::builder().with_size(egui::vec2(960.0, 600.0)).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.ui(ui);
-        },
-        solved,
-    );
-    harness.key_press(Key::B);
-    harness.run_steps(3);
-    golden("budget", harness.state_mut(), &[DARK], &[TIME]);
+    let mut ui = crate::common::lab::window([960.0, 600.0], solved);
+    ui.key_press(Key::B);
+    ui.run_steps(3);
+    golden("budget", ui.state_mut(), &[DARK], &[TIME]);
 }

@@ -3,29 +3,22 @@
 
 use std::ops::ControlFlow;
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-
-use crate::common::lab::{lab_of, settle, window};
-use crate::common::{scene, scene_with};
-use warpbeam::app::Lab;
-use warpbeam::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::common::lab::*;
+use warpbeam::scene::{ElementKind, IntegratorKind};
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::limits::MethodLimits;
 
-fn harness(scene: Scene) -> Harness<'static, Lab> {
-    window([1280.0, 800.0], lab_of("scene", scene))
+fn open(scene: Scene) -> Ui {
+    window(SIZE, lab_of("scene", scene))
 }
 
 /// Opens Limits, and waits for its strips.
-fn opened(scene: Scene) -> Harness<'static, Lab> {
-    let mut harness = harness(scene);
-    harness.key_press(Key::M);
-    harness.run_steps(3);
-    settle(&mut harness);
-    harness
+fn opened(scene: Scene) -> Ui {
+    let mut ui = open(scene);
+    ui.key_press(Key::M);
+    ui.run_steps(3);
+    settle(&mut ui);
+    ui
 }
 
 fn force(lab: &Lab) -> f64 {
@@ -33,203 +26,170 @@ fn force(lab: &Lab) -> f64 {
 }
 
 /// Presses at `from`, moves to `to`, and releases there.
-fn drag(harness: &mut Harness<'_, Lab>, from: Pos2, to: Pos2) {
-    let button = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
-    let middle = from + 0.5 * (to - from);
-    for event in [
-        Event::PointerMoved(from),
-        button(from, true),
-        Event::PointerMoved(middle),
-        Event::PointerMoved(to),
-        button(to, false),
-    ] {
-        harness.input_mut().events.push(event);
-        harness.step();
+fn drag(ui: &mut Ui, from: Pos2, to: Pos2) {
+    let moved = |part: f32| Event::PointerMoved(from + part * (to - from));
+    for event in [moved(0.0), primary(from, true), moved(0.5), moved(1.0), primary(to, false)] {
+        ui.input_mut().events.push(event);
+        ui.step();
     }
-    harness.run_steps(2);
+    ui.run_steps(2);
 }
 
-/// Every strip has the words of the command, in the window's order.
+/// Returns the strip with this beginning.
+fn strip(ui: &Ui, start: &str) -> Option<(String, Rect)> {
+    let node = ui.query_by(|node| node.label().is_some_and(|label| label.starts_with(start)))?;
+    Some((node.accesskit_node().label().unwrap(), node.rect()))
+}
+
+fn click_strip(ui: &mut Ui, start: &str) {
+    let (_, rect) = strip(ui, start).unwrap();
+    drag(ui, rect.center(), rect.center());
+}
+
+fn undo(ui: &mut Ui) {
+    ui.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    ui.run_steps(3);
+}
+
+/// In words and order.
 #[test]
 fn strips_are_those_of_the_command() {
-    let harness = opened(scene("article"));
-    let scene = scene("article");
+    let (ui, scene) = (opened(scene("article")), scene("article"));
     let limits = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
     let axis = LoadAxis::of(&scene);
     assert_eq!(limits.strips.len(), 9);
     for strip in &limits.strips {
         let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
-        harness.get_by_label(&format!(
-            "{} {}: within 1 %: {good}; within 5 %: {usable}; converges: {converges}; strains above 10 %: {law}",
-            strip.element.id(),
-            strip.method.id()
+        let name = format!("{} {}", strip.element.id(), strip.method.id());
+        ui.get_by_label(&format!(
+            "{name}: within 1 %: {good}; within 5 %: {usable}; converges: {converges}; strains above 10 %: {law}"
         ));
     }
 }
 
 /// Returns the labels of the strips that are complete, and of those that are not.
-fn strips(harness: &Harness<'_, Lab>) -> [Vec<String>; 2] {
-    let labels = harness.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
+fn strips(ui: &Ui) -> [Vec<String>; 2] {
+    let labels = ui.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
     let labels: Vec<String> = labels.collect();
     ["within 1 %: ", "of the loads are solved"]
         .map(|part| labels.iter().filter(|label| label.contains(part)).cloned().collect())
 }
 
-/// Strips are shown as they become complete. A change of the method does not start them again, a change of the body does.
+/// A change of the method does not start them again, a change of the body does.
 #[test]
 fn strips_appear_one_after_another() {
-    let mut harness = harness(scene("cantilever"));
-    harness.key_press(Key::M);
-    let until = |harness: &mut Harness<'_, Lab>, holds: &dyn Fn([usize; 2]) -> bool| {
-        for _ in 0..6000 {
-            let found = strips(harness).map(|strips| strips.len());
-            if holds(found) {
-                return;
-            }
-            assert!(harness.state().is_computing() || found == [0, 0], "{found:?}");
-            std::thread::sleep(std::time::Duration::from_millis(10));
-            harness.step();
-        }
-        unreachable!("waited in vain for the strips")
+    let mut ui = open(scene("cantilever"));
+    ui.key_press(Key::M);
+    let count = |ui: &Ui| {
+        let found = strips(ui).map(|strips| strips.len());
+        assert!(found[0] == 9 || ui.state().is_computing() || found == [0, 0], "{found:?}");
+        found
     };
-    until(&mut harness, &|[complete, rest]| complete > 0 && rest > 0);
-    let [first, rest] = strips(&harness);
+    ui.wait_until("a strip before the others", |ui| count(ui)[0] > 0 && count(ui)[1] > 0);
+    let [first, rest] = strips(&ui);
     assert_eq!(first.len() + rest.len(), 9, "{first:?} {rest:?}");
-    // The scene's own strip is among the first.
     assert!(!rest.iter().any(|strip| strip.starts_with("t3 warped: 0 %")), "{rest:?}");
-    let mut newton = harness.state().scene().clone();
-    newton.solver.method = MethodKind::Newton;
-    harness.state_mut().set_scene(newton.clone()).unwrap();
-    harness.run_steps(2);
-    assert!(first.iter().all(|strip| strips(&harness)[0].contains(strip)), "{first:?}");
-    newton.beam.as_mut().unwrap().length *= 0.5;
-    harness.state_mut().set_scene(newton).unwrap();
-    harness.run_steps(2);
-    assert_eq!(strips(&harness)[0], Vec::<String>::new());
-    until(&mut harness, &|[complete, _]| complete > 0);
+    ui.edit(|scene| scene.solver.method = MethodKind::Newton);
+    ui.run_steps(2);
+    assert!(first.iter().all(|strip| strips(&ui)[0].contains(strip)), "{first:?}");
+    ui.edit(|scene| scene.beam.as_mut().unwrap().length *= 0.5);
+    ui.run_steps(2);
+    assert_eq!(strips(&ui)[0], Vec::<String>::new());
+    ui.wait_until("a strip", |ui| count(ui)[0] > 0);
 }
 
-/// A click on a strip sets its method and element; one undo takes both back. The limits stay.
+/// One undo takes both back. The limits stay.
 #[test]
 fn a_click_on_a_strip_sets_method_and_element() {
-    let mut harness = opened(scene("article"));
-    let used = |lab: &Lab| (lab.scene().element(), lab.scene().solver.method);
-    let before = used(harness.state());
-    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
-    let load = force(harness.state());
-    drag(&mut harness, row.center(), row.center());
-    assert_eq!(used(harness.state()), (ElementKind::Q4, MethodKind::Newton));
-    assert_eq!(force(harness.state()), load, "a click does not move the line");
-    assert!(harness.query_by(|node| node.label().is_some_and(|label| label.starts_with("t3 warped:"))).is_some());
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
-    assert_eq!(used(harness.state()), before);
+    let mut ui = opened(scene("article"));
+    let used = |ui: &Ui| (ui.scene().element(), ui.scene().solver.method, force(ui.state()));
+    let before = used(&ui);
+    click_strip(&mut ui, "q4 newton:");
+    assert_eq!(used(&ui), (ElementKind::Q4, MethodKind::Newton, before.2), "a click does not move the line");
+    assert!(strip(&ui, "t3 warped:").is_some());
+    undo(&mut ui);
+    assert_eq!(used(&ui), before);
 }
 
-/// The strip of an early stop stays while another strip is used.
+/// While another strip is used.
 #[test]
 fn the_strip_of_an_early_stop_stays() {
-    let mut harness = opened(scene_with("article", &["solver.accept_after=2"]));
-    let has_own = |harness: &Harness<'_, Lab>| {
-        harness.query_by(|node| node.label().is_some_and(|label| label.starts_with("t3 warped:2: within"))).is_some()
-    };
-    assert!(has_own(&harness));
-    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("q4 newton:"))).rect();
-    drag(&mut harness, row.center(), row.center());
-    assert_eq!(harness.state().scene().solver.accept_after, 0);
-    assert!(has_own(&harness), "nothing is computed again");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(3);
-    assert_eq!(harness.state().scene().solver.accept_after, 2);
-    assert!(has_own(&harness));
+    let mut ui = opened(scene_with("article", &["solver.accept_after=2"]));
+    let has_own = |ui: &Ui| assert!(strip(ui, "t3 warped:2: within").is_some(), "nothing is computed again");
+    has_own(&ui);
+    click_strip(&mut ui, "q4 newton:");
+    assert_eq!(ui.scene().solver.accept_after, 0);
+    has_own(&ui);
+    undo(&mut ui);
+    assert_eq!(ui.scene().solver.accept_after, 2);
+    has_own(&ui);
 }
 
-/// The line follows the pointer, and its load is where the axis has it: a drag by a third of the axis is a factor of
-/// ten. The limits are not computed again; one undo restores the load.
+/// A drag by a third of the axis is a factor of ten. The limits are not computed again; one undo restores the load.
 #[test]
 fn the_line_sets_the_load() {
-    let mut harness = opened(scene("article"));
-    let before = force(harness.state());
-    let area = harness.get_by_role_and_label(Role::Slider, "Load").rect();
-    let middle = Pos2::new(area.left() + area.width() * 2.0 / 3.0, area.top() + 4.0);
-    drag(&mut harness, middle, middle - egui::vec2(area.width() / 3.0, 0.0));
-    let ratio = force(harness.state()) / before;
+    let mut ui = opened(scene("article"));
+    let before = force(ui.state());
+    let area = ui.rect(Role::Slider, "Load");
+    let at = |part: f32| Pos2::new(area.left() + area.width() * part, area.top() + 4.0);
+    drag(&mut ui, at(2.0 / 3.0), at(1.0 / 3.0));
+    let ratio = force(ui.state()) / before;
     assert!((ratio - 0.1).abs() < 0.002, "{ratio}");
-    let is_strip = |label: String| label.starts_with("t3 warped:") && label.contains("49.3 kN");
-    let keeps_limits =
-        |harness: &Harness<'_, Lab>| harness.query_by(|node| node.label().is_some_and(is_strip)).is_some();
-    assert!(keeps_limits(&harness), "the limits are those of before");
-    let first = force(harness.state());
-    let now = Pos2::new(area.left() + area.width() / 3.0, middle.y);
-    drag(&mut harness, now, now + egui::vec2(area.width() / 6.0, 0.0));
-    assert!(force(harness.state()) > 2.0 * first);
+    let keeps_limits = |ui: &Ui| strip(ui, "t3 warped:").is_some_and(|(label, _)| label.contains("49.3 kN"));
+    assert!(keeps_limits(&ui), "the limits are those of before");
+    let first = force(ui.state());
+    drag(&mut ui, at(1.0 / 3.0), at(0.5));
+    assert!(force(ui.state()) > 2.0 * first);
     for expected in [first, before] {
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-        harness.run_steps(3);
-        assert_eq!(force(harness.state()), expected);
-        assert!(keeps_limits(&harness), "nothing is computed again");
+        undo(&mut ui);
+        assert_eq!(force(ui.state()), expected);
+        assert!(keeps_limits(&ui), "nothing is computed again");
     }
     // A load that is set elsewhere moves the line too, but for one out of the range.
-    let typed = |harness: &mut Harness<'_, Lab>, factor: f64| {
-        let mut scene = harness.state().scene().clone();
-        scene.scale_loads(factor);
-        harness.state_mut().set_scene(scene).unwrap();
-        harness.run_steps(2);
-    };
-    typed(&mut harness, 0.5);
-    assert!(keeps_limits(&harness));
-    typed(&mut harness, 200.0);
-    assert!(!keeps_limits(&harness));
-    typed(&mut harness, 0.01);
-    settle(&mut harness);
-    assert_eq!(force(harness.state()), before);
+    for (factor, keeps) in [(0.5, true), (200.0, false), (0.01, false)] {
+        ui.edit(|scene| scene.scale_loads(factor));
+        ui.run_steps(2);
+        assert!(keeps_limits(&ui) == keeps || factor == 0.01, "{factor}");
+    }
+    settle(&mut ui);
+    assert_eq!(force(ui.state()), before);
     // With the focus on the line, an arrow key changes the load in small steps.
-    harness.get_by_role_and_label(Role::Slider, "Load").focus();
-    harness.step();
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(3);
-    let ratio = force(harness.state()) / before;
+    ui.get_by_role_and_label(Role::Slider, "Load").focus();
+    ui.step();
+    ui.key_press(Key::ArrowRight);
+    ui.run_steps(3);
+    let ratio = force(ui.state()) / before;
     assert!((ratio - 1.05).abs() < 0.01, "{ratio}");
 }
 
-/// Another body has other limits, which replace those of the body before.
 #[test]
 fn an_edit_of_the_body_computes_the_limits_again() {
-    let mut harness = opened(scene("article"));
-    let mut longer = harness.state().scene().clone();
-    longer.beam.as_mut().unwrap().length *= 2.0;
-    harness.state_mut().set_scene(longer.clone()).unwrap();
-    harness.run_steps(2);
-    settle(&mut harness);
-    let limits = MethodLimits::of(&longer, &|_| ControlFlow::Continue(())).unwrap();
+    let mut ui = opened(scene("article"));
+    ui.edit(|scene| scene.beam.as_mut().unwrap().length *= 2.0);
+    ui.run_steps(2);
+    settle(&mut ui);
+    let limits = MethodLimits::of(ui.scene(), &|_| ControlFlow::Continue(())).unwrap();
     let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
-    let usable = linear.words(&LoadAxis::of(&longer), limits.range)[1].to_string();
-    let found = |label: String| label.starts_with("t6 linear:") && label.contains(&format!("within 5 %: {usable};"));
-    assert!(harness.query_by(|node| node.label().is_some_and(found)).is_some(), "{usable}");
+    let usable = &linear.words(&LoadAxis::of(ui.scene()), limits.range)[1];
+    let (label, _) = strip(&ui, "t6 linear:").unwrap();
+    assert!(label.contains(&format!("within 5 %: {usable};")), "{label}: {usable}");
 }
 
-/// The strips of a motion are its integrators; a click sets the integrator, and the line sets the time step.
+/// A click on a strip sets the integrator, and the line sets the time step.
 #[test]
 fn a_motion_has_limits_of_its_integrators() {
     // A coarse mesh keeps the test short.
     let scene = scene_with("swing", &["beam.cells=[6,1]"]);
-    let mut harness = opened(scene.clone());
+    let mut ui = opened(scene.clone());
     let found = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
-    let row = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("energy-momentum:"))).rect();
-    drag(&mut harness, row.center(), row.center());
-    let dynamics = |lab: &Lab| lab.scene().dynamics.clone();
-    assert_eq!(dynamics(harness.state()).integrator, IntegratorKind::EnergyMomentum);
-    assert_eq!(dynamics(harness.state()).time_step, scene.dynamics.time_step);
+    click_strip(&mut ui, "energy-momentum:");
+    let dynamics = |ui: &Ui| (ui.scene().dynamics.integrator, ui.scene().dynamics.time_step);
+    assert_eq!(dynamics(&ui), (IntegratorKind::EnergyMomentum, scene.dynamics.time_step));
     // The panel has a slider of this name, too.
-    let sliders = harness.get_all_by_role_and_label(Role::Slider, "Time step").map(|slider| slider.rect());
+    let sliders = ui.get_all_by_role_and_label(Role::Slider, "Time step").map(|slider| slider.rect());
     let area = sliders.max_by(|a, b| a.width().total_cmp(&b.width())).unwrap();
-    drag(&mut harness, area.center(), area.right_top() + egui::vec2(0.0, 4.0));
-    let factor = dynamics(harness.state()).time_step / scene.dynamics.time_step;
+    drag(&mut ui, area.center(), area.right_top() + vec2(0.0, 4.0));
+    let factor = dynamics(&ui).1 / scene.dynamics.time_step;
     assert!((factor / found.range[1] - 1.0).abs() < 0.01, "{factor}");
-    assert!(strips(&harness)[1].is_empty() && strips(&harness)[0].len() == 4, "the limits are those of before");
+    assert!(strips(&ui)[1].is_empty() && strips(&ui)[0].len() == 4, "the limits are those of before");
 }

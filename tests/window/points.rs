@@ -1,133 +1,94 @@
 //! Tests of the card of a point, of probes that are kept, of the colours, and of the magnified displacement.
 
-use egui::accesskit::Role;
-use egui::{Key, Modifiers, Pos2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use nalgebra::Vector2;
-
-use crate::common::lab::{lab_of, pick, type_into, unfold, window};
-use crate::common::{scene, solved};
-use crate::ui_interaction::{click, drag, harness, harness_of, on_body, shapes};
-use warpbeam::app::{Lab, Magnification, parse_panes};
+use crate::common::lab::*;
+use crate::common::{largest_distance, solved};
+use warpbeam::app::{Magnification, parse_panes};
 use warpbeam::format::{engineering, engineering_pair, three_digits};
-use warpbeam::scene::{Axis, ElementKind, Load, MethodKind, Place};
-use warpbeam::{Field, PointValues, Scene};
+use warpbeam::scene::{Axis, ElementKind, Load, Place};
+use warpbeam::{Field, PointValues};
 
-/// Returns all texts that are painted without a widget.
-pub fn painted(harness: &Harness<'_, Lab>) -> Vec<String> {
-    let texts = shapes(harness).into_iter().filter_map(|shape| match shape {
-        egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
-        _ => None,
-    });
-    texts.collect()
-}
-
-/// Opens a window with a scene that is solved.
-fn solved_window(id: &str, scene: Scene) -> Harness<'static, Lab> {
-    let mut lab = lab_of(id, scene);
-    lab.solve();
-    let mut harness = window([1280.0, 800.0], lab);
-    harness.run();
-    harness
+/// Returns all painted texts.
+fn texts(ui: &Ui) -> Vec<String> {
+    painted(ui).into_iter().map(|(_, text)| text).collect()
 }
 
 fn positions(lab: &Lab) -> Vec<Vector2<f64>> {
     lab.frame().positions.to_vec()
 }
 
-fn magnify(harness: &mut Harness<'_, Lab>, magnification: Magnification) -> Vec<Vector2<f64>> {
-    harness.state_mut().magnify(magnification);
-    harness.run();
-    positions(harness.state())
+fn magnify(ui: &mut Ui, magnification: Magnification) -> Vec<Vector2<f64>> {
+    ui.state_mut().magnify(magnification);
+    ui.run();
+    positions(ui.state())
 }
 
-/// A stiff body is drawn with a multiple of its displacement, and says so. It cannot be grabbed then. The automatic factor
-/// draws the largest displacement as 2 to 5 % of the body's size.
+/// It cannot be grabbed then. The automatic factor draws the largest displacement as 2 to 5 % of the size.
 #[test]
 fn a_body_is_drawn_with_a_multiple_of_its_displacement() {
     let mut stiff = scene("cantilever");
     stiff.material.young *= 1e4;
-    let mut harness = harness_of("cantilever", stiff);
-    harness.run();
-    let true_scale = positions(harness.state());
-    assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
-    let twice = magnify(&mut harness, Magnification::Factor(2.0));
-    let largest = harness.state().simulation().displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
-    let drawn = true_scale.iter().zip(&twice).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
+    let mut ui = open_of("cantilever", stiff);
+    let true_scale = positions(ui.state());
+    assert!(!texts(&ui).iter().any(|text| text.contains("displacement ×")));
+    let twice = magnify(&mut ui, Magnification::Factor(2.0));
+    let largest = ui.simulation().displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let drawn = largest_distance(&true_scale, &twice);
     assert!((drawn - largest).abs() < 1e-9 * largest, "{drawn} {largest}");
-    let many = magnify(&mut harness, Magnification::Factor(250.0));
+    let many = magnify(&mut ui, Magnification::Factor(250.0));
     for ((one, two), many) in true_scale.iter().zip(&twice).zip(&many) {
         assert!((many - one - (two - one) * 249.0).norm() < 1e-9, "{one} {two} {many}");
     }
-    assert!(painted(&harness).contains(&"displacement × 250".to_owned()), "{:?}", painted(&harness));
-    let automatic = magnify(&mut harness, Magnification::Automatic);
-    let shift = true_scale.iter().zip(&automatic).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max) + largest;
-    let size = harness.state().simulation().system().size();
+    assert!(texts(&ui).contains(&"displacement × 250".to_owned()), "{:?}", texts(&ui));
+    let automatic = magnify(&mut ui, Magnification::Automatic);
+    let shift = largest_distance(&true_scale, &automatic) + largest;
+    let size = ui.simulation().system().size();
     assert!((0.02 * size..=0.05 * size).contains(&shift), "{shift} of {size}");
     // The root is drawn where it is, whatever the factor.
-    let pos = on_body(harness.state(), Vector2::new(0.3, 0.0));
-    let pull = |harness: &mut Harness<'_, Lab>| {
-        harness.hover_at(pos);
-        harness.step();
-        harness.drag_at(pos);
-        harness.step();
-        (1..6).for_each(|i| {
-            harness.hover_at(pos + egui::vec2(0.0, 8.0 * i as f32));
-            harness.step();
-        });
-        let is_grabbed = harness.state().simulation().mouse_spring().is_some();
-        harness.drop_at(pos + egui::vec2(0.0, 40.0));
-        harness.run();
+    let pos = ui.on_body([0.3, 0.0]);
+    let pull = |ui: &mut Ui| {
+        ui.hold(pos);
+        (1..6_u8).for_each(|i| ui.move_to(pos + vec2(0.0, 8.0 * f32::from(i))));
+        let is_grabbed = ui.simulation().mouse_spring().is_some();
+        ui.release(pos + vec2(0.0, 40.0));
         is_grabbed
     };
-    assert!(!pull(&mut harness), "a magnified body is grabbed");
-    magnify(&mut harness, Magnification::None);
-    assert!(pull(&mut harness), "the body is not grabbed");
-    // Large displacements are never drawn smaller.
-    let mut article = self::harness("article");
-    article.run();
+    assert!(!pull(&mut ui), "a magnified body is grabbed");
+    magnify(&mut ui, Magnification::None);
+    assert!(pull(&mut ui), "the body is not grabbed");
+    let mut article = open("article");
     let before = positions(article.state());
     assert_eq!(magnify(&mut article, Magnification::Automatic), before);
 }
 
-/// Colours follow the load where the automatic factor falls as the displacement grows, so that the body is drawn at the
-/// same place.
+/// The automatic factor falls as the displacement grows, so that the body is drawn at the same place.
 #[test]
 fn colours_follow_the_load_of_a_magnified_body() {
     let mut stiff = scene("cantilever").with_method(MethodKind::Linear);
     stiff.material.young *= 1e5;
-    let mut harness = harness_of("cantilever", stiff);
-    harness.run();
-    magnify(&mut harness, Magnification::Automatic);
+    let mut ui = open_of("cantilever", stiff);
+    magnify(&mut ui, Magnification::Automatic);
     for _ in 0..4 {
-        let [_, before] = harness.state().frame().range;
-        let mut scene = harness.state().scene().clone();
-        scene.scale_loads(2.0);
-        harness.state_mut().set_scene(scene).unwrap();
-        harness.run();
-        let [_, after] = harness.state().frame().range;
+        let [_, before] = ui.state().frame().range;
+        ui.edit(|scene| scene.scale_loads(2.0));
+        ui.run();
+        let [_, after] = ui.state().frame().range;
         assert!((after / before - 2.0).abs() < 1e-6, "{before} {after}");
     }
 }
 
-/// The label at the pointer has the values of the card that a click opens there.
 #[test]
 fn a_hovered_point_has_the_values_of_its_card() {
-    let mut harness = solved_window("cantilever", scene("cantilever"));
-    for at in [Vector2::new(3.1374, 0.2113), Vector2::new(7.7137, -0.3276)] {
-        let pos = on_body(harness.state(), at);
-        harness.hover_at(pos);
-        harness.run();
-        let shown = painted(&harness);
-        let hovered = shown.iter().find_map(|text| text.split_once("\nu = ")).unwrap();
-        let stress = hovered.0.strip_prefix("von Mises (Cauchy): ").unwrap();
-        click(&mut harness, pos);
-        harness.run();
-        assert!(harness.state().probed().is_some());
-        for value in [stress, hovered.1] {
-            let alike = harness.query_all_by_label(value).count();
-            assert!(alike > 0, "{value} is not on the card");
+    let mut ui = open_solved("cantilever", scene("cantilever"));
+    for at in [[3.1374, 0.2113], [7.7137, -0.3276]] {
+        let pos = ui.on_body(at);
+        ui.hover(pos);
+        let shown = texts(&ui);
+        let (stress, u) = shown.iter().find_map(|text| text.split_once("\nu = ")).unwrap();
+        ui.click_at(pos);
+        ui.run();
+        assert!(ui.state().probed().is_some());
+        for value in [stress.strip_prefix("von Mises (Cauchy): ").unwrap(), u] {
+            assert!(ui.query_all_by_label(value).next().is_some(), "{value} is not on the card");
         }
     }
 }
@@ -136,18 +97,17 @@ fn a_hovered_point_has_the_values_of_its_card() {
 #[test]
 fn every_field_colours_the_body() {
     // The view has room for the outline of the reference once that is known.
-    let mut harness = solved_window("article", scene("article"));
+    let mut ui = open_solved("article", scene("article"));
     let at = Vector2::new(1.1, 0.3);
-    let pos = on_body(harness.state(), at);
+    let pos = ui.on_body(at);
     for field in Field::ALL {
-        harness.state_mut().color_with(field);
-        harness.hover_at(pos);
-        harness.run();
-        let lab = harness.state();
+        ui.state_mut().color_with(field);
+        ui.hover(pos);
+        let lab = ui.state();
         let point = lab.simulation().mesh().locate(at).unwrap();
         let state = lab.simulation().point_state(point, PointValues::Recovered).unwrap();
         let factor = if field.unit().is_empty() { (100.0, "%") } else { (1.0, field.unit()) };
-        let shown = painted(&harness);
+        let shown = texts(&ui);
         let title = shown.iter().find(|text| text.starts_with(&format!("{}: ", field.name())));
         let title = title.unwrap_or_else(|| panic!("{field:?}: {shown:?}"));
         assert!(shown.iter().any(|text| text.starts_with(&format!("{}, ", field.name()))), "{field:?}: {shown:?}");
@@ -158,198 +118,170 @@ fn every_field_colours_the_body() {
         let (seen, wanted) = (number(&title[field.name().len() + 2..]), number(&value));
         assert!((seen - wanted).abs() < 0.05 * wanted.abs() + 0.05, "{field:?}: {title} is not {value}");
     }
-    let largest = harness.state().frame().range;
+    let largest = ui.state().frame().range;
     assert!(largest[0] >= 0.0, "the last field is a magnitude");
-    harness.state_mut().color_with(Field::StressX);
-    harness.run();
-    let [low, high] = harness.state().frame().range;
+    ui.state_mut().color_with(Field::StressX);
+    ui.run();
+    let [low, high] = ui.state().frame().range;
     assert!(low == -high && high > 0.0, "a signed field has a symmetric range");
 }
 
-/// In a window of any size, the card of a point covers less than a third of the body, unless all values are asked for in
-/// a small one.
+/// Two thirds of it in a window of any size, unless all values are asked for in a small one.
 #[test]
 fn a_card_leaves_the_body_in_view() {
     let id = egui::Id::unique("probe");
-    for size in [[640.0, 480.0], [900.0, 600.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+    for size in [[640.0, 480.0], [900.0, 600.0], SIZE, [1920.0, 1080.0]] {
         for name in ["article", "cantilever", "gravity"] {
+            let what = format!("{size:?}, {name}");
             let mut lab = lab_of(name, scene(name));
             lab.solve();
-            let mut harness = window(size, lab);
-            harness.run();
-            let (low, high) = harness.state().simulation().mesh().bounds();
-            let on = |part: [f64; 2]| low + Vector2::new(part[0], part[1]).component_mul(&(high - low));
+            let mut ui = window(size, lab);
+            ui.run();
+            let (low, high) = ui.simulation().mesh().bounds();
+            let on = |part: [f64; 2]| low + Vector2::from(part).component_mul(&(high - low));
             let grid = (0..=40).flat_map(|i| [0.1, 0.5, 0.9].map(|y| on([0.01 + 0.98 * f64::from(i) / 40.0, y])));
             let grid: Vec<_> = grid.collect();
             for part in [[0.03, 0.5], [0.35, 0.2], [0.6, 0.7], [0.97, 0.5]] {
-                let pos = on_body(harness.state(), on(part));
-                click(&mut harness, pos);
-                harness.run();
-                let card = harness.ctx.memory(|memory| memory.area_rect(id)).unwrap();
-                let hidden = grid.iter().filter(|at| card.contains(on_body(harness.state(), **at))).count();
-                assert!(3 * hidden < grid.len(), "{size:?}, {name}, {part:?}: {hidden} of {}, {card:?}", grid.len());
-                assert!(harness.query_by_label_contains("Point (").is_some(), "{size:?}, {name}, {part:?}");
-                click(&mut harness, pos);
-                harness.run();
-                assert!(harness.query_by_label_contains("Point (").is_none(), "{size:?}, {name}, {part:?}");
+                let pos = ui.on_body(on(part));
+                ui.click_at(pos);
+                ui.run();
+                let card = ui.ctx.memory(|memory| memory.area_rect(id)).unwrap();
+                let hidden = grid.iter().filter(|at| card.contains(ui.on_body(**at))).count();
+                assert!(3 * hidden < grid.len(), "{what}, {part:?}: {hidden} of {}, {card:?}", grid.len());
+                assert!(ui.says("Point ("), "{what}, {part:?}");
+                ui.click_at(pos);
+                ui.run();
+                assert!(!ui.says("Point ("), "{what}, {part:?}");
             }
-            let pos = on_body(harness.state(), on([0.35, 0.2]));
-            click(&mut harness, pos);
-            harness.run();
-            if let Some(all) = harness.query_by_label("All values") {
-                assert!(harness.query_by_label("σ_x, σ_y").is_none() && size[0] < 1280.0, "{size:?}, {name}");
-                all.click();
-                harness.run();
+            ui.click_at(ui.on_body(on([0.35, 0.2])));
+            ui.run();
+            if ui.query_by_label("All values").is_some() {
+                assert!(ui.query_by_label("σ_x, σ_y").is_none() && size[0] < SIZE[0], "{what}");
+                ui.click("All values");
             }
-            assert!(harness.query_by_label("σ_x, σ_y").is_some(), "{size:?}, {name}");
+            assert!(ui.query_by_label("σ_x, σ_y").is_some(), "{what}");
         }
     }
 }
 
-/// A card has the stresses in both axes; a kept point is a probe of the scene, has a row in every pane of Compare, and
-/// undo takes it back.
+/// With a row in every pane of Compare. The card has the stresses in both axes.
 #[test]
 fn a_point_is_kept_as_a_probe() {
-    let mut harness = harness("article");
-    harness.run();
-    let before = harness.state().scene().clone();
-    let pos: Pos2 = on_body(harness.state(), Vector2::new(2.2, 0.3));
-    click(&mut harness, pos);
-    let lab = harness.state();
-    let state = lab.simulation().point_state(lab.probed().unwrap(), PointValues::Recovered).unwrap();
-    let pair = |a: Field, b: Field| {
-        let values = [a, b].map(|field| state.field(field).unwrap());
-        engineering_pair(values.map(three_digits), "Pa")
-    };
-    let [space, own] = [pair(Field::StressX, Field::StressY), pair(Field::MaterialStressX, Field::MaterialStressY)];
-    assert!(harness.query_by_label(&space).is_some() && harness.query_by_label(&own).is_none(), "{space} {own}");
-    harness.get_by_label("material X, Y").click();
-    harness.run();
-    assert!(harness.query_by_label(&own).is_some() && harness.query_by_label(&space).is_none(), "{space} {own}");
-    harness.get_by_role_and_label(Role::Button, "Keep as probe").click();
-    harness.run();
+    let mut ui = open("article");
+    let before = ui.scene().clone();
+    ui.click_at(ui.on_body([2.2, 0.3]));
+    let state = ui.simulation().point_state(ui.state().probed().unwrap(), PointValues::Recovered).unwrap();
+    let pair =
+        |fields: [Field; 2]| engineering_pair(fields.map(|field| state.field(field).unwrap()).map(three_digits), "Pa");
+    let space = pair([Field::StressX, Field::StressY]);
+    let own = pair([Field::MaterialStressX, Field::MaterialStressY]);
+    let shown = |ui: &Ui| [&space, &own].map(|text| ui.query_by_label(text).is_some());
+    assert_eq!(shown(&ui), [true, false], "{space} {own}");
+    ui.click("material X, Y");
+    assert_eq!(shown(&ui), [false, true], "{space} {own}");
+    ui.push("Keep as probe");
     let mut kept = before.clone();
-    kept.probes.clone_from(&harness.state().scene().probes);
-    assert_eq!((*harness.state().scene() == kept, kept.probes.len()), (true, before.probes.len() + 1));
-    assert!(harness.query_by_role_and_label(Role::Button, "Keep as probe").is_none(), "it is kept already");
-    harness.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());
-    harness.run();
-    for pane in harness.state().panes() {
+    kept.probes.clone_from(&ui.scene().probes);
+    assert_eq!((*ui.scene() == kept, kept.probes.len()), (true, before.probes.len() + 1));
+    assert!(!ui.has(Role::Button, "Keep as probe"), "it is kept already");
+    ui.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());
+    ui.run();
+    for pane in ui.state().panes() {
         let u = pane.simulation().unwrap().probe("p1").unwrap();
-        let row = format!("p1: u = {}", engineering_pair([u.x, u.y].map(three_digits), "m"));
-        assert!(harness.query_by_label(&row).is_some(), "{row}");
+        ui.get_by_label(&format!("p1: u = {}", engineering_pair([u.x, u.y].map(three_digits), "m")));
     }
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run();
-    assert_eq!(*harness.state().scene(), before, "undone");
+    ui.undo();
+    assert_eq!(*ui.scene(), before, "undone");
 }
 
-/// The panel has the colours and the magnification.
 #[test]
 fn the_panel_chooses_field_and_magnification() {
-    let mut harness = harness("cantilever");
-    harness.get_by_label_contains("View: ").scroll_to_me();
-    harness.run();
-    harness.get_by_label_contains("View: ").click();
-    harness.run();
-    pick(&mut harness, "Colour", Field::ShearStress.name());
-    assert_eq!(harness.state().frame().field, Field::ShearStress);
-    pick(&mut harness, "Displacement", "Factor");
-    assert!(painted(&harness).contains(&"displacement × 10".to_owned()));
-    pick(&mut harness, "Displacement", "True scale");
-    assert!(!painted(&harness).iter().any(|text| text.contains("displacement ×")));
+    let mut ui = open("cantilever");
+    ui.get_by_label_contains("View: ").scroll_to_me();
+    ui.run();
+    ui.get_by_label_contains("View: ").click();
+    ui.run();
+    pick(&mut ui, "Colour", Field::ShearStress.name());
+    assert_eq!(ui.state().frame().field, Field::ShearStress);
+    pick(&mut ui, "Displacement", "Factor");
+    assert!(texts(&ui).contains(&"displacement × 10".to_owned()));
+    pick(&mut ui, "Displacement", "True scale");
+    assert!(!texts(&ui).iter().any(|text| text.contains("displacement ×")));
 }
 
-/// The base of a force, a support, a probe and a section moves along the body, each in one step of undo. All go
-/// to any point, a force and a support also to a named edge or a corner. A press without a drag opens the card of the
-/// point.
+/// To any point, a force and a support also to a corner or the middle of an edge; each in one step of undo.
 #[test]
 fn bases_of_objects_are_dragged_along_the_body() {
-    let mut scene = scene("cantilever");
-    scene = scene.probe("p1", [4.0, 0.2]).section([6.0, 0.0], 0.0).support([2.0, -0.5], &[Axis::Y]);
-    let mut harness = harness_of("cantilever", scene);
-    harness.run();
-    let before = harness.state().scene().clone();
-    let seen = |harness: &Harness<'_, Lab>, at: [f64; 2]| on_body(harness.state(), at.into());
-    // The middle of the right edge, where the arrow begins.
-    let (foot, goal) = (seen(&harness, [9.999, 0.0]), seen(&harness, [6.9, 0.49]));
-    drag(&mut harness, foot, goal, Modifiers::NONE);
-    let Load::Force { place: Place::At(point), at_point: true, .. } = harness.state().scene().loads[0] else {
-        panic!("at a point")
+    let scene = scene("cantilever").probe("p1", [4.0, 0.2]).section([6.0, 0.0], 0.0).support([2.0, -0.5], &[Axis::Y]);
+    let mut ui = open_of("cantilever", scene);
+    let before = ui.scene().clone();
+    let drag = |ui: &mut Ui, from: [f64; 2], to: [f64; 2]| ui.drag(ui.on_body(from), ui.on_body(to));
+    // Asserts that a place is near a point, and returns it.
+    let near = |place: &Place, wanted: [f64; 2]| {
+        let Place::At(at) = *place else { panic!("{place:?}") };
+        assert!((Vector2::from(at) - Vector2::from(wanted)).norm() < 0.05, "{at:?}");
+        at
     };
-    assert!((point[0] - 6.9).abs() < 0.05 && point[1] == 0.5, "it moves to the side: {point:?}");
-    assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "the force acts at its point");
-    let moved = harness.state().scene().clone();
-    let (foot, goal) = (seen(&harness, point), seen(&harness, [9.999, 0.03]));
-    drag(&mut harness, foot, goal, Modifiers::NONE);
-    let Load::Force { place, at_point, .. } = &harness.state().scene().loads[0] else { panic!("a force") };
-    assert_eq!(
-        (place, at_point),
-        (&Place::At([10.0, 0.0]), &false),
-        "a force at a point is not distributed over an edge"
-    );
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run();
-    assert_eq!(*harness.state().scene(), moved, "one step of undo");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run();
-    assert_eq!(*harness.state().scene(), before, "undone");
-    let (from, to) = (seen(&harness, [4.0, 0.2]), seen(&harness, [5.1, -0.1]));
-    drag(&mut harness, from, to, Modifiers::NONE);
-    let Place::At(at) = harness.state().scene().probes.iter().find(|probe| probe.name == "p1").unwrap().place else {
-        panic!("at a point")
+    let load = |ui: &Ui| {
+        let Load::Force { place, at_point, .. } = &ui.scene().loads[0] else { panic!("a force") };
+        (place.clone(), *at_point)
     };
-    assert!((Vector2::from(at) - Vector2::new(5.1, -0.1)).norm() < 0.05, "{at:?}");
-    let (from, to) = (seen(&harness, [6.0, 0.0]), seen(&harness, [3.0, 0.1]));
-    drag(&mut harness, from, to, Modifiers::NONE);
-    let line = harness.state().scene().sections[0];
+    // The middle of the right edge, where the arrow begins; it moves to the side.
+    drag(&mut ui, [9.999, 0.0], [6.9, 0.49]);
+    let (place, at_point) = load(&ui);
+    let point = near(&place, [6.9, 0.5]);
+    assert!(point[1] == 0.5 && at_point, "{point:?}");
+    assert!(!ui.says("acts on the nearest node"), "the force acts at its point");
+    let moved = ui.scene().clone();
+    drag(&mut ui, point, [9.999, 0.03]);
+    assert_eq!(load(&ui), (Place::At([10.0, 0.0]), false), "a force at a point is not distributed over an edge");
+    for earlier in [moved, before] {
+        ui.undo();
+        assert_eq!(*ui.scene(), earlier, "one step of undo");
+    }
+    drag(&mut ui, [4.0, 0.2], [5.1, -0.1]);
+    let probe = near(&ui.scene().probes.iter().find(|probe| probe.name == "p1").unwrap().place, [5.1, -0.1]);
+    drag(&mut ui, [6.0, 0.0], [3.0, 0.1]);
+    let line = ui.scene().sections[0];
     assert!((line.at - Vector2::new(3.0, 0.1)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
-    let (from, to) = (seen(&harness, [2.0, -0.499]), seen(&harness, [7.33, 0.12]));
-    drag(&mut harness, from, to, Modifiers::NONE);
-    let held = harness.state().scene().supports.last().unwrap().clone();
-    let Place::At(inside) = held.place else { panic!("at a point") };
-    assert!(held.at_point && (Vector2::from(inside) - Vector2::new(7.33, 0.12)).norm() < 0.05, "{held:?}");
-    let reaction = harness.state().simulation().support_reactions().last().unwrap().clone();
+    drag(&mut ui, [2.0, -0.499], [7.33, 0.12]);
+    let held = |ui: &Ui| ui.scene().supports.last().unwrap().clone();
+    let inside = near(&held(&ui).place, [7.33, 0.12]);
+    let reaction = ui.simulation().support_reactions().last().unwrap().clone();
     assert!((reaction.middle.y - inside[1]).abs() < 1e-9 && reaction.force.y > 0.0, "{reaction:?}");
-    assert!(harness.query_by_label_contains("acts on the nearest node").is_none(), "the support holds its point");
-    // The corner at the lower right.
-    let (from, to) = (seen(&harness, inside), seen(&harness, [9.99, -0.49]));
-    drag(&mut harness, from, to, Modifiers::NONE);
-    let held = harness.state().scene().supports.last().unwrap();
-    assert_eq!((&held.place, held.at_point), (&Place::At([10.0, -0.5]), false));
-    // On the middle of an edge it still holds a point, and does not become a support of the whole edge.
-    let (from, to) = (seen(&harness, [9.999, -0.499]), seen(&harness, [9.999, 0.03]));
-    drag(&mut harness, from, to, Modifiers::NONE);
-    let held = harness.state().scene().supports.last().unwrap();
-    assert_eq!((&held.place, &held.fix[..]), (&Place::At([10.0, 0.0]), &[Axis::Y][..]));
-    let before = harness.state().scene().clone();
-    let from = seen(&harness, [9.999, 0.0]);
-    drag(&mut harness, from, from - egui::vec2(0.0, 200.0), Modifiers::NONE);
-    assert_eq!(*harness.state().scene(), before, "dropped beside the body");
-    let probe = seen(&harness, at);
-    click(&mut harness, probe);
-    assert!(harness.state().probed().is_some(), "a press without a drag inspects");
+    assert!(held(&ui).at_point && !ui.says("acts on the nearest node"), "the support holds its point");
+    // To the corner at the lower right, and to the middle of an edge, where it still holds a point.
+    for (from, to, place) in [(inside, [9.99, -0.49], [10.0, -0.5]), ([9.999, -0.499], [9.999, 0.03], [10.0, 0.0])] {
+        drag(&mut ui, from, to);
+        let held = held(&ui);
+        assert_eq!((held.place, held.at_point, &held.fix[..]), (Place::At(place), false, &[Axis::Y][..]));
+    }
+    let before = ui.scene().clone();
+    let from = ui.on_body([9.999, 0.0]);
+    ui.drag(from, from - vec2(0.0, 200.0));
+    assert_eq!(*ui.scene(), before, "dropped beside the body");
+    ui.click_at(ui.on_body(probe));
+    assert!(ui.state().probed().is_some(), "a press without a drag inspects");
 }
 
-/// The coordinates of a load at a point are typed with units.
+/// With units.
 #[test]
 fn coordinates_of_a_point_are_typed() {
-    let mut harness = harness_of("cantilever", scene("cantilever").force([5.0, 0.5], [0.0, -10.0]));
-    harness.run();
-    unfold(&mut harness, "Force on");
-    type_into(&mut harness, "x", "250 cm");
-    let Load::Force { place, at_point, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
-    assert_eq!((place, *at_point), (&Place::At([2.5, 0.5]), false), "a node is there");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run();
-    let Load::Force { place, .. } = &harness.state().scene().loads[1] else { panic!("a force") };
-    assert_eq!(*place, Place::At([5.0, 0.5]), "undone");
-    type_into(&mut harness, "y", "3 kg");
-    assert!(harness.query_by_label_contains("expected").is_some(), "a refused text is silent");
+    let mut ui = open_of("cantilever", scene("cantilever").force([5.0, 0.5], [0.0, -10.0]));
+    let load = |ui: &Ui| {
+        let Load::Force { place, at_point, .. } = &ui.scene().loads[1] else { panic!("a force") };
+        (place.clone(), *at_point)
+    };
+    unfold(&mut ui, "Force on");
+    ui.type_into("x", "250 cm");
+    assert_eq!(load(&ui), (Place::At([2.5, 0.5]), false), "a node is there");
+    ui.undo();
+    assert_eq!(load(&ui).0, Place::At([5.0, 0.5]), "undone");
+    ui.type_into("y", "3 kg");
+    ui.expect(&["expected"]);
 }
 
-/// The distance to the reference is that of a solution on a fine mesh of our own, has no value while the reference is not
-/// known, and says so.
+/// It is that of a solution on a fine mesh of our own, has no value while the reference is not known, and says so.
 #[test]
 fn the_distance_to_the_reference_colours_the_body() {
     let corner = [5.0, 0.5];
@@ -357,29 +289,22 @@ fn the_distance_to_the_reference_colours_the_body() {
     let mut fine = scene.clone().with_cells(40, 8).with_element(ElementKind::T6).with_method(MethodKind::Newton);
     fine.solver.tolerance = 1e-10;
     let fine = solved(&fine).probe("corner").unwrap();
-    let mut lab = lab_of("article", scene.clone());
-    lab.solve();
-    let mut harness = window([1280.0, 800.0], lab);
-    harness.state_mut().color_with(Field::ReferenceDistance);
-    harness.run();
+    let mut ui = open_solved("article", scene.clone());
+    ui.state_mut().color_with(Field::ReferenceDistance);
+    ui.run();
     let name = Field::ReferenceDistance.name();
-    let own = harness.state().simulation().probe("corner").unwrap();
-    let largest = harness.state().frame().range[1];
-    assert!(largest >= 0.99 * (own - fine).norm(), "{largest} m");
-    let pos = on_body(harness.state(), Vector2::from(corner) - Vector2::new(1e-3, 1e-3));
-    harness.hover_at(pos);
-    harness.run();
-    let shown = painted(&harness);
+    let wanted = (ui.simulation().probe("corner").unwrap() - fine).norm();
+    let largest = ui.state().frame().range[1];
+    assert!(largest >= 0.99 * wanted, "{largest} m");
+    ui.hover(ui.on_body([corner[0] - 1e-3, corner[1] - 1e-3]));
+    let shown = texts(&ui);
     let value = shown.iter().find_map(|text| text.strip_prefix(&format!("{name}: "))).unwrap();
     let seen: f64 = value.split(' ').next().unwrap().parse().unwrap();
-    let wanted = (own - fine).norm();
     assert!((seen - wanted).abs() < 0.01 * wanted, "{value} instead of {wanted} m");
-    // Without a probe there is no reference.
     let mut unknown = scene;
     unknown.probes.clear();
-    let mut harness = harness_of("article", unknown);
-    harness.state_mut().color_with(Field::ReferenceDistance);
-    harness.run();
-    let title = format!("{name}, m, not known");
-    assert!(painted(&harness).iter().any(|text| text.starts_with(&title)), "{:?}", painted(&harness));
+    let mut ui = open_of("article", unknown);
+    ui.state_mut().color_with(Field::ReferenceDistance);
+    ui.run();
+    assert!(texts(&ui).iter().any(|text| text.starts_with(&format!("{name}, m, not known"))), "{:?}", texts(&ui));
 }

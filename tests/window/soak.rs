@@ -4,10 +4,11 @@
 use std::ops::Range;
 
 use crate::common::alone::ran_alone;
+use crate::common::lab::{in_view, window_at};
 use crate::common::pictures::lab;
+use crate::common::random::Random;
 use crate::common::scene;
 use allocation_counter::measure;
-use egui_kittest::Harness;
 use nalgebra::Vector2;
 use warpbeam::app::Lab;
 use warpbeam::{ElementKind, IntegratorKind, Simulation, Status};
@@ -15,16 +16,6 @@ use warpbeam::{ElementKind, IntegratorKind, Simulation, Status};
 /// Returns the factor by which runs are longer than usual.
 fn longer() -> u32 {
     std::env::var("WARPBEAM_SOAK").ok().and_then(|text| text.parse().ok()).unwrap_or(1)
-}
-
-/// Random numbers from −1 to 1, the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-    }
 }
 
 /// Fails if `work` leaves more than `most` bytes allocated or, on Linux, if the process (all threads) grows by more.
@@ -66,7 +57,8 @@ fn a_long_swing_with_pulls_stays_stable_and_keeps_no_memory() {
                     400 => assert!(simulation.grab(tip)),
                     401..460 => {
                         if step % 20 == 1 {
-                            place = Vector2::new(0.6, -0.4) + Vector2::new(random.next(), random.next()) * 0.3;
+                            place = Vector2::new(0.6, -0.4)
+                                + Vector2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0)) * 0.3;
                         }
                         simulation.pull_to(place).unwrap();
                     }
@@ -89,8 +81,7 @@ fn a_long_swing_with_pulls_stays_stable_and_keeps_no_memory() {
 fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
     let (nodes, u) = (lab.simulation().system().mesh().nodes(), lab.simulation().displacement());
     let node = ((part * nodes.len() as f64) as usize).min(nodes.len() - 1);
-    let [x, y] = lab.camera().to_view(nodes[node] + u[node]);
-    lab.view_rect().center() + egui::vec2(x as f32, y as f32)
+    in_view(lab, nodes[node] + u[node])
 }
 
 /// A window whose body is dragged at random keeps running and shows finite values.
@@ -100,32 +91,35 @@ fn random_input_never_breaks_the_window() {
         return;
     }
     for id in ["jelly", "flick", "article"] {
-        let mut harness = Harness::builder().with_size([1000.0, 700.0]).build_ui_state(
-            |ui, lab: &mut Lab| {
-                lab.advance(ui.input(|i| i.time));
-                lab.ui(ui);
-            },
-            lab(id),
-        );
+        let mut ui = window_at([0.25, 4.0], [1000.0, 700.0], lab(id));
         let mut random = Random(11);
         let mut held = 0;
         let frames = 240 * longer();
         let mut play = |frames: Range<u32>| {
             for frame in frames {
-                let rect = harness.state().view_rect();
+                let rect = ui.state().view_rect();
                 let reach = 0.45 * rect.size();
-                let place = rect.center() + egui::vec2(random.next() as f32 * reach.x, random.next() as f32 * reach.y);
+                let place = rect.center()
+                    + egui::vec2(
+                        random.between(-1.0, 1.0) as f32 * reach.x,
+                        random.between(-1.0, 1.0) as f32 * reach.y,
+                    );
                 match frame % 12 {
                     0 => {
-                        let node = on_the_body(harness.state(), 0.5 + 0.5 * random.next());
-                        harness.drag_at(node + egui::vec2(random.next() as f32 * 20.0, random.next() as f32 * 20.0));
+                        let node = on_the_body(ui.state(), 0.5 + 0.5 * random.between(-1.0, 1.0));
+                        ui.drag_at(
+                            node + egui::vec2(
+                                random.between(-1.0, 1.0) as f32 * 20.0,
+                                random.between(-1.0, 1.0) as f32 * 20.0,
+                            ),
+                        );
                     }
-                    8 => harness.drop_at(place),
-                    _ => harness.hover_at(place),
+                    8 => ui.drop_at(place),
+                    _ => ui.hover_at(place),
                 }
-                harness.step();
-                held += u32::from(harness.state().simulation().mouse_spring().is_some());
-                assert!(harness.state().simulation().state().is_finite(), "{id}: frame {frame}");
+                ui.step();
+                held += u32::from(ui.simulation().mouse_spring().is_some());
+                assert!(ui.simulation().state().is_finite(), "{id}: frame {frame}");
             }
         };
         play(0..frames / 2);

@@ -2,14 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::lab::lab_of;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use nalgebra::Vector2;
-use warpbeam::Simulation;
-use warpbeam::app::{Lab, Settings};
-use warpbeam::scene::{ElementKind, Load, MethodKind, Scene};
+use crate::common::lab::*;
+use warpbeam::app::Settings;
+use warpbeam::scene::ElementKind;
 
 /// Time between two frames, s.
 const FRAME: f64 = 0.25;
@@ -18,64 +13,52 @@ fn lab(id: &str) -> Lab {
     lab_of(id, crate::common::scene(id))
 }
 
-fn harness(size: [f32; 2], lab: Lab) -> Harness<'static, Lab> {
-    let mut harness = Harness::builder().with_size(size).build_ui_state(
-        |ui, lab: &mut Lab| {
-            lab.ui(ui);
-        },
-        lab,
-    );
-    harness.run_steps(3);
-    harness
+fn open(size: [f32; 2], lab: Lab) -> Ui {
+    let builder = egui_kittest::Harness::builder().with_size(size);
+    // The tests set the clock of the story.
+    let mut ui = Ui(builder.build_ui_state(|ui, lab: &mut Lab| _ = lab.ui(ui), lab));
+    ui.run_steps(3);
+    ui
 }
 
 /// Returns a window of the story at its start.
-fn story() -> Harness<'static, Lab> {
-    let mut harness = harness([1280.0, 800.0], lab("article"));
-    harness.state_mut().tell_story();
-    show(&mut harness, 0.0);
-    harness
+fn story() -> Ui {
+    let mut ui = open(SIZE, lab("article"));
+    ui.state_mut().tell_story();
+    show(&mut ui, 0.0);
+    ui
 }
 
 /// Shows the story `time` s after its start.
-fn show(harness: &mut Harness<'_, Lab>, time: f64) {
-    harness.state_mut().advance(time);
-    harness.step();
+fn show(ui: &mut Ui, time: f64) {
+    ui.state_mut().advance(time);
+    ui.step();
 }
 
 /// Shows every frame of the story from 0 s on, and calls `each` with the time and the index of the part.
-fn tell(harness: &mut Harness<'_, Lab>, mut each: impl FnMut(&mut Harness<'_, Lab>, f64, usize)) {
+fn tell(ui: &mut Ui, mut each: impl FnMut(&mut Ui, f64, usize)) {
     for frame in 0.. {
         let time = f64::from(frame) * FRAME;
-        show(harness, time);
-        let Some((part, _)) = harness.state().story() else { return };
-        each(harness, time, part);
+        show(ui, time);
+        let Some((part, _)) = ui.state().story() else { return };
+        each(ui, time, part);
     }
 }
 
 /// Returns the error of the status bar, once the reference solution is known.
-fn error(harness: &mut Harness<'_, Lab>) -> f64 {
-    for _ in 0..6000 {
-        if let Some(error) = number(harness, "ERROR") {
-            return error;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-    }
-    unreachable!("no error")
+fn error(ui: &mut Ui) -> f64 {
+    ui.wait_until("an error", |ui| number(ui, "ERROR").is_some());
+    number(ui, "ERROR").unwrap()
 }
 
 /// Returns the value of a number of the status bar; `None` if it is unknown.
-fn number(harness: &Harness<'_, Lab>, name: &str) -> Option<f64> {
-    let nodes = harness.get_all_by(|_| true).map(|node| node.accesskit_node());
-    let mut texts = nodes.flat_map(|node| [node.label(), node.value()]).flatten();
-    let label = texts.find(|label| label.starts_with(&format!("{name} ")))?;
+fn number(ui: &Ui, name: &str) -> Option<f64> {
+    let label = ui.texts().into_iter().find(|label| label.starts_with(&format!("{name} ")))?;
     label.split(' ').nth(1)?.parse().ok()
 }
 
-fn force(scene: &Scene) -> f64 {
-    let Load::Force { force: [x, y], .. } = scene.loads[0] else { unreachable!() };
-    x.hypot(y)
+fn size(scene: &Scene) -> f64 {
+    force(scene)[0].hypot(force(scene)[1])
 }
 
 /// Returns the area of a body of triangles, m².
@@ -91,12 +74,12 @@ fn area(simulation: &Simulation) -> f64 {
 /// The window shows five captions of at most eight words in twenty seconds. Afterwards the scene is as it was opened.
 #[test]
 fn five_short_captions_are_shown_in_twenty_seconds() {
-    let mut harness = story();
+    let mut ui = story();
     let (mut captions, mut end) = (Vec::new(), 0.0);
-    tell(&mut harness, |harness, time, part| {
-        let (_, caption) = harness.state().story().unwrap();
-        assert!(harness.query_by_label(caption).is_some(), "{caption:?} is not shown");
-        assert_eq!(harness.state().title(), "The article's beam \u{2013} warpbeam");
+    tell(&mut ui, |ui, time, part| {
+        let (_, caption) = ui.state().story().unwrap();
+        assert!(ui.query_by_label(caption).is_some(), "{caption:?} is not shown");
+        assert_eq!(ui.state().title(), "The article's beam \u{2013} warpbeam");
         if captions.len() <= part {
             captions.push(caption);
         }
@@ -105,7 +88,7 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
     assert!((19.0..=20.0).contains(&end), "{end} s");
     assert_eq!(captions.iter().collect::<BTreeSet<_>>().len(), 5);
     assert!(captions.iter().all(|caption| caption.split_whitespace().count() <= 8), "{captions:?}");
-    is_default(harness.state());
+    is_default(ui.state());
 }
 
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
@@ -114,18 +97,17 @@ fn is_default(lab: &Lab) {
     assert!(lab.simulation().status().is_success() && !lab.can_undo() && !lab.can_redo());
 }
 
-/// The numbers of the window tell the story: the area grows under linear theory only, ρ passes 1 and the warped
-/// iteration ends, Newton's method converges under larger loads, and another element reduces the error.
+/// ρ passes 1 and `warped` ends, `newton` converges under larger loads, another element reduces the error.
 #[test]
 fn the_numbers_of_the_window_tell_the_story() {
-    let mut harness = story();
-    let usual = force(&crate::common::scene("article"));
+    let mut ui = story();
+    let usual = size(&crate::common::scene("article"));
     let mut last = [const { None }; 5];
     let (mut lost, mut errors, mut largest) = (Vec::new(), Vec::new(), 0.0_f64);
-    tell(&mut harness, |harness, _, part| {
-        let lab = harness.state();
-        let (method, element, load) = (lab.scene().solver.method, lab.scene().element(), force(lab.scene()));
-        let (converges, rho) = (lab.simulation().status().is_success(), number(harness, "ρ"));
+    tell(&mut ui, |ui, _, part| {
+        let lab = ui.state();
+        let (method, element, load) = (lab.scene().solver.method, lab.scene().element(), size(lab.scene()));
+        let (converges, rho) = (lab.simulation().status().is_success(), number(ui, "ρ"));
         assert_eq!(method == MethodKind::Newton, part == 2 || part == 3);
         assert!(converges || part == 1, "part {part} under {load} N");
         if part <= 1 && load >= usual {
@@ -134,11 +116,11 @@ fn the_numbers_of_the_window_tell_the_story() {
             largest = largest.max(rho.unwrap());
         }
         if part == 1 {
-            lost.push((!converges, harness.query_by_label_contains(" not reached").is_some()));
+            lost.push((!converges, ui.query_by_label_contains(" not reached").is_some()));
         }
         last[part] = Some((load, [Some(lab.simulation()), lab.linear()].map(|body| area(body.unwrap()))));
         if part == 3 && load == usual {
-            errors.push((element, error(harness)));
+            errors.push((element, error(ui)));
         }
     });
     let [first, second, third, ..] = last.map(Option::unwrap);
@@ -177,98 +159,81 @@ fn any_input_ends_the_story_and_leaves_the_default_scene() {
         repeat: false,
         modifiers: Modifiers::NONE,
     };
-    let press =
-        |pressed| Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
-    let wheel = Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: vec2(0.0, 20.0),
-        phase: egui::TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-        source: egui::MouseWheelSource::Wheel,
-    };
-    for input in [vec![key(true), key(false)], vec![press(true), press(false)], vec![wheel]] {
+    let inputs: [&dyn Fn(&mut Ui, bool); 3] =
+        [&|ui, pressed| ui.event(key(pressed)), &|ui, pressed| ui.event(primary(at, pressed)), &|ui, pressed| {
+            if pressed {
+                ui.wheel(20.0)
+            }
+        }];
+    for (number, input) in inputs.iter().enumerate() {
         for time in [0.0, 3.0, 9.0, 11.0, 16.0, 18.0] {
-            let mut harness = story();
-            show(&mut harness, time);
-            harness.event(Event::PointerMoved(at));
-            harness.event(key(false));
-            harness.step();
-            assert!(harness.state().story().is_some(), "the pointer ended the story");
-            harness.event(input[0].clone());
-            harness.step();
-            assert_eq!(harness.state().story(), None, "{input:?} at {time} s");
-            input[1..].iter().for_each(|event| harness.event(event.clone()));
-            harness.step();
-            // A later time does not start it again.
-            show(&mut harness, time + 1.0);
-            is_default(harness.state());
+            let mut ui = story();
+            show(&mut ui, time);
+            ui.event(Event::PointerMoved(at));
+            ui.event(key(false));
+            ui.step();
+            assert!(ui.state().story().is_some(), "the pointer ended the story");
+            input(&mut ui, true);
+            ui.step();
+            assert_eq!(ui.state().story(), None, "input {number} at {time} s");
+            input(&mut ui, false);
+            ui.step();
+            show(&mut ui, time + 1.0);
+            is_default(ui.state());
         }
     }
 }
 
-/// A press on the tip of the arrow in the last part ends the story, and the same press drags the arrow.
+/// A press on its tip in the last part ends the story, and the same press drags it.
 #[test]
 fn the_arrow_is_handed_over() {
-    let mut harness = story();
-    show(&mut harness, 18.0);
-    show(&mut harness, 18.1);
-    let (_, tip) = harness.state().arrow_tips()[0];
-    harness.drag_at(tip);
-    harness.step();
-    assert_eq!(harness.state().story(), None);
-    harness.event(Event::PointerMoved(tip + vec2(0.0, 30.0)));
-    harness.step();
-    harness.drop_at(tip + vec2(0.0, 30.0));
-    harness.step();
-    assert!(force(harness.state().scene()) > 33e3, "{} N", force(harness.state().scene()));
-    assert!(harness.state().can_undo());
+    let mut ui = story();
+    show(&mut ui, 18.0);
+    show(&mut ui, 18.1);
+    let tip = ui.tip();
+    ui.drag_at(tip);
+    ui.step();
+    assert_eq!(ui.state().story(), None);
+    ui.move_to(tip + vec2(0.0, 30.0));
+    ui.drop_at(tip + vec2(0.0, 30.0));
+    ui.step();
+    assert!(size(ui.scene()) > 33e3 && ui.state().can_undo(), "{} N", size(ui.scene()));
 }
 
-/// With reduced motion, every part is a still.
 #[test]
 fn with_reduced_motion_the_story_is_five_stills() {
-    let mut harness = harness([1280.0, 800.0], lab("article"));
+    let mut ui = open(SIZE, lab("article"));
     let mut settings = Settings::default();
     settings.reduced_motion = true;
-    let ctx = harness.ctx.clone();
-    harness.state_mut().set_settings(&ctx, settings);
-    harness.state_mut().tell_story();
+    let ctx = ui.ctx.clone();
+    ui.state_mut().set_settings(&ctx, settings);
+    ui.state_mut().tell_story();
     let mut stills: Vec<(usize, Vec<Vector2<f64>>)> = Vec::new();
-    tell(&mut harness, |harness, _, part| {
-        let u = harness.state().simulation().displacement();
-        match stills.last() {
-            Some((last, still)) if *last == part => assert!(still == u, "part {part} moves"),
-            _ => stills.push((part, u.to_vec())),
-        }
-    });
+    tell(&mut ui, |ui, _, part| stills.push((part, ui.simulation().displacement().to_vec())));
+    stills.dedup();
     assert_eq!(stills.iter().map(|(part, _)| *part).collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
     assert!(stills.windows(2).all(|pair| pair[0].1 != pair[1].1), "each still shows another body");
-    is_default(harness.state());
+    is_default(ui.state());
 }
 
-/// Learn tells the story again, and shows its card afterwards. The user's scene stays.
+/// And shows its card afterwards. The user's scene stays.
 #[test]
 fn learn_tells_the_story_again() {
-    let mut harness = harness([900.0, 600.0], lab("cantilever"));
-    let own = harness.state().scene().clone();
+    let mut ui = open([900.0, 600.0], lab("cantilever"));
+    let own = ui.scene().clone();
     // Another scene than the default one would be lost.
-    harness.state_mut().tell_story();
-    assert_eq!(harness.state().story(), None);
-    harness.state_mut().show_card(3);
-    harness.run_steps(3);
-    let card = harness.state().scene().clone();
-    harness.get_by_label("Story").click();
-    harness.step();
-    assert!(harness.state().story().is_some() && harness.state().card().is_none());
-    for time in [0.0, 3.0, 8.0] {
-        show(&mut harness, time);
-    }
-    assert!(harness.state().scene() != &card);
-    harness.key_press(Key::Enter);
-    harness.step();
-    assert_eq!((harness.state().story(), harness.state().card()), (None, Some((3, 9))));
-    assert_eq!(harness.state().scene(), &card);
-    harness.get_by_label("Leave").click();
-    harness.run_steps(3);
-    assert_eq!(harness.state().scene(), &own);
+    ui.state_mut().tell_story();
+    assert_eq!(ui.state().story(), None);
+    ui.state_mut().show_card(3);
+    ui.run_steps(3);
+    let card = ui.scene().clone();
+    ui.click_for("Story", 1);
+    assert!(ui.state().story().is_some() && ui.state().card().is_none());
+    [0.0, 3.0, 8.0].into_iter().for_each(|time| show(&mut ui, time));
+    assert!(*ui.scene() != card);
+    ui.key_press(Key::Enter);
+    ui.step();
+    assert_eq!((ui.state().story(), ui.state().card(), ui.scene()), (None, Some((3, 9)), &card));
+    ui.click_for("Leave", 3);
+    assert_eq!(*ui.scene(), own);
 }
