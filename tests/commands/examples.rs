@@ -18,7 +18,7 @@ mod swing_energy;
 #[path = "../../examples/warped.rs"]
 mod warped;
 
-use crate::common::solve_json;
+use crate::common::solve_u;
 use warpbeam::IntegratorKind;
 
 #[test]
@@ -31,8 +31,7 @@ fn the_game_keeps_its_beam_in_motion() {
 #[test]
 fn the_load_curve_leaves_linear_theory_where_the_exact_beam_does() {
     let csv = load_curve::curve().unwrap();
-    let rows: Vec<Vec<f64>> =
-        csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+    let rows = crate::common::numbers(&csv);
     assert_eq!(rows.len(), 20);
     for row in &rows {
         let [alpha, linear, newton, exact] = row[..] else { unreachable!("{row:?}") };
@@ -66,10 +65,8 @@ fn the_hook_is_bent_as_a_curved_beam() {
 /// The method on one page is that of the program.
 #[test]
 fn the_page_of_the_method_solves_the_beam_of_the_article() {
-    let solved = solve_json(&["article", "--set", "solver.tolerance=1e-13"]);
-    let [x, y] = [0, 1].map(|axis| solved["probes"][0]["u"][axis].as_f64().unwrap());
-    let tip = warped::tip().unwrap();
-    assert!((tip.x - x).hypot(tip.y - y) < 1e-10 * x.hypot(y), "{tip:?}, ({x}, {y})");
+    let (solved, tip) = (solve_u(&["article", "--set", "solver.tolerance=1e-13"]), warped::tip().unwrap());
+    assert!((tip.x - solved.x).hypot(tip.y - solved.y) < 1e-10 * solved.norm(), "{tip:?}, {solved}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{solve_json, stderr, stdout, warpbeam, warpbeam_in};
+use crate::common::*;
 
 /// Errors and displacements at the scene's own load are those of `solve`, and `warped` stops where `solve` stops.
 #[test]
@@ -10,7 +10,7 @@ fn limits_are_those_of_solve() {
     let folder = tempfile::tempdir().unwrap();
     let output = warpbeam_in(folder.path(), &["limits", "article", "--json", "--out", "t.csv", "--picture", "t.svg"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = parsed(&output);
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 9, "three elements, each with three methods");
     let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
@@ -55,8 +55,7 @@ fn limits_are_those_of_solve() {
     assert!(picture.contains("does not converge") && picture.contains("q4 newton"));
 }
 
-/// Next to buckling `warped` stops to converge, and converges again beyond, as `solve` does; its limit of 1 % is that of
-/// `newton`, whose results are the same.
+/// Next to buckling `warped` stops; its limit of 1 % is that of `newton`, whose results are the same.
 #[test]
 fn a_method_may_converge_again_beyond_buckling() {
     let json: serde_json::Value = serde_json::from_slice(&warpbeam(&["limits", "column", "--json"]).stdout).unwrap();
@@ -88,7 +87,7 @@ fn an_early_stop_has_a_strip() {
     let settings = ["--set", "beam.element=\"q4\"", "--set", "beam.cells=[10,1]", "--set", "solver.accept_after=2"];
     let args = [&["limits", "cantilever", "--json", "--out", "t.csv"][..], &settings].concat();
     let output = warpbeam_in(folder.path(), &args);
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = parsed(&output);
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 10, "nine strips, and the one of the early stop");
     let early: Vec<_> = strips.iter().filter(|strip| strip["accept_after"] == 2).collect();
@@ -102,6 +101,20 @@ fn an_early_stop_has_a_strip() {
     let wanted = probe["error_percent"].as_f64().unwrap() + probe["reference_error_percent"].as_f64().unwrap();
     let at_load = values.into_iter().find(|row| (row[0] - 1.0).abs() < 1e-9).unwrap();
     assert!(solved["status"] == "accepted" && (at_load[3] / wanted - 1.0).abs() < 1e-6, "{at_load:?} {wanted}");
+}
+
+/// The axis of loads in a picture is logarithmic.
+#[test]
+fn equal_distances_in_a_picture_are_equal_ratios() {
+    let folder = tempfile::tempdir().unwrap();
+    succeeds_in(folder.path(), &["limits", "article", "--picture", "t.svg"]);
+    let svg = fs::read_to_string(folder.path().join("t.svg")).unwrap();
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let [low, own, high] = ["300 N", "30 kN", "300 kN"].map(|text| {
+        let node = document.descendants().find(|node| node.has_tag_name("text") && node.text() == Some(text));
+        node.unwrap().attribute("x").unwrap().parse::<f64>().unwrap()
+    });
+    assert!((own - low - 2.0 * (high - own)).abs() < 0.2);
 }
 
 /// The load at which linear theory is 5 % off the exact beam is that of `curve`.
@@ -118,8 +131,7 @@ fn the_limit_of_linear_theory_is_that_of_the_exact_beam() {
     assert!((factor / (0.01 * percent) - 1.0).abs() < 0.1, "{factor}, curve: {percent} %");
 }
 
-/// In motion the strips are the integrators: shorter time steps have smaller errors, down to the error of the mesh, and
-/// the explicit integrator finishes up to where `solve` does.
+/// Shorter steps have smaller errors, down to that of the mesh; the explicit one finishes up to where `solve` does.
 #[test]
 fn limits_of_a_motion_are_those_of_its_integrators() {
     let folder = tempfile::tempdir().unwrap();
@@ -128,7 +140,7 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     let args = [&["limits", "--out", "t.csv", "--picture", "t.svg"][..], &scene].concat();
     let output = warpbeam_in(folder.path(), &args);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let json = parsed(&output);
     let strips = json["strips"].as_array().unwrap();
     let own = json["full_load"].as_f64().unwrap();
     assert_eq!((strips.len(), &json["load"]), (4, &"time step".into()));

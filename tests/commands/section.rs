@@ -2,13 +2,11 @@
 
 use std::fs;
 
-use crate::common::{stderr, stdout, warpbeam, warpbeam_in};
+use crate::common::*;
 
 /// Returns the JSON object of `section --json`.
 fn sections(args: &[&str]) -> serde_json::Value {
-    let output = warpbeam(&[&["section", "--json"], args].concat());
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
-    serde_json::from_slice(&output.stdout).unwrap()
+    serde_json::from_str(&succeeds(&[&["section", "--json"], args].concat())).unwrap()
 }
 
 /// In text, JSON and files, along the beam and in one cut.
@@ -27,7 +25,6 @@ fn forces_of_a_cantilever_are_those_of_statics() {
     }
     let one = &sections(&[&small[..], &["--at", "2500 mm"]].concat())["sections"][0];
     assert_eq!(one["moment"], all[1]["moment"]);
-    // The same cut from the other side.
     let back = &sections(&[&small[..], &["--at", "2.5,0.1", "--angle", "180deg"]].concat())["sections"][0];
     let sum = one["moment"].as_f64().unwrap() + back["moment"].as_f64().unwrap();
     assert!(sum.abs() < 1e-11, "{sum}");
@@ -68,8 +65,7 @@ fn the_largest_value_is_beside_a_jump() {
 fn tables_and_pictures_are_written() {
     let folder = tempfile::tempdir().unwrap();
     let run = |args: &[&str]| {
-        let output = warpbeam_in(folder.path(), &[&["section", "snap"], args].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        succeeds_in(folder.path(), &[&["section", "snap"], args].concat());
     };
     run(&["--at", "0.1", "--out", "cut.csv", "--picture", "cut.svg"]);
     run(&["--along", "21", "--out", "along.csv", "--picture", "along.svg"]);
@@ -102,8 +98,7 @@ fn a_cut_in_linear_theory_has_moved_with_the_body() {
     assert!(stderr(&refused).contains("expected -100 to 100 rad"), "{}", stderr(&refused));
 }
 
-/// `solve` prints the sections of the scene, with the values of `section`; a line beside the body is refused before the
-/// solve, with its key.
+/// With the values of `section`; a line beside the body is refused before the solve, with its key.
 #[test]
 fn sections_of_a_scene_are_printed_with_its_results() {
     let lines = "section=[{at=[\"400 cm\", 0.0]}, {at=[7.0, 0.1], angle=\"20°\"}]";
@@ -116,7 +111,6 @@ fn sections_of_a_scene_are_printed_with_its_results() {
         .map(|args| sections(&[&["cantilever"], args].concat())["sections"][0].clone());
     assert_eq!(values("solve").as_array().unwrap()[..], each);
     assert_eq!(values("section").as_array().unwrap()[..], each);
-    // The part in front carries the force at the tip.
     let force = each[0]["force"][1].as_f64().unwrap();
     assert!((force + 1000.0).abs() < 1e-4, "{force}");
     let text = stdout(&of("solve", &[]));
@@ -137,7 +131,5 @@ fn sections_of_a_scene_are_printed_with_its_results() {
     assert!(stderr(&shot).contains("section.0: expected a line that crosses the body"), "{}", stderr(&shot));
     let angle = of("section", &["--angle", "30deg"]);
     assert!(stderr(&angle).contains("--at"), "{}", stderr(&angle));
-    let none = warpbeam(&["section", "cantilever"]);
-    assert_eq!(none.status.code(), Some(2));
-    assert!(stderr(&none).contains("cantilever: expected --at or --along, or a scene with a [[section]]"));
+    refuses(&["section", "cantilever"], "cantilever: expected --at or --along, or a scene with a [[section]]");
 }

@@ -66,8 +66,7 @@ fn a_support_without_a_reaction_has_no_limit_load() {
     assert!(claims.iter().all(|claim| claim.id() != "limit_load"), "{claims:?}");
 }
 
-/// A motion that gains energy from its integrator is not a success, and the text names the time step. Losses and small
-/// gains are reported without a warning.
+/// The text names the time step. Losses and small gains are reported without a warning.
 #[test]
 fn gained_energy_is_reported_and_ends_with_exit_code_1() {
     for args in [&["flick", "--set", "dynamics.time_step=.5"][..], &["tests/data/scenes/long-steps.toml"]] {
