@@ -9,15 +9,11 @@ use warpbeam::{IntegratorKind, Material, MethodKind, Simulation, Status};
 use crate::common::motion::{beam, first_mode, lowest_frequency, momentum, run, with};
 use crate::{Test, suite};
 
-const TESTS: &[Test<IntegratorKind>] = &[
-    ("the_error_has_the_stated_order_in_the_step", the_error_has_the_stated_order_in_the_step),
-    ("a_free_body_falls", a_free_body_falls),
-    ("a_pulse_leaves_its_impulse", a_pulse_leaves_its_impulse),
-    ("the_ledger_closes", the_ledger_closes),
-    ("damping_removes_the_energy_of_rayleighs_formula", damping_removes_the_energy_of_rayleighs_formula),
-    ("linear_theory_is_the_limit_of_small_loads", linear_theory_is_the_limit_of_small_loads),
-    ("motion_is_reproduced_to_the_last_bit", motion_is_reproduced_to_the_last_bit),
-];
+const TESTS: &[Test<IntegratorKind>] = tests! {
+    the_error_has_the_stated_order_in_the_step a_free_body_falls a_pulse_leaves_its_impulse the_ledger_closes
+    damping_removes_the_energy_of_rayleighs_formula linear_theory_is_the_limit_of_small_loads
+    motion_is_reproduced_to_the_last_bit
+};
 
 pub fn trials() -> Vec<Trial> {
     suite("integrator", IntegratorKind::all().map(|kind| (kind.id().to_owned(), kind)), TESTS)
@@ -42,9 +38,7 @@ fn the_error_has_the_stated_order_in_the_step(kind: IntegratorKind) {
         // the square of the amplitude.
         let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
         simulation.start_from(&mode).unwrap();
-        for _ in 0..steps << halvings {
-            simulation.step();
-        }
+        (0..steps << halvings).for_each(|_| _ = simulation.step());
         // Position of the tip in its swing: displacement, and velocity over the angular frequency.
         Vector2::new(simulation.probe("tip").unwrap().y, simulation.probe_velocity("tip").unwrap().y / 3.2)
     };
@@ -79,16 +73,11 @@ fn a_pulse_leaves_its_impulse(kind: IntegratorKind) {
     assert!((linear - Vector2::new(0.0, 4.0)).norm() < 0.01, "{linear}");
 }
 
-/// The ledger balances with all entries at once: weight, pulses of a force and a moment, damping, a mouse spring that
-/// pulls and is released, and an edit.
+/// With all entries at once: weight, pulses, damping, a mouse spring that is released, and an edit.
 fn the_ledger_closes(kind: IntegratorKind) {
     let h = step(kind, 1.0 / 120.0);
-    let mut scene = with("swing", kind, h, 1, 1.0)
-        .force("right", [0.0, 30.0])
-        .pulse(0.1, 0.3)
-        .moment("right", 5.0)
-        .moment("right", 20.0)
-        .pulse(0.0, 0.2);
+    let scene = with("swing", kind, h, 1, 1.0).force("right", [0.0, 30.0]).pulse(0.1, 0.3);
+    let mut scene = scene.moment("right", 5.0).moment("right", 20.0).pulse(0.0, 0.2);
     scene.dynamics.damping.mass = 0.3;
     scene.dynamics.damping.stiffness = if kind.entry().is_explicit() { 1e-5 } else { 1e-3 };
     scene.solver.tolerance = 1e-10;
@@ -134,9 +123,7 @@ fn damping_removes_the_energy_of_rayleighs_formula(kind: IntegratorKind) {
         simulation.start_from(&first_mode(&simulation)).unwrap();
         let before = simulation.motion().unwrap().ledger().total();
         let steps = (TAU / omega * rate).round();
-        for _ in 0..steps as u32 {
-            simulation.step();
-        }
+        (0..steps as u32).for_each(|_| _ = simulation.step());
         let expected = (-(mass + stiffness * omega * omega) * steps / rate).exp();
         simulation.motion().unwrap().ledger().total() / before / expected
     };
@@ -157,8 +144,7 @@ fn linear_theory_is_the_limit_of_small_loads(kind: IntegratorKind) {
     assert!((corotated - linear).norm() < 1e-4 * linear.norm(), "{corotated} {linear}");
 }
 
-/// The same scene gives bitwise the same motion, with or without a ledger. A snapshot continues as the original does,
-/// and a reset starts again from the beginning.
+/// With or without a ledger, from a snapshot, and after a reset.
 fn motion_is_reproduced_to_the_last_bit(kind: IntegratorKind) {
     let scene = if kind.entry().is_explicit() {
         with("swing", kind, 2e-4, 1, 0.1)

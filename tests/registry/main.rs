@@ -2,6 +2,11 @@
 //! of one element, `-- newton` those of one method.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
+/// Lists functions with their names.
+macro_rules! tests {
+    ($($name:ident)*) => { &[$((stringify!($name), $name)),*] };
+}
+
 #[path = "../common/mod.rs"]
 mod common;
 mod elements;

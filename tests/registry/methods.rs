@@ -9,17 +9,12 @@ use warpbeam::{Field, LoadId, MethodKind, Scene, Simulation, Status};
 use crate::common::{scene, scene_with};
 use crate::{Test, suite};
 
-const TESTS: &[Test<MethodKind>] = &[
-    ("the_id_is_the_name_in_scene_files", the_id_is_the_name_in_scene_files),
-    ("no_other_method_has_the_same_colour", no_other_method_has_the_same_colour),
-    ("an_axial_bar_stretches_by_pl_over_ea", an_axial_bar_stretches_by_pl_over_ea),
-    ("without_load_nothing_moves", without_load_nothing_moves),
-    ("extremes_stay_finite", extremes_stay_finite),
-    ("an_edited_load_has_the_solution_of_a_start_at_rest", an_edited_load_has_the_solution_of_a_start_at_rest),
-    ("a_huge_load_does_not_affect_later_solves", a_huge_load_does_not_affect_later_solves),
-    ("a_restored_state_continues_as_the_saved_one", a_restored_state_continues_as_the_saved_one),
-    ("a_running_state_is_reported_as_running", a_running_state_is_reported_as_running),
-];
+const TESTS: &[Test<MethodKind>] = tests! {
+    the_id_is_the_name_in_scene_files no_other_method_has_the_same_colour an_axial_bar_stretches_by_pl_over_ea
+    without_load_nothing_moves extremes_stay_finite an_edited_load_has_the_solution_of_a_start_at_rest
+    a_huge_load_does_not_affect_later_solves a_restored_state_continues_as_the_saved_one
+    a_running_state_is_reported_as_running
+};
 
 pub fn trials() -> Vec<Trial> {
     suite("method", METHODS.iter().map(|m| (m.id.to_owned(), m.kind)), TESTS)
@@ -38,11 +33,6 @@ fn no_other_method_has_the_same_colour(kind: MethodKind) {
     }
 }
 
-fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
-    scene.solver.method = method;
-    scene
-}
-
 fn ended(scene: &Scene) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
     simulation.solve();
@@ -52,7 +42,7 @@ fn ended(scene: &Scene) -> Simulation {
 /// The extension is δ = P L / (E A) on every mesh.
 fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
     for cells in ["[1,1]", "[16,2]", "[7,3]"] {
-        let scene = with_method(scene_with("stretch", &[&format!("beam.cells={cells}")]), method);
+        let scene = scene_with("stretch", &[&format!("beam.cells={cells}")]).with_method(method);
         let simulation = ended(&scene);
         assert_eq!(*simulation.status(), Status::Converged);
         let result = simulation.solution();
@@ -63,7 +53,7 @@ fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
 }
 
 fn without_load_nothing_moves(method: MethodKind) {
-    let scene = with_method(scene_with("cantilever", &["load.0.force=[0,0]"]), method);
+    let scene = scene_with("cantilever", &["load.0.force=[0,0]"]).with_method(method);
     let simulation = ended(&scene);
     assert_eq!(*simulation.status(), Status::Converged);
     assert!(simulation.displacement().iter().all(|u| *u == Vector2::zeros()));
@@ -71,24 +61,13 @@ fn without_load_nothing_moves(method: MethodKind) {
 
 /// With extreme values of every kind there is no panic, all results are finite, and the status has a message.
 fn extremes_stay_finite(method: MethodKind) {
-    let sets: &[&[&str]] = &[
-        &["load.0.force=[0,-1e15]"],
-        &["load.0.force=[1e15,0]"],
-        &["load.0.force=[-1e15,0]"],
-        &["load.0.force=[0,0]"],
-        &["material.young=1e15", "load.0.force=[0,-1e-9]"],
-        &["material.young=1e-6", "load.0.force=[0,-1e15]"],
-        &["material.poisson=0.4999", "material.plane=strain"],
-        &["material.poisson=-0.99"],
-        &["beam.length=1e5"],
-        &["beam.length=1e-6", "beam.height=1e-6"],
-        &["beam.height=1e-3", "beam.cells=[100,1]"],
-        &["solver.tolerance=1e-14"],
-        &["beam.cells=[1,1]"],
-    ];
+    const SETS: &str = "load.0.force=[0,-1e15]|load.0.force=[1e15,0]|load.0.force=[-1e15,0]|load.0.force=[0,0]|\
+        material.young=1e15 load.0.force=[0,-1e-9]|material.young=1e-6 load.0.force=[0,-1e15]|\
+        material.poisson=0.4999 material.plane=strain|material.poisson=-0.99|beam.length=1e5|\
+        beam.length=1e-6 beam.height=1e-6|beam.height=1e-3 beam.cells=[100,1]|solver.tolerance=1e-14|beam.cells=[1,1]";
     for id in ["cantilever", "article"] {
-        for set in sets {
-            let mut simulation = ended(&with_method(scene_with(id, set), method));
+        for set in SETS.split('|') {
+            let mut simulation = ended(&scene_with(id, &set.split(' ').collect::<Vec<_>>()).with_method(method));
             assert_ne!(*simulation.status(), Status::Running);
             simulation.certify();
             let s = simulation.solution();
@@ -126,7 +105,7 @@ fn difference(a: &Simulation, b: &Simulation) -> f64 {
 
 /// After any edit of a solved body, the result is that of a solve from rest.
 fn an_edited_load_has_the_solution_of_a_start_at_rest(method: MethodKind) {
-    let start = with_method(scene_with("cantilever", &["solver.tolerance=1e-10"]), method);
+    let start = scene_with("cantilever", &["solver.tolerance=1e-10"]).with_method(method);
     let edits: &[&[&str]] = &[
         &["load.0.force=[0,-1300]"],
         &["load.0.force=[200,-700]"],
@@ -143,7 +122,7 @@ fn an_edited_load_has_the_solution_of_a_start_at_rest(method: MethodKind) {
     for edit in edits {
         let mut edited = ended(&start);
         let all: Vec<&str> = edit.iter().copied().chain(["solver.tolerance=1e-10"]).collect();
-        let scene = with_method(scene_with("cantilever", &all), method);
+        let scene = scene_with("cantilever", &all).with_method(method);
         edited.change_scene(&scene).unwrap();
         assert_eq!(edited.scene(), &scene);
         let fresh = ended(&scene);
@@ -159,7 +138,7 @@ fn an_edited_load_has_the_solution_of_a_start_at_rest(method: MethodKind) {
 fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
     for id in ["article", "cantilever"] {
         for force in [1e12, -1e12, 1e15] {
-            let mut simulation = ended(&with_method(scene(id), method));
+            let mut simulation = ended(&scene(id).with_method(method));
             for (horizontal, vertical) in [(0.0, force), (force, 0.0)] {
                 simulation.set_force(LoadId::nth(0), [horizontal, vertical]).unwrap();
                 simulation.solve();
@@ -173,7 +152,7 @@ fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
             simulation.solve();
             simulation.set_force(LoadId::nth(0), [0.0, -100.0]).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then 100 N");
-            let mut small = with_method(scene(id), method);
+            let mut small = scene(id).with_method(method);
             small.set_force(LoadId::nth(0), [0.0, -100.0]).unwrap();
             let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
             assert!(difference(&simulation, &ended(&small)) < close, "{id}: {force:e}, then 100 N");
@@ -182,7 +161,7 @@ fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
 }
 
 fn a_restored_state_continues_as_the_saved_one(method: MethodKind) {
-    let mut simulation = ended(&with_method(scene("cantilever"), method));
+    let mut simulation = ended(&scene("cantilever").with_method(method));
     let saved = simulation.state().clone();
     simulation.set_force(LoadId::nth(0), [0.0, 500.0]).unwrap();
     simulation.solve();
@@ -200,7 +179,7 @@ fn a_restored_state_continues_as_the_saved_one(method: MethodKind) {
 }
 
 fn a_running_state_is_reported_as_running(method: MethodKind) {
-    let mut simulation = Simulation::new(&with_method(scene("cantilever"), method)).unwrap();
+    let mut simulation = Simulation::new(&scene("cantilever").with_method(method)).unwrap();
     assert_eq!((simulation.status(), simulation.status().id()), (&Status::Running, "running"));
     assert!(simulation.status().failure().is_none());
     assert_eq!(simulation.certify(), Default::default(), "nothing is certified before the end");

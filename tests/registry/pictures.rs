@@ -12,7 +12,7 @@ use warpbeam::scene::registry;
 use warpbeam::{MaterialPoint, Place};
 
 use crate::common::pictures::{difference, distance, for_picture, lab, pixel, read_png};
-use crate::common::{stderr, warpbeam};
+use crate::common::succeeds;
 use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
@@ -29,8 +29,7 @@ pub fn trials() -> Vec<Trial> {
     suite("picture", registry::BUILT_IN.iter().map(|b| (b.id.to_owned(), b.id)), TESTS)
 }
 
-/// Compares the output of `warpbeam shot` with the golden picture, without the panel (whose
-/// times differ from run to run).
+/// Compares the output of `warpbeam shot` with the golden picture, without the panel, whose times differ.
 fn is_golden(id: &str, [size, theme]: [&str; 2], golden: &str) {
     const TOLERANCE: f64 = 2e-3;
     let folder = tempfile::tempdir().unwrap();
@@ -38,8 +37,7 @@ fn is_golden(id: &str, [size, theme]: [&str; 2], golden: &str) {
     let to = path.to_str().unwrap();
     let mut args = vec!["shot", id, "-o", to, "--size", size, "--no-panel", "--theme", theme];
     args.extend(for_picture(id).iter().flat_map(|set| ["--set", set]));
-    let output = warpbeam(&args);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    succeeds(&args);
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         std::fs::copy(&path, golden).unwrap();
     }
@@ -63,15 +61,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let picture = picture(&gpu, &mut lab, [900, 600], 1.0, egui::Theme::Dark).unwrap();
     let (camera, rect) = (lab.camera(), lab.view_rect());
     let frame = lab.frame();
-    let positions: Vec<_> = lab
-        .simulation()
-        .system()
-        .mesh()
-        .nodes()
-        .iter()
-        .zip(lab.simulation().displacement())
-        .map(|(x, u)| x + u)
-        .collect();
+    let positions: Vec<_> = lab.simulation().positions().collect();
     // Triangles with straight sides are drawn one for one.
     if lab.scene().element() == warpbeam::scene::ElementKind::T3 {
         for (drawn, solved) in frame.triangles.iter().zip(lab.simulation().system().mesh().elements()) {

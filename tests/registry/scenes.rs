@@ -12,22 +12,17 @@ use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Simulation, Statu
 use crate::common::{ids_of, scene, scene_ids};
 use crate::{Test, suite};
 
-const TESTS: &[Test<&'static str>] = &[
-    ("the_scene_has_a_description_and_a_probe", the_scene_has_a_description_and_a_probe),
-    ("the_scene_is_unchanged_by_writing_and_reading_toml", the_scene_is_unchanged_by_writing_and_reading_toml),
-];
+const TESTS: &[Test<&'static str>] = tests! {
+    the_scene_has_a_description_and_a_probe the_scene_is_unchanged_by_writing_and_reading_toml
+};
 
-const STATIC: &[Test<&'static str>] = &[
-    ("reactions_balance_the_loads", reactions_balance_the_loads),
-    ("linear_theory_obeys_clapeyron", linear_theory_obeys_clapeyron),
-    ("every_element_converges", every_element_converges),
-    ("warped_ends_where_newton_does", warped_ends_where_newton_does),
-];
+const STATIC: &[Test<&'static str>] = tests! {
+    reactions_balance_the_loads linear_theory_obeys_clapeyron every_element_converges warped_ends_where_newton_does
+};
 
-const DYNAMIC: &[Test<&'static str>] = &[
-    ("the_scene_runs_to_its_end", the_scene_runs_to_its_end),
-    ("the_scene_moves_under_every_integrator_and_element", the_scene_moves_under_every_integrator_and_element),
-];
+const DYNAMIC: &[Test<&'static str>] = tests! {
+    the_scene_runs_to_its_end the_scene_moves_under_every_integrator_and_element
+};
 
 pub fn trials() -> Vec<Trial> {
     let named = |ids: Vec<&'static str>| ids.into_iter().map(|id| (id.to_owned(), id));
@@ -73,9 +68,7 @@ fn the_scene_moves_under_every_integrator_and_element(id: &'static str) {
             scene.dynamics.time_step = 0.9 * critical;
             simulation = Simulation::new(&scene).unwrap();
         }
-        for _ in 0..20 {
-            simulation.step();
-        }
+        (0..20).for_each(|_| _ = simulation.step());
         assert_eq!(*simulation.status(), Status::Running, "{} {}", integrator.id, element.id);
         assert!(simulation.state().is_finite());
         assert!(simulation.state().velocity().iter().any(|v| v.norm() > 0.0), "{} {}", integrator.id, element.id);
@@ -99,15 +92,10 @@ fn the_scene_is_unchanged_by_writing_and_reading_toml(id: &'static str) {
     assert_eq!(scene, again);
 }
 
-fn with_method(mut scene: Scene, method: MethodKind) -> Scene {
-    scene.solver.method = method;
-    scene
-}
-
 /// Reactions and loads are in equilibrium for every method that converges, as forces and as moments about the origin.
 fn reactions_balance_the_loads(id: &'static str) {
     for method in METHODS {
-        let mut simulation = Simulation::new(&with_method(scene(id), method.kind)).unwrap();
+        let mut simulation = Simulation::new(&scene(id).with_method(method.kind)).unwrap();
         // Some scenes demonstrate where the warped iteration does not converge.
         if *simulation.solve() != Status::Converged {
             assert_eq!(method.kind, MethodKind::Warped, "{:?}", simulation.status());
@@ -138,10 +126,9 @@ fn reactions_balance_the_loads(id: &'static str) {
     }
 }
 
-/// Clapeyron's theorem: loads at full size and moved supports do twice the work that is stored. The work of supports is
-/// integrated along the path and is therefore half of the work at full size.
+/// Loads at full size and moved supports do twice the work that is stored; along the path it is half of that.
 fn linear_theory_obeys_clapeyron(id: &'static str) {
-    let mut simulation = Simulation::new(&with_method(scene(id), MethodKind::Linear)).unwrap();
+    let mut simulation = Simulation::new(&scene(id).with_method(MethodKind::Linear)).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
     let energy = simulation.solution().energy;
     assert!(energy.elastic > 0.0);
@@ -151,7 +138,7 @@ fn linear_theory_obeys_clapeyron(id: &'static str) {
 
 fn every_element_converges(id: &'static str) {
     for element in scene(id).elements().map(ElementKind::entry) {
-        let mut scene = with_method(scene(id), MethodKind::Newton);
+        let mut scene = scene(id).with_method(MethodKind::Newton);
         scene.set_element(element.kind);
         let mut simulation = Simulation::new(&scene).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged, "{}", element.id);
@@ -164,10 +151,10 @@ fn every_element_converges(id: &'static str) {
 fn warped_ends_where_newton_does(id: &'static str) {
     let mut scene = scene(id);
     (scene.solver.tolerance, scene.solver.max_iterations) = (1e-10, 500);
-    let mut newton = Simulation::new(&with_method(scene.clone(), MethodKind::Newton)).unwrap();
+    let mut newton = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
     assert_eq!(*newton.solve(), Status::Converged);
     let rho = newton.certify().fixed_point_rho.unwrap();
-    let mut warped = Simulation::new(&with_method(scene, MethodKind::Warped)).unwrap();
+    let mut warped = Simulation::new(&scene.with_method(MethodKind::Warped)).unwrap();
     let status = warped.solve().clone();
     if rho < 0.98 {
         assert_eq!(status, Status::Converged, "ρ = {rho}");
