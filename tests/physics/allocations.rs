@@ -35,7 +35,6 @@ fn time_steps_allocate_nothing() {
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));
                 let made = allocations(|| (0..20).for_each(|_| drop(simulation.step().clone())));
                 assert_eq!(made, 0, "{id} {} {} {iterations} {method:?}", integrator.id, element.id);
-                // A pull of the mouse spring allocates nothing either.
                 let point = simulation.system().mesh().locate(simulation.system().mesh().nodes()[1]).unwrap();
                 assert!(simulation.grab(point));
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));

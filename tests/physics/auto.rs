@@ -13,9 +13,7 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
 }
 
 fn run(scene: &Scene, method: MethodKind) -> Simulation {
-    let mut scene = scene.clone();
-    scene.solver.method = method;
-    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut simulation = Simulation::new(&scene.clone().with_method(method)).unwrap();
     simulation.solve();
     simulation
 }
@@ -30,8 +28,7 @@ fn report(simulation: &Simulation) -> AutoReport {
     simulation.equilibrium().unwrap().auto_report().unwrap()
 }
 
-/// For every scene and element and loads over five decades, the result is within the requested error of Newton's.
-/// Linear theory is used where it is accurate enough, and nowhere else.
+/// Over five decades of loads. Linear theory is used where it is accurate enough, and nowhere else.
 #[test]
 fn every_result_is_within_the_requested_error() {
     let mut served = 0;
@@ -63,8 +60,7 @@ fn every_result_is_within_the_requested_error() {
     assert!(5 * served > 2 * cases.len(), "{served} of {}", cases.len());
 }
 
-/// A load that grows and rotates a little in every frame, as with a slider: most frames reuse the old factor, and every
-/// frame is within the requested error.
+/// The load grows and rotates a little in every frame; every frame is within the requested error.
 #[test]
 fn a_dragged_load_seldom_needs_a_new_factor() {
     for id in ["cantilever", "elastica"] {
@@ -89,14 +85,8 @@ fn drag(mut scene: Scene, frames: u32, asked: f64) {
             Load::Force { place, .. } => Load::force(place.clone(), turned),
             other => other.clone(),
         };
-        let simulation = match auto.take() {
-            None => Simulation::new(&scene).unwrap(),
-            Some(mut simulation) => {
-                simulation.change_scene(&scene).unwrap();
-                simulation
-            }
-        };
-        let simulation = auto.insert(simulation);
+        let simulation = auto.get_or_insert_with(|| Simulation::new(&scene).unwrap());
+        simulation.change_scene(&scene).unwrap();
         simulation.solve();
         let exact = run(&scene, MethodKind::Newton);
         let error = distance(simulation, &exact);
@@ -114,8 +104,7 @@ fn auto_does_not_solve_an_unchanged_scene_again() {
     for factor in [1e-3, 1.0] {
         let mut scene = scaled(&scene("elastica"), factor);
         scene.solver.method = MethodKind::Auto;
-        let mut auto = Simulation::new(&scene).unwrap();
-        auto.solve();
+        let mut auto = run(&scene, MethodKind::Auto);
         assert!(auto.iterations() > 0);
         let before = auto.displacement().to_vec();
         scene.probes[0].name = "another name".to_owned();
@@ -146,8 +135,7 @@ fn auto_does_not_solve_an_unchanged_scene_again() {
 fn under_small_loads_nothing_is_factorized() {
     let mut scene = scaled(&scene("cantilever"), 1e-3);
     scene.solver.method = MethodKind::Auto;
-    let mut auto = Simulation::new(&scene).unwrap();
-    auto.solve();
+    let mut auto = run(&scene, MethodKind::Auto);
     for frame in 0..5 {
         scene = scaled(&scene, 0.9);
         auto.change_scene(&scene).unwrap();
@@ -163,8 +151,7 @@ fn a_new_stiffness_is_factorized_again() {
     for factor in [1e-3, 1.0] {
         let mut scene = scaled(&scene("elastica"), factor);
         scene.solver.method = MethodKind::Auto;
-        let mut auto = Simulation::new(&scene).unwrap();
-        auto.solve();
+        let mut auto = run(&scene, MethodKind::Auto);
         for change in [|s: &mut Scene| s.material.young *= 1.5, |s: &mut Scene| s.material.thickness *= 0.7] {
             change(&mut scene);
             auto.change_scene(&scene).unwrap();

@@ -33,9 +33,7 @@ fn solved_like(row: &Row) -> Simulation {
     solved(&scene_with(row.scene, &[&set[0], &set[1]]))
 }
 
-/// Linear theory agrees to the six digits that CalculiX prints, except in plane stress, where CalculiX expands a
-/// triangle to a thin wedge with shear across its thickness. With large rotations, CalculiX's Saint-Venant-Kirchhoff
-/// law differs to the order of the strain.
+/// To six digits, except in plane stress (CalculiX shears a wedge) and large rotations (to the order of the strain).
 #[test]
 fn displacements_are_those_of_calculix() {
     let rows = rows();

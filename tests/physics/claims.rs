@@ -43,7 +43,6 @@ impl Claims {
     fn check_result(&mut self, claim: &Claim, seed: u64, simulation: &Simulation) {
         match claim {
             Claim::Converged { .. } => {
-                // Further iterations do not move the body.
                 let mut scene = simulation.scene().clone();
                 scene.solver.tolerance = 1e-14;
                 let mut further = Simulation::with_system(&scene, simulation.system().clone()).unwrap();
@@ -84,7 +83,7 @@ fn critical(claims: &[Claim]) -> Option<f64> {
 /// Returns the largest distance of a node between two displacements, m, relative to the largest displacement.
 fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     let largest = a.iter().chain(b).map(|u| u.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / largest
+    crate::common::largest_distance(a, b) / largest
 }
 
 /// Returns the smallest eigenvalue of the exact stiffness relative to the largest, from central differences of forces.
@@ -121,8 +120,7 @@ fn smallest_eigenvalue(simulation: &Simulation) -> f64 {
     eigenvalues.min() / eigenvalues.amax()
 }
 
-/// Returns the factor by which a small disturbance of an equilibrium grows or shrinks in an iteration of `warped`; `None`
-/// if rounding errors hide it.
+/// Returns the growth of a small disturbance in an iteration of `warped`; `None` if rounding errors hide it.
 fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
     let mut scene = equilibrium.scene().clone().with_method(MethodKind::Warped);
     scene.solver.tolerance = 1e-14;
@@ -171,8 +169,7 @@ fn claims_about_random_scenes_are_true() {
         scene.solver.accept_after = 0;
         let with = |method| Simulation::new(&scene.clone().with_method(method));
         let Ok(mut newton) = with(MethodKind::Newton) else { continue };
-        let is_solved = *newton.solve() == Status::Converged;
-        if !is_solved {
+        if *newton.solve() != Status::Converged {
             // Short bodies under large moments are crushed before the full load.
             unsolved += 1;
             continue;
@@ -201,19 +198,15 @@ fn claims_about_random_scenes_are_true() {
             });
         }
     }
-    println!("{:?}", claims.checked);
     assert!(claims.wrong.is_empty(), "{:#?}", claims.wrong);
     assert!(unsolved <= count / 20, "{unsolved} of {count} not solved");
-    // None of the checks is skipped.
     for kind in ["converged", "stable", "disturbance", "warped converges", "auto's error"] {
         let checked = claims.checked.get(kind).copied().unwrap_or_default() as usize;
         assert!(checked >= count / 30, "{kind}: {claims:?}");
     }
 }
 
-/// Claims near critical loads: a perfect column is unstable just above the load at which it is said to buckle, and
-/// stable just below; an arch jumps at the largest force that holds it under a prescribed displacement; an imperfection
-/// leads to a stable state.
+/// A perfect column buckles, an arch jumps at the largest force that holds it, an imperfect body stays stable.
 #[test]
 fn claims_near_critical_loads_are_true() {
     let first: u64 = std::env::var("WARPBEAM_SEED").map_or(500, |seed| seed.parse().unwrap());
@@ -231,17 +224,11 @@ fn claims_near_critical_loads_are_true() {
         let near = random.between(1.2, 2.5);
         let newton = |scene: Scene| solved(&scene.with_method(MethodKind::Newton));
         match seed % 3 {
-            // Columns and strips without an imperfection.
             kind @ (0 | 1) => {
                 let push = |part: f64, side: f64| {
                     let end = if kind == 0 { "right".into() } else { Place::from([0.5 * slenderness, 0.5]) };
-                    let scene = beam.clone().clamp("left").force(
-                        end,
-                        match kind {
-                            0 => [-0.25 * near * part * euler, side],
-                            _ => [0.0, side],
-                        },
-                    );
+                    let along = if kind == 0 { -0.25 * near * part * euler } else { 0.0 };
+                    let scene = beam.clone().clamp("left").force(end, [along, side]);
                     match kind {
                         0 => scene,
                         _ => scene.clamp("right").moved([-4.0 * near * part * euler / 1e6 * slenderness, 0.0], 0.0),
@@ -262,7 +249,6 @@ fn claims_near_critical_loads_are_true() {
                 for claim in &stated {
                     claims.check_result(claim, seed, &column);
                 }
-                // The same critical load is stated below it and by linear theory, and not far below it.
                 let is_near = |scene: Scene, expected: f64| {
                     critical(&claims_of(&mut solved(&scene))).is_some_and(|at| (at / expected - 1.0).abs() < 1e-3)
                 };
@@ -287,7 +273,6 @@ fn claims_near_critical_loads_are_true() {
                     claims.check("elsewhere", seed, is_true, || format!("{stated:?}"));
                 }
             }
-            // Arches, loaded and moved at their crown.
             _ => {
                 let rise = random.between(1.5, 4.0);
                 beam.beam.as_mut().unwrap().rise = rise;
@@ -301,17 +286,12 @@ fn claims_near_critical_loads_are_true() {
                 });
                 // A buckling arch leaves this path.
                 let Some([motion, reaction]) = limit.filter(|_| path.is_plain()) else { continue };
-                // No state nearby has a larger reaction.
                 let held = [0.99, 1.01].map(|part| {
                     let at = arch.clone().support(crown, &[Axis::Y]).moved([0.0, -motion * part], 0.0);
                     newton(at).solution().supports[2].force.y.abs()
                 });
-                claims.check(
-                    "limit_load",
-                    seed,
-                    held.iter().all(|held| *held <= reaction.abs() * (1.0 + 1e-6)),
-                    || format!("{reaction} at {motion}, {held:?}"),
-                );
+                let is_largest = held.iter().all(|held| *held <= reaction.abs() * (1.0 + 1e-6));
+                claims.check("limit_load", seed, is_largest, || format!("{reaction} at {motion}, {held:?}"));
                 let load = 1.3 * reaction.abs();
                 let stated = claims_of(&mut newton(arch.clone().force(crown, [0.0, -load])));
                 let jump = stated.iter().find_map(|claim| match claim {
@@ -328,7 +308,6 @@ fn claims_near_critical_loads_are_true() {
             }
         }
     }
-    println!("{:?}", claims.checked);
     assert!(claims.wrong.is_empty(), "{:#?}", claims.wrong);
     for kind in ["buckles", "critical", "helps", "elsewhere", "unstable", "limit_load", "jumps", "does not jump"] {
         let checked = claims.checked.get(kind).copied().unwrap_or_default() as usize;
@@ -339,16 +318,13 @@ fn claims_near_critical_loads_are_true() {
 /// Claims of a study agree with its table.
 #[test]
 fn claims_of_a_study_are_those_of_its_table() {
-    let study =
-        Study::new(&crate::common::scene("cantilever"), Extent::Quick, &|_| std::ops::ControlFlow::Continue(()))
-            .unwrap();
-    let table = study.table();
-    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let names = rows.next().unwrap();
+    let scene = crate::common::scene("cantilever");
+    let study = Study::new(&scene, Extent::Quick, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+    let csv = study.table();
+    let (names, rows) = crate::common::table(&csv);
     let of = |row: &[&str], name: &str| -> f64 {
         row[names.iter().position(|n| *n == name).unwrap()].parse().unwrap_or(f64::INFINITY)
     };
-    let rows: Vec<_> = rows.collect();
     let mut kinds = Vec::new();
     for percent in [50.0, 10.0, 3.0, 1.0, 0.3, 1e-3, 1e-9] {
         let within = rows.iter().filter(|row| of(row, "at_most_percent") <= percent);

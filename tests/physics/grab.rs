@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::common::random::Random;
 use crate::common::{ids_of, sampled, scene};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::assembly::{Forces, Kinematics, Mass};
@@ -27,8 +28,7 @@ fn held(scene: &Scene) -> Simulation {
     simulation
 }
 
-/// A body at rest settles in equilibrium with the spring: supports carry loads and spring force, and the force is that
-/// of the spring, up to its limit.
+/// Supports carry loads and spring force, and the force is that of the spring, up to its limit.
 #[test]
 fn a_pulled_body_settles_where_the_spring_balances() {
     for (id, element) in
@@ -66,8 +66,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
     }
 }
 
-/// Under a pointer that jumps wildly, every motion stays finite under every integrator, and its energy ledger balances.
-/// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases, and are then stopped.
+/// Implicit motions are never stopped; explicit ones may run away, in about one of ten cases.
 #[test]
 fn random_pulls_never_break_a_motion() {
     let kinds = || IntegratorKind::all().map(IntegratorKind::entry).flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)));
@@ -77,17 +76,14 @@ fn random_pulls_never_break_a_motion() {
         scene.set_element(element.kind);
         scene.dynamics.integrator = integrator.kind;
         if integrator.is_explicit() {
-            scene.dynamics.time_step =
-                0.3 * Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
+            let critical = Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
+            scene.dynamics.time_step = 0.3 * critical;
         }
         let case = format!("{id} {} {}", integrator.id, element.id);
         let mut simulation = held(&scene);
         let (size, start) = (simulation.system().size(), simulation.mouse_spring().unwrap().0.target());
-        let mut random = 1_u64;
-        let mut next = || {
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (random >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-        };
+        let mut random = Random(1);
+        let mut next = || random.between(-1.0, 1.0);
         for frame in 0..40 {
             // Within the range of a large screen, and once far beyond it.
             let reach = if frame == 20 { 1e9 } else { 3.0 };
@@ -124,8 +120,7 @@ fn a_grab_needs_a_point_of_the_mesh_and_a_finite_target() {
     assert!(simulation.state().is_finite());
 }
 
-/// The spring pulls the free end of a bent beam, below its force limit and far beyond it: the balancing force is the
-/// negative gradient of the energy, by finite differences.
+/// Below its force limit and far beyond it, by finite differences.
 #[test]
 fn the_mouse_spring_force_is_the_negative_gradient_of_its_energy() {
     const STEP: f64 = 1e-6;
@@ -146,11 +141,10 @@ fn the_mouse_spring_force_is_the_negative_gradient_of_its_energy() {
             let (state, mut forces) = (state_of(&u), Forces::new(u.len()));
             problem.linearize(&state, &mut forces, None);
             problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
-            let force = problem.mouse_spring().unwrap().force_at_rest(&u);
-            let stretch = problem.mouse_spring().unwrap().target() - problem.mouse_spring().unwrap().position(&u);
+            let spring = problem.mouse_spring().unwrap();
+            let (force, stretch) = (spring.force_at_rest(&u), spring.target() - spring.position(&u));
             assert!(force.perp(&stretch).abs() < 1e-9 * force.norm() * stretch.norm(), "along the spring");
-            let (k, cap) =
-                (problem.mouse_spring().unwrap().stiffness(), problem.mouse_spring().unwrap().largest_force());
+            let (k, cap) = (spring.stiffness(), spring.largest_force());
             assert!((force.norm() - (k * stretch.norm()).min(cap)).abs() < 1e-9 * force.norm());
             assert_eq!(k * stretch.norm() > cap, pull.norm() > 1.0, "one within the reach, one beyond");
             let scale = force.norm();
@@ -188,9 +182,7 @@ fn the_mouse_spring_energy_is_smooth_at_its_reach() {
     }
 }
 
-/// Stiffness of the spring: a free body swings on it at 5 Hz by its whole mass, damped by 0.7 of the critical damping.
-/// On a supported body that is stiffer than that, it is ten times as stiff as the body at the grabbed point. In linear
-/// theory one solve finds the equilibrium.
+/// A free body swings at 5 Hz, damped by 0.7; a stiffer body is held ten times as stiffly as it is at the point.
 #[test]
 fn the_mouse_spring_has_its_stated_stiffness() {
     let scene = Scene::beam(4.0, 1.0).with_cells(8, 2).with_material(Material::new(1e6, 0.3));
@@ -238,8 +230,7 @@ fn the_mouse_spring_has_its_stated_stiffness() {
     assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
 }
 
-/// A free body follows a pointer that moves steadily: after a while it moves at the same velocity, with a slack spring
-/// at every instant of every step.
+/// With a slack spring at every instant of every step.
 #[test]
 fn a_body_goes_along_with_a_steady_pointer() {
     let (h, velocity) = (1.0 / 60.0, Vector2::new(0.3, -0.2));
@@ -276,8 +267,7 @@ fn a_body_goes_along_with_a_steady_pointer() {
     }
 }
 
-/// If a grabbed body gets a support, it stays grabbed, and the spring's stiffness is entered correctly in the new
-/// matrix, so that steps converge as before.
+/// The spring's stiffness is entered in the new matrix, so that steps converge as before.
 #[test]
 fn a_grab_survives_a_new_support() {
     let mut scene = Scene::beam(2.0, 0.5).with_cells(8, 2).with_material(Material::new(1e5, 0.3));
@@ -302,8 +292,7 @@ fn a_grab_survives_a_new_support() {
     assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
 }
 
-/// An explicit step limits the spring's stiffness to a quarter of the moved mass over h². Against the stiffness of a
-/// beam, it displaces a corner accordingly, and the corner comes to rest there, because the damping is limited too.
+/// To a quarter of the moved mass over h²; the damping is limited too, so that the corner comes to rest.
 #[test]
 fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
     let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");
@@ -333,12 +322,8 @@ fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
         assert_eq!(simulation.motion().unwrap().counts().halvings, 0);
         let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped()[node as usize];
         let (spring, _) = simulation.mouse_spring().unwrap();
-        let soft = 0.25 * mass / (h * h);
-        assert!(
-            soft < 0.9 * spring.stiffness(),
-            "the step is too long for the hand as it is: {soft} {}",
-            spring.stiffness()
-        );
+        let (soft, own) = (0.25 * mass / (h * h), spring.stiffness());
+        assert!(soft < 0.9 * own, "the step is too long for the hand as it is: {soft} {own}");
         let expected = compliance * (compliance + Matrix2::identity() / soft).try_inverse().unwrap() * pull;
         let found = spring.position(simulation.displacement()) - corner;
         assert!((found - expected).norm() < 1e-3 * pull.norm(), "{part}: {found} {expected}");
@@ -346,8 +331,7 @@ fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
     }
 }
 
-/// After a jelly has been pulled hard and released, the drift is a share of the energy from the spring: almost zero for
-/// energy–momentum, the usual dissipation for implicit Euler, and no gain of energy for any integrator.
+/// Relative to the spring's energy: none for energy–momentum, and no gain for any integrator.
 #[test]
 fn a_hard_pull_leaves_the_expected_drift_of_every_integrator() {
     for (integrator, range) in [
@@ -390,22 +374,17 @@ fn the_drift_is_relative_to_the_energy_input() {
     let ledger = *simulation.motion().unwrap().ledger();
     let lost = (ledger.kinetic + ledger.elastic + ledger.dissipated) / (first.kinetic + first.elastic) - 1.0;
     assert!(lost < -0.002 && (ledger.drift_of_input() - lost).abs() < 1e-9, "{lost} {ledger:?}");
-    // A body at rest gets no energy.
     let still = Scene::beam(2.0, 1.0).clamp("left").moving(IntegratorKind::EnergyMomentum, 0.01);
     let mut still = Simulation::new(&still).unwrap();
     assert!((0..5).all(|_| *still.step() == Status::Running));
     assert_eq!(still.motion().unwrap().ledger().drift_of_input(), 0.0);
 }
 
-/// A body that is dragged at random, held and released: the work of the spring, whose end moves, is in the ledger, which
-/// closes. Integrators add no energy, and those of second order lose little of it by the drag.
+/// Integrators add no energy, and those of second order lose little of it by the drag.
 #[test]
 fn the_work_of_a_drag_is_in_the_ledger() {
-    let mut random = 1_u64;
-    let mut next = || {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (random >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-    };
+    let mut random = Random(1);
+    let mut next = || random.between(-1.0, 1.0);
     for id in ["jelly", "swing", "sway"] {
         let drags = |scene: &Scene, speed: f64, next: &mut dyn FnMut() -> f64| {
             let mut simulation = Simulation::new(scene).unwrap();

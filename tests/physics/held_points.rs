@@ -22,9 +22,7 @@ fn on_two_points([pin, roller]: [[f64; 2]; 2], force: Vector2<f64>) -> Scene {
     scene.probe("pin", pin).probe("roller", roller).probe("tip", "right")
 }
 
-/// Reactions of a statically determinate beam are those of statics: about the points at rest in linear theory, and about
-/// those of now in large rotations. The points stay where they are held, on every element, in a cell, on a side, two in
-/// one cell, and two in cells side by side.
+/// Of a determinate beam, on every element: in a cell, on a side, two in one cell, two side by side.
 #[test]
 fn points_stay_and_their_reactions_are_those_of_statics() {
     let mut random = Random(7);
@@ -98,29 +96,41 @@ fn the_tangent_is_the_derivative_of_the_forces() {
     }
 }
 
-/// A point at a node is that node, one outside the body is the nearest node and says so, and one between nodes is not
-/// moved. Its beam is that of a mesh with a node there, which the reference has.
+/// A point outside the body is the nearest node and says so; the reference is of the point itself.
 #[test]
 fn nodes_and_points_agree_where_they_are_one() {
-    let beam =
-        || Scene::beam(10.0, 1.0).with_cells(20, 2).clamp("left").force("right", [0.0, -2e3]).probe("tip", "right");
+    let force = [0.0, -2e3];
+    let beam = Scene::beam(10.0, 1.0).with_cells(20, 2).clamp("left").probe("tip", "right");
+    let bent = beam.clone().force("right", force);
     let tip = |scene: &Scene| solved(scene).probe("tip").unwrap();
-    let [node, point] = [beam().support([7.5, 0.5], &[Axis::Y]), beam().point_support([7.5, 0.5], &[Axis::Y])];
-    assert!((tip(&node) - tip(&point)).norm() < 1e-9 * tip(&node).norm());
     let moved = |scene: &Scene| moved_points(scene, Simulation::new(scene).unwrap().mesh()).len();
-    let outside = beam().point_support([7.5, 0.6], &[Axis::Y]);
-    assert!((tip(&outside) - tip(&node)).norm() < 1e-9 * tip(&node).norm());
-    assert_eq!(moved(&outside), 1);
-    let between = beam().point_support([7.7, 0.25], &[Axis::Y]);
-    assert_eq!([moved(&between), moved(&beam().support([7.7, 0.25], &[Axis::Y]))], [0, 1]);
-    let fine = beam().with_cells(200, 20).with_element(ElementKind::T6).support([7.7, 0.25], &[Axis::Y]);
-    let reference = Reference::of(&between).unwrap().first().unwrap();
-    let off = (reference.displacement - tip(&fine)).norm() / tip(&fine).norm();
-    assert!(off < 2e-3, "{off}");
+    // Puts a support or a force on a scene, at the point itself or at its node.
+    type Put<'a> = &'a dyn Fn(Scene, [f64; 2], bool) -> Scene;
+    let hold: Put<'_> = &|scene, at, at_point| match at_point {
+        true => scene.point_support(at, &[Axis::Y]),
+        false => scene.support(at, &[Axis::Y]),
+    };
+    let pull: Put<'_> =
+        &|scene, at, at_point| if at_point { scene.point_force(at, force) } else { scene.force(at, force) };
+    for (scene, put, close) in [(bent, hold, 2e-3), (beam, pull, 1e-3)] {
+        let at = |place: [f64; 2], at_point: bool| put(scene.clone(), place, at_point);
+        let [node, point, outside] = [at([7.5, 0.5], false), at([7.5, 0.5], true), at([7.5, 0.6], true)]
+            .map(|scene| (tip(&scene), moved(&scene)));
+        for off in [point.0 - node.0, outside.0 - node.0] {
+            assert!(off.norm() < 1e-9 * node.0.norm(), "{off}");
+        }
+        // Between two nodes the nearest one is .2 m away.
+        let between = [7.7, 0.25];
+        assert_eq!([outside.1, moved(&at(between, true)), moved(&at(between, false))], [1, 0, 1]);
+        // The same on a mesh with a node there.
+        let fine = put(scene.clone().with_cells(200, 20).with_element(ElementKind::T6), between, false);
+        let reference = Reference::of(&at(between, true)).unwrap().first().unwrap();
+        let off = (reference.displacement - tip(&fine)).norm() / tip(&fine).norm();
+        assert!(off < close, "{off}");
+    }
 }
 
-/// Points that are moved do the work that is stored: with all of a body moved alike nothing is strained, and otherwise
-/// the work along the path is the elastic energy.
+/// The work along the path is the elastic energy; with all points moved alike there is none.
 #[test]
 fn moved_points_do_the_work_that_is_stored() {
     let beam = || Scene::beam(10.0, 1.0).with_cells(9, 2).with_element(ElementKind::Q4);
@@ -147,7 +157,6 @@ fn moved_points_do_the_work_that_is_stored() {
         power.push(simulation.support_reactions()[1].force.dot(&to));
     }
     assert!((simulation.probe("point").unwrap() - to).norm() < 1e-12);
-    // Simpson's rule.
     let three = power.windows(3).step_by(2);
     let work: f64 = three.map(|p| (p[0] + 4.0 * p[1] + p[2]) / (3.0 * f64::from(STEPS))).sum();
     let energy = simulation.solution().energy.elastic;
@@ -191,8 +200,7 @@ fn section_forces_jump_at_the_point() {
     assert!(behind.norm() < 1e-7 * 300.0, "{behind}");
 }
 
-/// A body that swings about a point in a cell does so with every integrator: the point rests, and the motion is that of a
-/// physical pendulum.
+/// With every integrator: the point rests, and the motion is that of a physical pendulum.
 #[test]
 fn a_body_swings_about_its_point() {
     use IntegratorKind::{EnergyMomentum, ImplicitEuler, SymplecticEuler, TrBdf2};

@@ -19,8 +19,7 @@ fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
     hold(scene).force("right", [-part * euler, 0.0]).probe("tip", "right")
 }
 
-/// Every kind of support has its critical load; a longer path passes the higher ones, each of
-/// which adds an unstable mode.
+/// With every kind of support; each higher critical load on the path adds an unstable mode.
 #[test]
 fn columns_buckle_at_eulers_loads() {
     type Hold = fn(Scene) -> Scene;
@@ -71,7 +70,6 @@ fn moved_supports_do_the_work_that_is_stored() {
         let simulation = solved(&scene);
         let path = LoadPath::to_result(&simulation, &|_| ControlFlow::Continue(())).unwrap();
         let (work, stored) = (path.supports_work.unwrap(), simulation.solution().energy.elastic);
-        println!("{name}: work {work} J, stored {stored} J");
         assert!((work - stored).abs() < 0.005 * stored, "{name}: work {work} J, stored {stored} J");
     }
     let energy = &solve_json(&["snap"])["energy"];
@@ -111,7 +109,6 @@ fn commands_name_the_critical_load() {
     let json = solve_json(&set);
     assert!((json["buckles_at"].as_f64().unwrap() - 0.493).abs() < 1e-3 && json["stable"] == false, "{json}");
     assert!((buckles(&stdout(&warpbeam(&[&["solve"][..], &set].concat()))) - 49.3).abs() < 0.1);
-    // An unstable equilibrium has no reference solution.
     assert!(json["probes"][0]["error_percent"].is_null(), "{json}");
     assert!(solve_json(&["column"])["buckles_at"].is_null());
 }

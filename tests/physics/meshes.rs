@@ -31,10 +31,8 @@ fn files_without_a_mesh_are_refused() {
     let mesh = |nodes, element, connectivity, edges| Mesh::new(nodes, element, connectivity, edges).map(|_| ());
     let none = BTreeMap::new;
     assert_eq!(mesh(square(), ElementKind::T3, vec![], none()), Err(MeshError::Connectivity { expected: 3, got: 0 }));
-    assert_eq!(
-        mesh(square(), ElementKind::T6, vec![0, 1, 2], none()),
-        Err(MeshError::Connectivity { expected: 6, got: 3 })
-    );
+    let short = mesh(square(), ElementKind::T6, vec![0, 1, 2], none());
+    assert_eq!(short, Err(MeshError::Connectivity { expected: 6, got: 3 }));
     assert!(matches!(mesh(vec![], ElementKind::T3, vec![0, 1, 2], none()), Err(MeshError::NoSuchNode { .. })));
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut nodes = square();

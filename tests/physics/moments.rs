@@ -60,13 +60,8 @@ fn turn_of_the_right_edge(system: &System, state: &State) -> f64 {
 }
 
 fn problem() -> Problem {
-    let scene = Scene::beam(2.0, 1.0)
-        .with_cells(3, 2)
-        .with_material(Material::new(100.0, 0.3))
-        .clamp("left")
-        .force("right", [0.3, -0.2])
-        .gravity([0.1, -0.4])
-        .moment("right", 3.0);
+    let scene = Scene::beam(2.0, 1.0).with_cells(3, 2).with_material(Material::new(100.0, 0.3)).clamp("left");
+    let scene = scene.force("right", [0.3, -0.2]).gravity([0.1, -0.4]).moment("right", 3.0);
     Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap()
 }
 
@@ -138,8 +133,7 @@ fn the_potential_is_the_work_along_a_path() {
     assert!((work - difference).abs() < 1e-3 * difference.abs(), "{work} {difference}");
 }
 
-/// Between two states, the work of the loads' force is exactly the decrease of their potential, for any rotation of the
-/// edge. If both states are equal, it is the ordinary force.
+/// Exactly, for any rotation of the edge. If both states are equal, it is the ordinary force.
 #[test]
 fn between_two_states_the_loads_work_by_their_potential() {
     let problem = problem();

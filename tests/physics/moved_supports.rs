@@ -34,8 +34,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     f64::hypot(a[0] - b[0], a[1] - b[1])
 }
 
-/// Returns assignments that turn both ends of a beam, and move the right one by this much more than a rigid rotation of the
-/// beam about its left end does.
+/// Returns assignments that turn both ends of a beam, and stretch it by this much.
 fn turned_both(degrees: f64, length: f64, stretched: f64) -> Vec<String> {
     let (s, c) = degrees.to_radians().sin_cos();
     let [x, y] = [length * stretched * c - length, length * stretched * s];
@@ -95,8 +94,7 @@ fn a_swung_strut_buckles_and_jumps() {
     assert!(json["stable"] == true, "{json}");
 }
 
-/// The work of the supports is the energy of the body, unless it jumps: a rigid motion stores nothing, and a body that is
-/// turned and stretched by a fifth stores E/2 · 0.2² per volume.
+/// Unless the body jumps: a rigid motion stores nothing, a stretch by a fifth stores E/2 · 0.2² per volume.
 #[test]
 fn the_work_of_turned_supports_is_the_stored_energy() {
     // On their straight way the ends come closer, which stores several kJ in the long beam in between.

@@ -2,14 +2,12 @@
 
 use nalgebra::Vector2;
 use warpbeam::element::ELEMENTS;
-use warpbeam::study::moved_points;
-use warpbeam::{Load, MethodKind, Place, Reference, Scene, Simulation, Status};
+use warpbeam::{Load, MethodKind, Place, Scene, Simulation, Status};
 
 use crate::common::random::Random;
 use crate::common::solved;
 
-/// The clamp balances force and moment of the point, under linear theory at the point at rest, and in large rotations
-/// at the point where it is now, on every element and at points inside cells, on their sides and on the outline.
+/// About the point at rest in linear theory, and about that of now in large rotations, on every element.
 #[test]
 fn a_clamp_balances_the_force_at_its_point() {
     let force = Vector2::new(1.0, -3.0);
@@ -35,30 +33,6 @@ fn a_clamp_balances_the_force_at_its_point() {
             assert!((work - own).abs() < 1e-9 * work.abs(), "{own} instead of {work} J");
         }
     }
-}
-
-/// A force at a node is that of the node, a force outside the body acts on the nearest node and says so, and the
-/// reference is of the point itself.
-#[test]
-fn nodes_and_points_agree_where_they_are_one() {
-    let beam = || Scene::beam(10.0, 1.0).with_cells(20, 2).clamp("left").probe("tip", "right");
-    let tip = |scene: &Scene| solved(scene).probe("tip").unwrap();
-    let force = [0.0, -2e3];
-    let [node, point] = [tip(&beam().force([7.5, 0.5], force)), tip(&beam().point_force([7.5, 0.5], force))];
-    assert!((node - point).norm() < 1e-9 * node.norm(), "{node}, {point}");
-    let outside = beam().point_force([7.5, 0.6], force);
-    assert!((tip(&outside) - node).norm() < 1e-9 * node.norm());
-    let moved = |scene: &Scene| moved_points(scene, Simulation::new(scene).unwrap().mesh()).len();
-    assert_eq!(moved(&outside), 1);
-    // Between two nodes the nearest one is .2 m away.
-    let between = beam().point_force([7.7, 0.25], force);
-    assert_eq!(moved(&between), 0);
-    assert_eq!(moved(&beam().force([7.7, 0.25], force)), 1);
-    // The same load on a mesh with a node there.
-    let fine = tip(&beam().with_cells(200, 20).with_element(warpbeam::ElementKind::T6).force([7.7, 0.25], force));
-    let reference = Reference::of(&between).unwrap().first().unwrap();
-    let off = (reference.displacement - fine).norm() / fine.norm();
-    assert!(off < 1e-3, "reference {}, fine mesh {fine}", reference.displacement);
 }
 
 /// The key of scene files is read and written; it belongs to a force at a point alone.

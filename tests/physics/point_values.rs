@@ -1,6 +1,6 @@
 //! Tests of the values at a material point: F, R and S, strain and stress.
 
-use crate::common::{scene, solved};
+use crate::common::{scene, solved, table};
 use nalgebra::{Matrix2, Vector2};
 use warpbeam::rotation::Rotation;
 use warpbeam::scene::{ElementKind, MethodKind};
@@ -50,9 +50,7 @@ fn a_point_has_the_values_of_the_fields() {
     for (id, method) in
         [("cantilever", MethodKind::Newton), ("bracket", MethodKind::Newton), ("article", MethodKind::Linear)]
     {
-        let mut scene = scene(id);
-        scene.solver.method = method;
-        let simulation = solved(&scene);
+        let simulation = solved(&scene(id).with_method(method));
         let mesh = simulation.system().mesh();
         let points = mesh.element().entry().points;
         for element in [0, mesh.element_count() / 2, mesh.element_count() - 1] {
@@ -61,9 +59,8 @@ fn a_point_has_the_values_of_the_fields() {
                 let nodal = simulation.nodal_stress();
                 let recovered = simulation.point_state(point, PointValues::Recovered).unwrap();
                 let raw = simulation.point_state(point, PointValues::Raw).unwrap();
-                for field in
-                    Field::ALL.into_iter().filter(|field| !field.is_of_elements() && *field != Field::ReferenceDistance)
-                {
+                let is_of_points = |field: &Field| !field.is_of_elements() && *field != Field::ReferenceDistance;
+                for field in Field::ALL.into_iter().filter(is_of_points) {
                     let mut values = Vec::new();
                     simulation.field(field, &mut values);
                     let raw_value = values[element * points.len() + i].unwrap();
@@ -84,8 +81,7 @@ fn a_point_has_the_values_of_the_fields() {
     }
 }
 
-/// Checks that F, R, S, ε and σ of a point belong to one deformation: each follows from the
-/// previous one by its definition.
+/// Checks that F, R, S, ε and σ of a point follow from each other by definition.
 fn check_consistency(point: &PointState, material: &Material, about: &str) {
     let identity = Matrix2::identity();
     let (f, size) = (point.gradient, 1.0 + point.gradient.norm());
@@ -103,11 +99,8 @@ fn check_consistency(point: &PointState, material: &Material, about: &str) {
     assert!((largest - point.field(Field::LargestStrain).unwrap()).abs() < 1e-9 * size, "{about}: {largest}");
     // σ = J⁻¹ R T S Rᵀ in plane strain and plane stress; T itself in linear theory.
     let biot = material.lame().stress(&strain);
-    let zz = if material.plane == Plane::Strain {
-        0.0
-    } else {
-        -strain.trace() * material.poisson / (1.0 - material.poisson)
-    };
+    let thinned = -strain.trace() * material.poisson / (1.0 - material.poisson);
+    let zz = if material.plane == Plane::Strain { 0.0 } else { thinned };
     let stress = if point.is_linear {
         biot
     } else {
@@ -125,22 +118,14 @@ fn check_consistency(point: &PointState, material: &Material, about: &str) {
 fn the_numbers_of_a_point_follow_from_each_other() {
     let mut scenes = Vec::new();
     for id in ["article", "shear", "cantilever", "bracket", "jelly", "swing"] {
-        for element in scene(id).elements() {
-            let mut scene = scene(id);
-            scene.set_element(element);
-            scenes.push((format!("{id} {element:?}"), scene));
-        }
+        scenes.extend(scene(id).elements().map(|e| (format!("{id} {e:?}"), scene(id).with_element(e))));
     }
-    let mut linear = scene("article");
-    linear.solver.method = MethodKind::Linear;
-    scenes.push(("linear".to_owned(), linear));
+    scenes.push(("linear".to_owned(), scene("article").with_method(MethodKind::Linear)));
     let mut differ = 0;
     for (about, scene) in scenes {
         let mut simulation = Simulation::new(&scene).unwrap();
         // Motions stop halfway; other scenes are solved to equilibrium.
-        for _ in 0..40 {
-            simulation.step();
-        }
+        (0..40).for_each(|_| _ = simulation.step());
         let mesh = simulation.system().mesh();
         let count = mesh.element_count();
         for (element, at) in [(0, [0.2, 0.3]), (count / 2, [0.5, 0.1]), (count - 1, [0.0, 0.4])] {
@@ -155,13 +140,10 @@ fn the_numbers_of_a_point_follow_from_each_other() {
     assert!(differ > 10, "recovered and raw values are the same");
 }
 
-/// Linear theory measures strain and stress in the axes of space: R is the identity at a point and in the table of nodes,
-/// while the field of rotation angles shows how far the body turns.
+/// R is the identity, while the field of rotation angles shows how far the body turns.
 #[test]
 fn linear_theory_measures_without_a_rotation() {
-    let mut scene = scene("article");
-    scene.solver.method = MethodKind::Linear;
-    let simulation = solved(&scene);
+    let simulation = solved(&scene("article").with_method(MethodKind::Linear));
     for values in [PointValues::Recovered, PointValues::Raw] {
         let state = simulation.point_state(MaterialPoint { element: 9, at: [0.2, 0.3] }, values).unwrap();
         assert_eq!(state.rotation, Rotation::IDENTITY);
@@ -171,6 +153,7 @@ fn linear_theory_measures_without_a_rotation() {
     let path = folder.path().join("nodes.csv");
     warpbeam::export::write(&simulation, &path).unwrap();
     let csv = std::fs::read_to_string(path).unwrap();
-    let column = csv.lines().next().unwrap().split(',').position(|name| name == "rotation_deg").unwrap();
-    assert!(csv.lines().skip(1).all(|row| row.split(',').nth(column) == Some("0")), "{csv}");
+    let (header, rows) = table(&csv);
+    let column = header.iter().position(|name| *name == "rotation_deg").unwrap();
+    assert!(rows.iter().all(|row| row[column] == "0"), "{csv}");
 }

@@ -35,8 +35,7 @@ fn kirsch(x: Vector2<f64>) -> Matrix2<f64> {
     turn * Matrix2::new(rr, rt, rt, tt) * turn.transpose()
 }
 
-/// Solves a quarter of a ring around the hole, out to four radii, with Kirsch's tractions on all of its sides. The
-/// plate therefore need not be infinite, and no oblique support is needed when it is rotated.
+/// Solves a quarter of a ring around the hole, out to four radii, with Kirsch's tractions on all of its sides.
 fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -> Simulation {
     let plain = Scene::beam(1.0, 1.0).with_element(kind).with_cells(cells[0], cells[1]);
     let ring = |x: Vector2<f64>| {
@@ -86,8 +85,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
     solved_on(&scene, mesh)
 }
 
-/// On finer and finer meshes of Kirsch's plate, the stresses converge at all nodes, including the outline, and the
-/// largest one at the hole converges to 3.
+/// At all nodes of Kirsch's plate; the largest one at the hole converges to 3.
 #[test]
 fn stresses_at_a_hole_converge() {
     let pull = 1e-6 * YOUNG;
@@ -101,11 +99,8 @@ fn stresses_at_a_hole_converge() {
             errors.push((off.map(|off| off.norm_squared()).sum::<f64>() / nodes.len() as f64).sqrt());
             let top = simulation.system().mesh().nearest_node(Vector2::new(0.0, 1.0));
             concentration = nodal.cauchy().nth(top as usize).unwrap().unwrap().plane.m11 / pull;
-            println!(
-                "{kind:?} {n}: K {concentration:.4}, rms {:.4}, mesh error {:.2} %",
-                errors[errors.len() - 1],
-                simulation.mesh_error(&nodal).percent.unwrap()
-            );
+            let (rms, error) = (errors[errors.len() - 1], simulation.mesh_error(&nodal).percent.unwrap());
+            println!("{kind:?} {n}: K {concentration:.4}, rms {rms:.4}, mesh error {error:.2} %");
         }
         let bound = if kind.entry().points.len() == 1 { 0.1 } else { 0.03 };
         assert!((concentration - 3.0).abs() < bound, "{kind:?}: {concentration}");
@@ -126,8 +121,7 @@ fn curved_beam(kind: ElementKind, moment: f64, turn: Rotation) -> Simulation {
     solved_on(&scene.clamp("left").moment("right", moment), mesh)
 }
 
-/// Golovin's curved bar (Timoshenko and Goodier, *Theory of Elasticity*, art. 29) is exact, unlike the hoop stress of
-/// Winkler and Bach's theory. The moment opens the ring: a positive one rotates its end against its own curvature.
+/// Timoshenko and Goodier, *Theory of Elasticity*, art. 29. The moment opens the ring.
 #[test]
 fn stresses_of_a_curved_beam_are_golovins() {
     let (a, b, moment) = (2.0f64, 3.0f64, 1e-4 * YOUNG / 12.0);
@@ -194,8 +188,7 @@ fn stresses_of_a_beam_are_those_of_the_book() {
     }
 }
 
-/// In a scene rotated by 37°, the Cauchy stresses rotate with the body, and quantities
-/// relative to the body are unchanged.
+/// By 37°; quantities relative to the body are unchanged.
 #[test]
 fn stresses_rotate_with_the_body() {
     let turn = Rotation::from_angle(37f64.to_radians());
@@ -221,20 +214,14 @@ fn stresses_rotate_with_the_body() {
     }
 }
 
-/// A bar is pulled to 18 % strain: Cauchy's stress is the force on the current section, which is thinner in both
-/// directions; Biot's is the force on the section at rest.
+/// At 18 % strain the section is thinner in both directions; Biot's stress is relative to the section at rest.
 #[test]
 fn cauchy_stress_is_the_force_per_deformed_area() {
     for kind in ElementKind::all() {
         let pull = 0.18 * YOUNG;
-        let scene = Scene::beam(4.0, 1.0)
-            .with_element(kind)
-            .with_cells(4, 2)
-            .with_material(Material::new(YOUNG, 0.3))
-            .support("left", &[Axis::X])
-            .support([0.0, -0.5], &[Axis::Y])
-            .force("right", [pull, 0.0]);
-        let simulation = crate::common::solved(&scene);
+        let scene = Scene::beam(4.0, 1.0).with_element(kind).with_cells(4, 2).support("left", &[Axis::X]);
+        let scene = scene.with_material(Material::new(YOUNG, 0.3)).support([0.0, -0.5], &[Axis::Y]);
+        let simulation = crate::common::solved(&scene.force("right", [pull, 0.0]));
         let nodal = simulation.nodal_stress();
         let section = (1.0 - 0.3 * 0.18f64).powi(2);
         for (local, cauchy) in nodal.nodes().iter().zip(nodal.cauchy()) {
@@ -332,15 +319,9 @@ fn the_mesh_error_is_large_where_elements_lock() {
     let t3 = crate::common::scene("elastica").with_element(ElementKind::T3).with_cells(20, 1);
     let article = crate::common::scene_with("article", &["solver.method=\"newton\""]);
     // Six-node triangles fifty times as long as high lock in volume: the error is 65 %.
-    let mut material = Material::new(YOUNG, 0.4999);
-    material.plane = Plane::Strain;
-    let flat = Scene::beam(1000.0, 1.0)
-        .with_element(ElementKind::T6)
-        .with_cells(20, 1)
-        .with_material(material)
-        .clamp("left")
-        .force("right", [0.0, -0.01 * YOUNG / 12.0 / 1e6])
-        .probe("tip", "right");
+    let material = Material { plane: Plane::Strain, ..Material::new(YOUNG, 0.4999) };
+    let flat = Scene::beam(1000.0, 1.0).with_element(ElementKind::T6).with_cells(20, 1).with_material(material);
+    let flat = flat.clamp("left").force("right", [0.0, -0.01 * YOUNG / 12.0 / 1e6]).probe("tip", "right");
     for (name, scene) in [("t3", t3), ("article", article), ("flat", flat)] {
         let simulation = crate::common::solved(&scene);
         let percent = simulation.stress_result().mesh_error_percent.unwrap();
@@ -372,8 +353,7 @@ fn files_and_json_agree_to_the_last_digit() {
     crate::common::solve_json(&["bracket", "--reference=none", "--out", &vtu]);
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let csv = std::fs::read_to_string(csv).unwrap();
-    let rows: Vec<Vec<f64>> =
-        csv.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+    let rows = crate::common::numbers(&csv);
     let column = |name: &str| csv.lines().next().unwrap().split(',').position(|c| c == name).unwrap();
     let in_csv = largest(&mut rows.iter().map(|row| row[column("von_mises")]));
     let vtu = std::fs::read_to_string(vtu).unwrap();

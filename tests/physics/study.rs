@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use crate::common::{scene, scene_with, stderr, stdout, sweeps_run_in_full, warpbeam};
-use nalgebra::Vector2;
+use crate::common::{ends_in, refuses, scene, scene_with, succeeds, sweeps_run_in_full, table};
+use crate::dynamics::swing_truth;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::Scene;
@@ -18,8 +18,7 @@ fn go_on(_: warpbeam::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The study measures single rows of quadrilaterals under every method. They reach an error for which six-node
-/// triangles need at least twice the unknowns. The corresponding times depend on the machine.
+/// They reach an error for which six-node triangles need at least twice the unknowns.
 #[test]
 fn single_rows_of_bending_elements_are_studied() {
     for id in ["cantilever", "elastica"] {
@@ -29,14 +28,7 @@ fn single_rows_of_bending_elements_are_studied() {
             close.min_by_key(|m| m.dofs).unwrap()
         };
         let [q4, t6] = [ElementKind::Q4, ElementKind::T6].map(fewest);
-        assert!(
-            2 * q4.dofs <= t6.dofs,
-            "{id}: {} unknowns {}, {} unknowns {}",
-            q4.dofs,
-            q4.setting,
-            t6.dofs,
-            t6.setting
-        );
+        assert!(2 * q4.dofs <= t6.dofs, "{id}: {} unknowns {}, {} {}", q4.dofs, q4.setting, t6.dofs, t6.setting);
         for method in METHODS.iter().map(|m| m.kind) {
             for cells in [5, 10, 20, 40].map(|along| [along, 1]) {
                 let measured = |m: &Measurement| {
@@ -49,8 +41,7 @@ fn single_rows_of_bending_elements_are_studied() {
     }
 }
 
-/// The progress of a study never decreases and reaches its end. The element that converges fastest is measured first,
-/// and the measurements of each element are listed from coarse to fine.
+/// The progress never decreases; each element's measurements go from coarse to fine.
 #[test]
 fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
     let (last, mut elements) = (Mutex::new(0.0), Vec::new());
@@ -78,8 +69,7 @@ fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
     assert!(all.into_iter().all(|element| unknowns(element).is_sorted()), "coarse to fine");
 }
 
-/// The swing's study: errors follow the orders of the integrators, energies behave as the integrators promise, and no
-/// setting on the front is dominated.
+/// Errors follow the orders of the integrators, energies their promises, and no setting on the front is dominated.
 #[test]
 fn a_swing_is_studied() {
     let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &go_on).unwrap();
@@ -146,8 +136,7 @@ fn a_swing_is_studied() {
     assert!(study.ranking().within(0.5 * own).is_empty());
 }
 
-/// The progress of a motion study never decreases. Cancelled during timed or untimed runs, the
-/// study keeps its measurements.
+/// Also when it is cancelled during timed or untimed runs.
 #[test]
 fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
@@ -192,15 +181,8 @@ fn the_reference_equals_an_independent_trajectory() {
     scene.dynamics.time_step = interval / f64::from(STEPS);
     scene.dynamics.integrator = IntegratorKind::EnergyMomentum;
     let mut simulation = Simulation::new(&scene).unwrap();
-    let rows = include_str!("../data/swing.csv").lines().filter(|line| !line.starts_with('#')).skip(1);
-    let independent: Vec<(f64, Vector2<f64>)> = rows
-        .map(|row| {
-            let v: Vec<f64> = row.split(',').map(|v| v.parse().unwrap()).collect();
-            (v[0], Vector2::new(v[1], v[2]))
-        })
-        .collect();
     // Every fourth of the 240 samples per second.
-    let independent: Vec<_> = independent.iter().skip(3).step_by(4).take(60).collect();
+    let independent: Vec<_> = swing_truth().into_iter().skip(3).step_by(4).take(60).collect();
     let size = independent.iter().map(|(_, u)| u.norm()).fold(0.0, f64::max);
     for (i, (time, expected)) in independent.iter().enumerate() {
         assert!((time - interval * (i + 1) as f64).abs() < 1e-9);
@@ -225,18 +207,14 @@ fn scenes_that_cannot_be_studied_are_refused() {
         let heard = AtomicU32::new(0);
         let observe = |progress: warpbeam::Progress<'_>| {
             assert!((0.0..=1.0).contains(&progress.fraction));
-            if heard.fetch_add(1, Ordering::Relaxed) >= after {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            let is_enough = heard.fetch_add(1, Ordering::Relaxed) >= after;
+            if is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         assert_eq!(MotionStudy::new(&moving, Extent::Quick, &observe).unwrap_err(), StudyError::Cancelled);
     }
 }
 
-/// Tuning refuses to choose a setting if no bound of the error below the requested one is known: a block sheared until
-/// its elements invert, a force on the measured point, and an error smaller than the reference's.
+/// A block sheared until its elements invert, a force on the measured point, an error below the reference's.
 #[test]
 fn tuning_refuses_demands_below_the_known_error() {
     let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
@@ -246,56 +224,46 @@ fn tuning_refuses_demands_below_the_known_error() {
         let refused = Tuning::of(&scene, demand, &go_on);
         assert!(refused.as_ref().is_err_and(StudyError::is_unknown), "{name}: {:?}", refused.map(|t| t.chosen));
     }
-    let output = warpbeam(&["tune", "shear", "--error", "0.01%"]);
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    assert!(stdout(&output).contains("not known which settings meet at most 0.01 % error"), "{}", stdout(&output));
+    let [text, _] = ends_in(".".as_ref(), 1, &["tune", "shear", "--error", "0.01%"]);
+    assert!(text.contains("not known which settings meet at most 0.01 % error"), "{text}");
 }
 
 /// A cancelled search for a setting chooses from the measurements taken so far.
 #[test]
 fn a_cancelled_tuning_chooses_from_what_was_measured() {
-    let demand = Demand { max_error_percent: Some(1e-3), max_time_ms: None };
     let scene = scene("elastica");
     let measured = AtomicU32::new(0);
     let observe = |progress: warpbeam::Progress<'_>| {
         let is_setting = progress.now.is_some_and(|now| now.to_string().contains("×"));
-        if measured.fetch_add(u32::from(is_setting), Ordering::Relaxed) + u32::from(is_setting) < 12 {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        }
+        let count = measured.fetch_add(u32::from(is_setting), Ordering::Relaxed) + u32::from(is_setting);
+        if count < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
-    let demand = Demand { max_error_percent: Some(own * 1.001), ..demand };
+    let demand = Demand { max_error_percent: Some(own * 1.001), max_time_ms: None };
     let tuning = Tuning::of(&scene, demand, &observe).unwrap();
     assert!(tuning.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
     assert!(tuning.study.measurements.len() < 60);
 }
 
-/// The command writes the same study: its files, columns and finite numbers. A step that is too short to be
-/// run to the end is reported.
+/// With finite numbers. A step that is too short to be run to the end is reported.
 #[test]
 fn study_of_a_motion_writes_its_files() {
     let folder = tempfile::tempdir().unwrap();
     for (id, set) in [("swing", "dynamics.duration=0.25"), ("chime", "dynamics.duration=0.01")] {
         let out = folder.path().join(id);
-        let output = warpbeam(&["study", id, "--quick", "--set", set, "--out", out.to_str().unwrap()]);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let summary = stdout(&output);
+        let summary = succeeds(&["study", id, "--quick", "--set", set, "--out", out.to_str().unwrap()]);
         assert_eq!(summary, fs::read_to_string(out.join("study.txt")).unwrap());
         for text in ["its own error about", "real time", "an error of 10 % costs", "auto compared with newton"] {
             assert!(summary.contains(text), "{text}: {summary}");
         }
         let csv = fs::read_to_string(out.join("study.csv")).unwrap();
-        let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
-        let header = lines.next().unwrap();
+        let (header, rows) = table(&csv);
         assert_eq!(
             header.join(","),
             "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,\
              error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,\
              resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided"
         );
-        let rows: Vec<_> = lines.collect();
         let text = ["element", "integrator", "method", "ending", "resolved", "energy", "pareto", "undecided"];
         for row in &rows {
             assert_eq!(row.len(), header.len());
@@ -316,13 +284,10 @@ fn study_of_a_motion_writes_its_files() {
         assert!(svg.contains("Pareto front") && svg.contains("real time") && svg.contains("t6 energy-momentum"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
-    let refused = warpbeam(&["tune", "swing"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("expected a scene with analysis = \"static\""), "{}", stderr(&refused));
+    refuses(&["tune", "swing"], "expected a scene with analysis = \"static\"");
 }
 
-/// A motion is studied over its duration, or over periods of its lowest natural frequency, however slow it is: linear
-/// theory is wrong for a body that sags.
+/// Or their duration, however slow they are: linear theory is wrong for a body that sags.
 #[test]
 fn slow_motions_are_studied_over_their_periods() {
     for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
@@ -346,7 +311,6 @@ fn slow_motions_are_studied_over_their_periods() {
         let lowest = study.reference.path.iter().map(|u| u.y).fold(f64::INFINITY, f64::min);
         assert!(highest > 0.5 * lowest && lowest < 0.0, "{name}: from {lowest} to {highest} m");
     }
-    // A short scene with a short period, and a free body.
     for (id, set) in [("chime", "dynamics.duration=0.01"), ("spin", "dynamics.duration=0.2")] {
         let reference = MotionReference::new(&scene_with(id, &[set]), Extent::Quick, &go_on).unwrap();
         let studied = reference.interval * reference.path.len() as f64;
@@ -355,19 +319,17 @@ fn slow_motions_are_studied_over_their_periods() {
     }
 }
 
-/// A stated bound of an error is its measured parts plus the reference's own error, in the summary and in the table, and
-/// ranks that the reference cannot tell apart are marked.
+/// In the summary and in the table; ranks that the reference cannot tell apart are marked.
 #[test]
 fn bounds_of_a_study_include_the_error_of_the_reference() {
     let study = Study::new(&scene("shear"), Extent::Quick, &go_on).unwrap();
     let own = study.against.own_error_percent;
     assert!(own > 0.0);
-    let (table, summary) = (study.table(), study.summary());
-    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let header = rows.next().unwrap();
+    let (csv, summary) = (study.table(), study.summary());
+    let (header, rows) = table(&csv);
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
     let undecided = study.ranking().undecided();
-    for ((row, m), undecided) in rows.zip(&study.measurements).zip(&undecided) {
+    for ((row, m), undecided) in rows.iter().zip(&study.measurements).zip(&undecided) {
         let at_most: f64 = row[column("at_most_percent")].parse().unwrap();
         assert!((at_most - m.error.bound() - own).abs() < 1e-9 * at_most, "{row:?}");
         assert!((study.ranking().error_bound(m) - at_most).abs() < 1e-9 * at_most);
@@ -390,7 +352,6 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
         assert!(stated > 1.0 || within, "{summary}");
     }
     assert_eq!(summary.contains("rank undecided: a faster setting"), marked, "{summary}");
-    // `tune` states the same bound.
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
     let tuning = Tuning::of(&scene("shear"), demand, &go_on).unwrap();
     let bound = format!("error at most {:.4} %", tuning.study.ranking().error_bound(&tuning.chosen));
@@ -400,9 +361,7 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     for m in moving.ranking().front() {
         let bound = moving.ranking().error_bound(m);
         assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12);
-        assert!(
-            moving.ranking().within(bound).contains(&m) && !moving.ranking().within(bound.next_down()).contains(&m)
-        );
+        assert!([bound, bound.next_down()].map(|most| moving.ranking().within(most).contains(&m)) == [true, false]);
         assert!(moving.summary().contains(&format!(" {bound:.4} ")), "{}", moving.summary());
     }
 }

@@ -30,16 +30,10 @@ fn clamped() -> Scene {
 fn moved_edges_strain_a_patch_uniformly() {
     let (a, b) = (0.03, -0.05);
     for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e, m))) {
-        let scene = Scene::beam(2.0, 1.0)
-            .with_cells(4, 3)
-            .with_element(element.kind)
-            .with_method(method.kind)
-            .support("left", &[Axis::X])
-            .support("bottom", &[Axis::Y])
-            .support("right", &[Axis::X])
-            .moved([2.0 * a, 0.0], 0.0)
-            .support("top", &[Axis::Y])
-            .moved([0.0, b], 0.0);
+        let scene = Scene::beam(2.0, 1.0).with_cells(4, 3).with_element(element.kind).with_method(method.kind);
+        let scene = scene.support("left", &[Axis::X]).support("bottom", &[Axis::Y]);
+        let scene = scene.support("right", &[Axis::X]).moved([2.0 * a, 0.0], 0.0);
+        let scene = scene.support("top", &[Axis::Y]).moved([0.0, b], 0.0);
         let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
         // The cells have irregular shapes; the sides of the rectangle are unchanged.
         let mesh = mesh.moved(|x| {
@@ -52,15 +46,11 @@ fn moved_edges_strain_a_patch_uniformly() {
         let lame = problem.material().lame();
         let expected = Matrix2::new(a, 0.0, 0.0, b);
         let mut points = 0;
-        problem.system().elements().visit_strains(
-            lame,
-            state.displacement(),
-            state.rotations(),
-            &mut |_, _, strain| {
-                assert!((strain - expected).amax() < 1e-9, "{} {}: {strain}", element.id, method.id);
-                points += 1;
-            },
-        );
+        let (u, rotations) = (state.displacement(), state.rotations());
+        problem.system().elements().visit_strains(lame, u, rotations, &mut |_, _, strain| {
+            assert!((strain - expected).amax() < 1e-9, "{} {}: {strain}", element.id, method.id);
+            points += 1;
+        });
         assert!(points >= 12);
         // Reactions are σ t times the length of the side.
         let stress = lame.stress(&expected);
@@ -122,19 +112,17 @@ fn a_rotated_clamp_equals_a_rotated_gravity() {
     }
 }
 
-/// A rotation of more than a full turn winds up the beam: it differs from the state at rest with
-/// the same support positions.
+/// It winds up the beam, although the supports are where they are at rest.
 #[test]
 fn a_full_rotation_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
     scene.move_support(SupportId::nth(1), [-8.0, 0.0], TAU).unwrap();
     let mut simulation = solved(&scene);
-    let turn =
-        simulation.state().edge_angles()[simulation.system().edges().iter().position(|e| e.name() == "right").unwrap()];
+    let right = simulation.system().edges().iter().position(|e| e.name() == "right").unwrap();
+    let turn = simulation.state().edge_angles()[right];
     assert!((turn - TAU).abs() < 1e-9, "{turn}");
     assert!(simulation.solution().energy.elastic > 10.0, "{:?}", simulation.solution().energy);
     assert!(simulation.equilibrium().unwrap().load_steps() > 6);
-    // Rotated back in small steps, it is at rest again.
     let mut angle = TAU;
     while angle > 0.0 {
         angle = f64::max(angle - 0.4, 0.0);
@@ -148,10 +136,9 @@ fn a_full_rotation_of_one_end_is_not_rest() {
 #[test]
 fn reactions_balance_the_loads() {
     for element in ELEMENTS {
-        let scene = clamped().with_element(element.kind).gravity([0.0, -0.1]).force("top", [40.0, -30.0]);
-        let scene = scene.moment("right", 20.0);
+        let mut scene = clamped().with_element(element.kind).gravity([0.0, -0.1]).force("top", [40.0, -30.0]);
         // A moment on a supported edge goes into its support.
-        let mut scene = scene;
+        scene = scene.moment("right", 20.0);
         scene.move_support(SupportId::nth(1), [-0.3, 0.8], 0.4).unwrap();
         let simulation = solved(&scene);
         let solution = simulation.solution();
@@ -213,13 +200,11 @@ fn the_work_of_the_reactions_is_the_elastic_energy() {
         let reaction = &simulation.support_reactions()[1];
         power.push(reaction.force.dot(&Vector2::new(-2.0, 3.0)) + reaction.moment * 1.2);
     }
-    // Simpson's rule.
     for three in power.windows(3).step_by(2) {
         work += (three[0] + 4.0 * three[1] + three[2]) / (3.0 * f64::from(STEPS));
     }
     let energy = simulation.solution().energy;
     assert!((work - energy.elastic).abs() < 2e-5 * energy.elastic, "{work} {energy:?}");
-    // The same path in one step.
     let direct = solved(&wrenched(1.0)).solution().energy;
     assert!((direct.elastic - energy.elastic).abs() < 1e-8 * energy.elastic, "{direct:?} {energy:?}");
 
@@ -241,16 +226,14 @@ fn reactions_are_derivatives_of_the_energy() {
         solved(&scene).solution()
     };
     let ([x, y], turn) = ([-0.4, 1.5], 0.7);
-    let there = at([x, y], turn);
-    let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * H);
-    let by_x = slope(at([x + H, y], turn).energy.elastic, at([x - H, y], turn).energy.elastic);
-    let by_y = slope(at([x, y + H], turn).energy.elastic, at([x, y - H], turn).energy.elastic);
-    let by_turn = slope(at([x, y], turn + H).energy.elastic, at([x, y], turn - H).energy.elastic);
-    let reaction = &there.supports[1];
-    let scale = reaction.force.norm();
-    assert!((reaction.force.x - by_x).abs() < 1e-5 * scale, "{} {by_x}", reaction.force.x);
-    assert!((reaction.force.y - by_y).abs() < 1e-5 * scale, "{} {by_y}", reaction.force.y);
-    assert!((reaction.moment - by_turn).abs() < 1e-5 * scale, "{} {by_turn}", reaction.moment);
+    let reaction = &at([x, y], turn).supports[1];
+    for (value, [dx, dy, dt]) in
+        [(reaction.force.x, [H, 0.0, 0.0]), (reaction.force.y, [0.0, H, 0.0]), (reaction.moment, [0.0, 0.0, H])]
+    {
+        let [plus, minus] = [1.0, -1.0].map(|s| at([x + s * dx, y + s * dy], turn + s * dt).energy.elastic);
+        let slope = (plus - minus) / (2.0 * H);
+        assert!((value - slope).abs() < 1e-5 * reaction.force.norm(), "{value} {slope}");
+    }
 }
 
 /// A dragged support gives the same result as a solve from rest; dragged back, the body is at rest again.
@@ -342,8 +325,7 @@ fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) ->
     best
 }
 
-/// The arch of `snap` passes the limit load of beam theory. Where it is unstable under force control, its exact tangent
-/// with a free crown is indefinite; with the crown supported, it is stable everywhere.
+/// That of beam theory. With a free crown the exact tangent is indefinite beyond; with it supported, it is stable.
 #[test]
 fn the_arch_passes_its_limit_load() {
     let scene = crate::common::scene("snap");
@@ -356,11 +338,6 @@ fn the_arch_passes_its_limit_load() {
     let limit = b + (c - a).powi(2) / (8.0 * (2.0 * b - a - c));
     let (e, h, t) = (210e9, 0.001_f64, 0.02);
     let [expected, increment] = shallow_arch_limit(0.2, 0.008, [e * t * h.powi(3) / 12.0, e * t * h]);
-    println!(
-        "limit load {limit} N at {} mm, of shallow beam theory {expected} N at {} mm",
-        1e3 * pairs[top][0],
-        1e3 * increment
-    );
     assert!((limit - expected).abs() < 0.005 * expected, "{limit} {expected}");
     assert!((pairs[top][0] - increment).abs() < 3e-4, "{} {increment}", pairs[top][0]);
     // The same scene with the crown free along its path.
@@ -388,6 +365,7 @@ fn invalid_supports_are_refused_with_a_reason() {
         Err(error @ SimulationError::System(_)) => error.to_string(),
         other => format!("{other:?}"),
     };
+    use warpbeam::IntegratorKind::TrBdf2;
     let beam = || Scene::beam(10.0, 1.0).clamp("left");
     let cases = [
         (beam().support("right", &[Axis::Y]).moved([0.1, 0.0], 0.0), "support.1.displacement: expected 0 along x"),
@@ -397,27 +375,19 @@ fn invalid_supports_are_refused_with_a_reason() {
         (beam().clamp("right").moved([0.0, 0.0], 1e3), "support.1.turn: expected -100 to 100 rad, got 1000"),
         (
             beam().clamp("bottom").moved([0.0, 0.1], 0.0),
-            "support.1: expected the same displacement as support.0 at the node (0, -0.5)",
+            "support.1: expected the same displacement as support.0 at the",
         ),
-        (
-            beam().moved([0.0, 0.1], 0.0).moving(warpbeam::IntegratorKind::TrBdf2, 0.01),
-            "supports of a dynamic scene cannot move",
-        ),
-        (
-            beam().clamp([5.0, 3.0]),
-            "support.1.at: expected a point in the body, or at most one element size (1.414 m) from a node",
-        ),
+        (beam().moved([0.0, 0.1], 0.0).moving(TrBdf2, 0.01), "supports of a dynamic scene cannot move"),
+        (beam().clamp([5.0, 3.0]), "support.1.at: expected a point in the body, or at most one element size (1.414 m)"),
         (beam().force([-50.0, 0.0], [0.0, 1.0]), "is 50 m from the nearest node, at (0, 0)"),
     ];
     for (scene, expected) in cases {
         let message = refused(&scene);
         assert!(message.contains(expected), "{message}");
     }
-    // A point inside an element selects a node.
     assert!(Simulation::new(&beam().force([10.4, 0.0], [0.0, 1.0])).is_ok());
     assert!(Simulation::new(&Scene::beam(10.0, 1.0)).is_err());
-    assert!(
-        beam().move_support(SupportId::nth(3), [0.0, 0.0], 0.0).is_err_and(|e| e.to_string().contains("support.3"))
-    );
+    let missing = beam().move_support(SupportId::nth(3), [0.0, 0.0], 0.0);
+    assert!(missing.is_err_and(|e| e.to_string().contains("support.3")));
     assert!(!Support::new("left", BOTH).moves());
 }

@@ -129,11 +129,8 @@ fn layer(module: &[String]) -> Option<usize> {
         return LAYERS.iter().position(|(_, entries)| entries.contains(&"lib"));
     }
     let entries = LAYERS.iter().enumerate().flat_map(|(layer, (_, entries))| entries.iter().map(move |e| (layer, e)));
-    entries
-        .map(|(layer, entry)| (layer, entry.split('/').collect::<Vec<_>>()))
-        .filter(|(_, path)| starts_with(module, path))
-        .max_by_key(|(_, path)| path.len())
-        .map(|(layer, _)| layer)
+    let paths = entries.map(|(layer, entry)| (layer, entry.split('/').collect::<Vec<_>>()));
+    paths.filter(|(_, path)| starts_with(module, path)).max_by_key(|(_, path)| path.len()).map(|(layer, _)| layer)
 }
 
 fn starts_with(module: &[String], path: &[&str]) -> bool {
@@ -234,9 +231,8 @@ fn imports(sources: &Sources) -> Imports {
                     continue;
                 }
                 let path = source.code[i..].split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).next();
-                paths.extend(
-                    path.map(|path| path.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect()),
-                );
+                let names = path.unwrap_or_default().split("::").filter(|name| !name.is_empty());
+                paths.push(names.map(str::to_owned).collect());
             }
         }
         for path in paths {
@@ -286,9 +282,8 @@ fn circles(imports: &Imports) -> Vec<String> {
     let reaches = |from: &Module| {
         let (mut reached, mut next) = (BTreeSet::new(), vec![from]);
         while let Some(module) = next.pop() {
-            next.extend(
-                imports.get(module).into_iter().flat_map(BTreeMap::keys).filter(|m| reached.insert((*m).clone())),
-            );
+            let keys = imports.get(module).into_iter().flat_map(BTreeMap::keys);
+            next.extend(keys.filter(|m| reached.insert((*m).clone())));
         }
         reached
     };

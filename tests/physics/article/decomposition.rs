@@ -52,8 +52,7 @@ pub const ORTHOGONALITY: f64 = 1e-9;
 /// of the largest singular value.
 const MAX_ITERATIONS: usize = 128;
 
-/// Returns F, or F over its largest entry if products of entries would leave the range of f64. Q
-/// does not depend on the scale.
+/// Returns F, or F over its largest entry if products of entries would leave the range of f64. Q does not change.
 fn of_ordinary_size<const N: usize>(f: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let largest = f.amax();
     if largest == 0.0 || (1e-60..1e60).contains(&largest) { *f } else { f / largest }

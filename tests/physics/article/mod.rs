@@ -79,8 +79,7 @@ fn erratum_eq_36_v_is_f_r_transposed() {
     assert!((as_printed - p.right).norm() < 1e-8);
 }
 
-/// Erratum: the matrix printed as A⁻ᵀ in the example is A⁻¹. A and A⁻ᵀ have the same orthogonal factor; the printed
-/// matrix has its transpose.
+/// Erratum: the matrix printed as A⁻ᵀ is A⁻¹, which has the transpose of its orthogonal factor.
 #[test]
 fn erratum_the_printed_inverse_is_not_transposed() {
     let printed = Matrix3::new(0.157, -0.126, 0.025, 0.105, -0.402, 0.279, -0.139, 0.464, -0.133);
@@ -129,7 +128,6 @@ fn numbers_out_of_range_are_refused() {
         let matrix = Matrix3::repeat(bad);
         assert!(polar3(&matrix).is_err() && proper_rotation3(&matrix).is_err());
         match polar_from_svd(&matrix) {
-            // Matrices of every magnitude have a decomposition.
             Ok(polar) => assert!(bad.is_finite() && orthogonality_error(&polar.orthogonal) < 1e-9, "{bad}: {polar:?}"),
             Err(error) => assert_eq!((error, bad.is_finite()), (PolarError::NotFinite, false), "{bad}"),
         }
