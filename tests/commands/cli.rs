@@ -86,8 +86,7 @@ fn set_changes_any_value() {
     let single = solve_u(&["cantilever", "--set", "solver.method=\"linear\""]);
     assert!((double.y / single.y - 2.0).abs() < 1e-9);
     // A table that the file does not contain.
-    let scene = solve_json(&["shear", "--set", "solver.tolerance=1e-4"]);
-    assert!(scene["residual"].as_f64().unwrap() > 1e-8);
+    assert!(solve_json(&["shear", "--set", "solver.tolerance=1e-4"])["residual"].as_f64().unwrap() > 1e-8);
 }
 
 #[test]
@@ -515,8 +514,7 @@ fn a_jump_is_reported() {
         let json = solve_json(&[scene, &["--reference=none"]].concat());
         assert_eq!((&json["jumped"], &json["jumped_at"]), (&false.into(), &serde_json::Value::Null), "{scene:?}");
     }
-    let unknown = solve_json(&["jump", "--reference=none", "--no-certificate"]);
-    assert!(unknown["jumped"].is_null());
+    assert!(solve_json(&["jump", "--reference=none", "--no-certificate"])["jumped"].is_null());
 }
 
 /// The reaction of every support is in JSON and in the text output. Displacements and rotations may have units.
@@ -565,8 +563,7 @@ fn json_certifies_its_result() {
     let none = solve_json(&["shear", "--reference=none"]);
     assert!(none["probes"][0]["reference_u"].is_null() && none["probes"][0]["error_percent"].is_null());
     // A probe that moves only by rounding errors has no error relative to its displacement.
-    let still = solve_json(&["shear", "--set", "load.0.force=[0,0]"]);
-    assert!(still["probes"][0]["error_percent"].is_null());
+    assert!(solve_json(&["shear", "--set", "load.0.force=[0,0]"])["probes"][0]["error_percent"].is_null());
 }
 
 /// In the stability atlas every case is classified, every number is finite, and the counts add up.
@@ -677,8 +674,7 @@ fn study_measures_error_against_time() {
         let front: Vec<&Vec<&str>> = rows.iter().filter(|r| r[17] == "true").collect();
         assert!(!front.is_empty() && front.len() < rows.len());
         for f in &front {
-            let beaten = rows.iter().any(|r| number(r, 7) < number(f, 7) && number(r, 16) < number(f, 16));
-            assert!(!beaten, "{f:?}");
+            assert!(!rows.iter().any(|r| number(r, 7) < number(f, 7) && number(r, 16) < number(f, 16)), "{f:?}");
         }
         assert!(fs::read_to_string(out.join("study.svg")).unwrap().contains("Pareto front"));
     }
@@ -722,8 +718,7 @@ fn tune_chooses_a_setting_that_meets_the_demand() {
         let chosen = format!("  {} ", json["element"].as_str().unwrap());
         assert!(text.lines().any(|line| line.starts_with(&chosen)), "{text}");
     }
-    // With a time limit only, it chooses the most accurate setting within it. A reference without a closed form
-    // has its own error included.
+    // With a time limit only, it chooses the most accurate setting within it.
     let text = stdout(&warpbeam(&["tune", "bracket", "--time", "100s"]));
     assert!(text.contains("meet at most 100000 ms; the most accurate"), "{text}");
     assert!(!text.contains("the reference's own 0.0000 %"), "{text}");

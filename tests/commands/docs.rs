@@ -667,8 +667,7 @@ fn scene_schema() -> Value {
         "title": "Scene of warpbeam",
         "description": "Numbers are in SI units, or texts with a unit such as \"210 GPa\".",
     });
-    let table = table_schema("");
-    schema.as_object_mut().unwrap().extend(table.as_object().unwrap().clone());
+    schema.as_object_mut().unwrap().extend(table_schema("").as_object().unwrap().clone());
     schema
 }
 
@@ -793,8 +792,7 @@ fn the_reference_of_results_has_every_column_of_csv() {
         let code = std::fs::read_to_string(&file).unwrap();
         for literal in code.split('"').filter(|literal| literal.ends_with("\\n") || literal.starts_with("node,")) {
             let names: Vec<_> = literal.trim_end_matches("\\n").split(',').filter(|name| !name.is_empty()).collect();
-            let is_header = |name: &&str| name.chars().all(is_name);
-            if names.len() > 4 && names.iter().all(is_header) {
+            if names.len() > 4 && names.iter().all(|name: &&str| name.chars().all(is_name)) {
                 columns.extend(names.into_iter().map(str::to_owned));
             }
         }

@@ -90,8 +90,7 @@ fn scenes_in_other_encodings_are_refused_with_the_line() {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
-    let latin1 = fs::read(file("latin1.toml")).unwrap();
-    fs::write(&path, [b"# 1\n# 2\n".as_slice(), &latin1].concat()).unwrap();
+    fs::write(&path, [b"# 1\n# 2\n".as_slice(), &fs::read(file("latin1.toml")).unwrap()].concat()).unwrap();
     let refused = stderr(&warpbeam(&["solve", path.to_str().unwrap()]));
     assert!(refused.contains("scene.toml:3: expected text in UTF-8"), "{refused}");
     // Without a mark at its start.

@@ -74,8 +74,7 @@ fn a_method_may_converge_again_beyond_buckling() {
     };
     let solved = [0.99 * end, 1.01 * end, 0.98 * again, 1.01 * again, 1.0].map(converges);
     assert_eq!(solved, [true, false, false, true, true], "{end} {again}");
-    let solved = [0.97, 1.02].map(|part| converges(part * gaps[1][0]));
-    assert_eq!(solved, [true, false], "{gaps:?}");
+    assert_eq!([0.97, 1.02].map(|part| converges(part * gaps[1][0])), [true, false], "{gaps:?}");
     let [own, same] = [warped, newton].map(|strip| number(&strip["within_1_percent"]));
     assert!((own / same - 1.0).abs() < 0.01, "{own} {same}");
 }

@@ -1,5 +1,4 @@
-//! Tests of the command line, of the examples and of the documents. `cargo test
-//! --test commands TOPIC` runs one file.
+//! Tests of the command line, examples and documents. `cargo test --test commands TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 #[path = "../common/mod.rs"]

@@ -36,8 +36,7 @@ fn decode_png(path: &Path) -> ([usize; 2], Vec<u8>) {
     let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut rgba).unwrap();
     reader.finish().unwrap();
-    let rgb = rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect();
-    ([info.width as usize, info.height as usize], rgb)
+    ([info.width as usize, info.height as usize], rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect())
 }
 
 /// The numbered pictures of a folder, in RGB. It has nothing else.
@@ -134,8 +133,7 @@ fn the_story_is_recorded_in_place_of_a_scene() {
 fn a_search_is_recorded_iteration_by_iteration() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let json = crate::common::solve_json(&["elastica"]);
-    let iterations = json["iterations"].as_u64().unwrap() as usize;
+    let iterations = crate::common::solve_json(&["elastica"])["iterations"].as_u64().unwrap() as usize;
     record(folder, &["elastica", "--size", "200x200", "-o", "a.gif"]);
     record(folder, &["elastica", "--size", "200x200", "-o", "frames"]);
     let movie = decode_gif(&folder.join("a.gif"));
@@ -168,8 +166,7 @@ fn an_interrupted_recording_is_shorter_and_valid() {
     for name in ["a.gif", "frames"] {
         let path = folder.path().join(name);
         // Slow motion: the motion is short, and its pictures are many.
-        let args = ["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name];
-        let running = start(folder.path(), &args);
+        let running = start(folder.path(), &["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name]);
         wait_for("some pictures", || match name {
             "frames" => fs::read_dir(&path).is_ok_and(|pictures| pictures.count() > 10),
             _ => fs::metadata(&path).is_ok_and(|file| file.len() > 30_000),

@@ -35,8 +35,7 @@ fn interrupted_static_commands_print_their_partial_result() {
         assert!(["converged", "not_converged"].contains(&json["status"].as_str().unwrap()), "{json}");
         assert!(json["status"] == "converged" || json["reason"].as_str().unwrap().contains("interrupted"), "{json}");
     }
-    let args = [&["curve"][..], &LARGE].concat();
-    let (code, out, _) = interrupted(folder.path(), &args, Signal::SIGINT);
+    let (code, out, _) = interrupted(folder.path(), &[&["curve"][..], &LARGE].concat(), Signal::SIGINT);
     assert_eq!(code, Some(1), "{out}");
     assert!(out.contains("not followed beyond ") && out.contains("interrupted"), "{out}");
     let (code, _, said) = interrupted(folder.path(), &["tune", "cantilever"], Signal::SIGINT);
@@ -47,8 +46,7 @@ fn interrupted_static_commands_print_their_partial_result() {
 /// A slow reference solution shows its progress on a terminal.
 #[test]
 fn a_long_solve_shows_a_bar() {
-    let args = [&["solve", "--reference", "full"][..], &LARGE].concat();
-    let (code, text) = on_a_terminal(Path::new("."), &args);
+    let (code, text) = on_a_terminal(Path::new("."), &[&["solve", "--reference", "full"][..], &LARGE].concat());
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("the reference solution, "), "{text}");
 }

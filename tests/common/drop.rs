@@ -27,8 +27,7 @@ pub fn drop_file(display: &str, window: u32, file: &Path, patience: Duration) {
     let atoms = Atoms::new(&connection).unwrap().reply().unwrap();
     let source = connection.generate_id().unwrap();
     let (depth, class) = (COPY_DEPTH_FROM_PARENT, WindowClass::INPUT_OUTPUT);
-    let aux = CreateWindowAux::new();
-    connection.create_window(depth, source, root, 0, 0, 1, 1, 0, class, 0, &aux).unwrap();
+    connection.create_window(depth, source, root, 0, 0, 1, 1, 0, class, 0, &CreateWindowAux::new()).unwrap();
     connection.set_selection_owner(source, atoms.XdndSelection, x11rb::CURRENT_TIME).unwrap();
     let tell = |message, data: [u32; 5]| {
         let event = ClientMessageEvent::new(32, window, message, data);

@@ -21,6 +21,11 @@ pub fn run(scene: &Scene) -> Simulation {
     simulation
 }
 
+/// Holds the body with the mouse spring at a point.
+pub fn grab(simulation: &mut Simulation, at: Vector2<f64>) {
+    assert!(simulation.grab(simulation.mesh().locate(at).unwrap()));
+}
+
 pub fn drift(simulation: &Simulation) -> f64 {
     simulation.motion().unwrap().ledger().drift()
 }

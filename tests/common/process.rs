@@ -75,6 +75,5 @@ pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     // Reading the terminal fails once the program has ended, and nobody else holds its other side.
     let (mut screen, mut text) = (File::from(terminal.master), Vec::new());
     let _ = screen.read_to_end(&mut text);
-    let code = running.0.take().unwrap().wait().unwrap().code();
-    (code, String::from_utf8_lossy(&text).into_owned())
+    (running.0.take().unwrap().wait().unwrap().code(), String::from_utf8_lossy(&text).into_owned())
 }

@@ -343,8 +343,7 @@ fn units_are_read_or_refused() {
         }
         let file = registry::find("article").unwrap().toml.replacen("young = ", &format!("young = '{text}' #"), 1);
         if let Ok(scene) = Scene::from_toml(&file) {
-            let value = parse(&text, "Pa").unwrap();
-            assert_eq!(scene.material.young.to_bits(), value.to_bits(), "{text}");
+            assert_eq!(scene.material.young.to_bits(), parse(&text, "Pa").unwrap().to_bits(), "{text}");
         }
         memory_is_bounded();
     });
@@ -361,12 +360,10 @@ fn the_gmsh_reader_reads_or_refuses_any_file() {
         let mut choices = Choices::new(bytes);
         let text =
             if choices.byte() < 8 { String::from_utf8_lossy(bytes).into_owned() } else { choices.damage(SQUARE) };
-        let element = choices.of(ELEMENTS).kind;
-        if let Ok(mesh) = Mesh::from_gmsh(&text, element) {
+        if let Ok(mesh) = Mesh::from_gmsh(&text, choices.of(ELEMENTS).kind) {
             assert!(mesh.nodes().iter().all(|x| x.x.is_finite() && x.y.is_finite()));
             assert!(mesh.connectivity().iter().all(|&n| (n as usize) < mesh.nodes().len()), "{text}");
-            let fine = mesh.refined();
-            assert_eq!(fine.element_count(), 4 * mesh.element_count());
+            assert_eq!(mesh.refined().element_count(), 4 * mesh.element_count());
         }
         memory_is_bounded();
     });

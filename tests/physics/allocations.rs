@@ -1,6 +1,7 @@
 //! After the first few steps nothing is allocated by a time step under every integrator, an iteration of every method,
 //! an edit of a force, or a pull of the mouse spring.
 
+use crate::common::motion::grab;
 use crate::common::{ids_of, scene};
 use allocation_counter::measure;
 use nalgebra::Vector2;
@@ -35,8 +36,8 @@ fn time_steps_allocate_nothing() {
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));
                 let made = allocations(|| (0..20).for_each(|_| drop(simulation.step().clone())));
                 assert_eq!(made, 0, "{id} {} {} {iterations} {method:?}", integrator.id, element.id);
-                let point = simulation.system().mesh().locate(simulation.system().mesh().nodes()[1]).unwrap();
-                assert!(simulation.grab(point));
+                let node = simulation.mesh().nodes()[1];
+                grab(&mut simulation, node);
                 (0..FIRST).for_each(|_| drop(simulation.step().clone()));
                 let mut place = simulation.mouse_spring().unwrap().0.target();
                 let made = allocations(|| {

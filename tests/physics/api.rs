@@ -96,8 +96,7 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
         assert!(Reference::of(&scene).is_err());
         assert!(LoadCurve::new(&scene).is_none(), "{scene:?}");
         // With another mesh, the scene's own geometry is not used; everything else is validated.
-        let geometry_alone = scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok();
-        if geometry_alone {
+        if scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok() {
             let of_geometry = |e: String| e.starts_with("beam") || e.starts_with("mesh");
             assert!(of_geometry(scene.validate().unwrap_err().to_string()), "{scene:?}");
         }
@@ -167,8 +166,7 @@ fn setters_name_missing_loads() {
 #[test]
 fn invalid_sources_and_assignments_are_refused() {
     for name in ["", "no-such-scene", "/", "\0", "assets"] {
-        let source = Source { name: name.into(), assignments: Vec::new() };
-        assert!(open(&source).is_err(), "{name:?}");
+        assert!(open(&Source { name: name.into(), assignments: Vec::new() }).is_err(), "{name:?}");
     }
     for assignment in ["", "=", "a", "a=", ".=1", "load.0=1", "load.-1.force=[0,1]", "load.99999999999999999999.x=1"] {
         let source = Source { name: "article".into(), assignments: vec![assignment.to_owned()] };
@@ -205,8 +203,7 @@ fn solvers_take_empty_and_singular_matrices() {
     let mut factor = Factor::new(&empty).unwrap();
     assert!(factor.factorize(&[]).is_ok());
     factor.solve_in_place(&mut []);
-    let one = Symbolic::new(&[0, 1], &[0]).unwrap();
-    let mut factor = Factor::new(&one).unwrap();
+    let mut factor = Factor::new(&Symbolic::new(&[0, 1], &[0]).unwrap()).unwrap();
     for singular in [0.0, -1.0, f64::NAN] {
         assert!(factor.factorize(&[singular]).is_err(), "{singular}");
     }
@@ -230,7 +227,6 @@ fn rotations_and_formats_take_any_number() {
 #[test]
 fn a_scene_without_probes_has_a_result_and_no_reference() {
     let scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).with_method(MethodKind::Auto);
-    let simulation = solved(&scene);
-    assert!(simulation.solution().probes.is_empty());
+    assert!(solved(&scene).solution().probes.is_empty());
     assert!(Reference::of(&scene).is_err());
 }

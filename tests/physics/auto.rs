@@ -1,5 +1,4 @@
-//! Tests of `auto`: it skips work that a scene does not need, and its result is within the requested
-//! error of the exact equilibrium.
+//! Tests of `auto`: it skips work that is not needed, and its result is within the requested error of the equilibrium.
 
 use crate::common::{ids_of, sampled, scene};
 use warpbeam::method::{AutoReport, Decision};
@@ -51,8 +50,7 @@ fn every_result_is_within_the_requested_error() {
             let is_linear = report(&auto).decision == Decision::Linear;
             assert_eq!(is_linear, auto.is_linear());
             served += usize::from(is_linear);
-            // The estimate also covers the largest displacement, not only the probe's. Linear theory is
-            // not tried where supports move.
+            // The estimate covers the largest displacement too. Linear theory is not tried where supports move.
             let may_skip = !auto.problem().supports().move_the_body();
             assert!(is_linear || !may_skip || linear > 0.1 * asked, "{what}: linear theory is off by {linear} % only");
         }

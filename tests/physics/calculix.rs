@@ -16,8 +16,7 @@ struct Row {
 }
 
 fn rows() -> Vec<Row> {
-    let table = include_str!("../data/calculix/results.csv").lines().skip(1);
-    let rows = table.map(|line| {
+    let rows = include_str!("../data/calculix/results.csv").lines().skip(1).map(|line| {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |i: usize| cells[i].parse::<f64>().unwrap();
         let displacement = Vector2::new(number(2), number(3));

@@ -115,8 +115,7 @@ fn smallest_eigenvalue(simulation: &Simulation) -> f64 {
             stiffness[(j, i)] = (behind[j] - ahead[j]) / (2.0 * step);
         }
     }
-    let symmetric = (&stiffness + stiffness.transpose()) * 0.5;
-    let eigenvalues = symmetric.symmetric_eigenvalues();
+    let eigenvalues = ((&stiffness + stiffness.transpose()) * 0.5).symmetric_eigenvalues();
     eigenvalues.min() / eigenvalues.amax()
 }
 
@@ -253,8 +252,7 @@ fn claims_near_critical_loads_are_true() {
                     critical(&claims_of(&mut solved(&scene))).is_some_and(|at| (at / expected - 1.0).abs() < 1e-3)
                 };
                 let below = push(0.8 * at, 0.0).with_method(MethodKind::Newton);
-                let linear = push(1.0, 0.0).with_method(MethodKind::Linear);
-                let is_stated = is_near(below, 1.25) && is_near(linear, at);
+                let is_stated = is_near(below, 1.25) && is_near(push(1.0, 0.0).with_method(MethodKind::Linear), at);
                 let far = claims_of(&mut newton(push(0.6 * at, 0.0)));
                 claims.check("critical", seed, is_stated && critical(&far).is_none(), || format!("{at}: {far:?}"));
                 let helps = stated.contains(&Claim::Helps(Advice::Imperfection));

@@ -1,9 +1,8 @@
-//! Compares motions with an independent trajectory, beam theory, conservation laws, and known
-//! properties of the integrators.
+//! Compares motions with an independent trajectory, beam theory, conservation laws, and properties of the integrators.
 
 use std::f64::consts::TAU;
 
-use crate::common::motion::{beam, drift, first_mode, lowest_frequency, momentum, run, with};
+use crate::common::motion::{beam, drift, first_mode, grab, lowest_frequency, momentum, run, with};
 use crate::common::random::Random;
 use crate::common::{ids_of, largest_distance, numbers, scene, solve_json, stdout, warpbeam};
 use nalgebra::{Matrix2, Vector2};
@@ -21,8 +20,7 @@ const ENERGY_MOMENTUM: IntegratorKind = IntegratorKind::EnergyMomentum;
 const IMPLICIT: [IntegratorKind; 3] = [EULER, TR_BDF2, ENERGY_MOMENTUM];
 const SYMPLECTIC: IntegratorKind = IntegratorKind::SymplecticEuler;
 
-/// Returns times and tip displacements of the swing at multiples of 1/240 s, computed independently by
-/// `tests/data/swing.py`.
+/// Returns times and tip displacements of the swing at multiples of 1/240 s, computed by `tests/data/swing.py`.
 pub fn swing_truth() -> Vec<(f64, Vector2<f64>)> {
     let text = include_str!("../data/swing.csv");
     let rows = numbers(text.split_once("\ntime,").map_or(text, |(_, table)| table));
@@ -130,11 +128,9 @@ fn a_small_vibration_has_the_period_of_the_first_mode() {
     scene.dynamics.iterations = 0;
     let mut simulation = Simulation::new(&scene).unwrap();
     let omega = lowest_frequency(&simulation);
-    let mode = first_mode(&simulation);
-    simulation.start_from(&mode).unwrap();
+    simulation.start_from(&first_mode(&simulation)).unwrap();
     let start = simulation.probe("tip").unwrap().y;
-    let steps = (0.25 * TAU / omega / 1e-3).round() as u32;
-    (0..steps).for_each(|_| _ = simulation.step());
+    (0..(0.25 * TAU / omega / 1e-3).round() as u32).for_each(|_| _ = simulation.step());
     assert!((simulation.probe("tip").unwrap().y / start).abs() < 0.01);
 }
 
@@ -145,8 +141,7 @@ fn implicit_euler_damps_the_first_mode_by_28_percent_a_period() {
     scene.dynamics.duration = 1e3;
     let mut simulation = Simulation::new(&scene).unwrap();
     let omega = lowest_frequency(&simulation);
-    let mode = first_mode(&simulation);
-    simulation.start_from(&mode).unwrap();
+    simulation.start_from(&first_mode(&simulation)).unwrap();
     let before = simulation.motion().unwrap().ledger().total();
     let (periods, period) = (5.0, TAU / omega);
     let steps = (periods * period * 60.0).round();
@@ -222,8 +217,7 @@ fn stiffness_proportional_damping_does_not_damp_rotation() {
 fn the_critical_step_is_critical() {
     let at = |factor: f64| {
         let mut scene = with("swing", SYMPLECTIC, 1e-4, 1, 1e3);
-        let critical = Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
-        scene.dynamics.time_step = factor * critical;
+        scene.dynamics.time_step = factor * Simulation::new(&scene).unwrap().motion().unwrap().critical_step().unwrap();
         let mut simulation = Simulation::new(&scene).unwrap();
         (0..6000).for_each(|_| _ = simulation.step());
         assert!(simulation.state().is_finite());
@@ -457,8 +451,7 @@ fn auto_follows_a_grab_and_edits() {
         for step in 0..160 {
             for body in &mut bodies {
                 if step == 20 {
-                    let point = body.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap();
-                    assert!(body.grab(point));
+                    grab(body, Vector2::new(0.9, 0.01));
                 }
                 if (20..80).contains(&step) {
                     let t = f64::from(step - 20) / 120.0;
@@ -806,7 +799,7 @@ fn one_solve_is_exact_in_linear_theory() {
             (scene.dynamics.damping.mass, scene.dynamics.damping.stiffness) = (mass, stiffness);
             let mut simulation = Simulation::new(&scene).unwrap();
             if spring {
-                assert!(simulation.grab(simulation.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap()));
+                grab(&mut simulation, Vector2::new(0.9, 0.01));
             }
             for step in 0..20 {
                 let to = Vector2::new(0.9, 0.01) + Vector2::new(-0.1, 0.4) * (f64::from(step) / 200.0);
@@ -865,8 +858,7 @@ fn supports_stop_the_nodes_that_they_hold() {
     };
     let (held, fastest) = moves(simulation.state().velocity(), &simulation);
     assert!(held == 0.0 && fastest > 1.0, "{held} {fastest}");
-    let everywhere = vec![Vector2::new(1e-3, -2e-3); simulation.displacement().len()];
-    simulation.start_from(&everywhere).unwrap();
+    simulation.start_from(&vec![Vector2::new(1e-3, -2e-3); simulation.displacement().len()]).unwrap();
     let (held, farthest) = moves(simulation.displacement(), &simulation);
     assert!(held == 0.0 && farthest > 1e-3, "{held} {farthest}");
 }

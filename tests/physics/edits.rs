@@ -46,8 +46,7 @@ fn edits_of_loads_keep_the_state() {
 fn a_body_whose_loads_vanish_returns_to_rest() {
     for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e.kind, m.kind))) {
         for (id, force) in [("cantilever", [0.0, -3000.0]), ("cantilever", [900.0, -1300.0]), ("article", [5e3, 2e4])] {
-            let start = scene(id).with_element(element).with_method(method);
-            let mut body = Simulation::new(&start).unwrap();
+            let mut body = Simulation::new(&scene(id).with_element(element).with_method(method)).unwrap();
             body.set_force(LoadId::nth(0), force).unwrap();
             body.solve();
             body.set_force(LoadId::nth(0), [0.0; 2]).unwrap();
@@ -72,8 +71,7 @@ fn equations_are_shared_and_kept() {
     body.change_scene(&other).unwrap();
     assert!(Arc::ptr_eq(&system, body.system()));
     let ghost = other.clone().with_method(MethodKind::Linear);
-    let ghost = Simulation::with_system(&ghost, system.clone()).unwrap();
-    assert!(Arc::ptr_eq(&system, ghost.system()));
+    assert!(Arc::ptr_eq(&system, Simulation::with_system(&ghost, system.clone()).unwrap().system()));
     body.change_scene(&other.clone().with_cells(40, 4)).unwrap();
     assert!(!Arc::ptr_eq(&system, body.system()));
     fn shared_between_threads<T: Send + Sync>(_: &T) {}
@@ -139,8 +137,7 @@ fn a_mesh_file_is_read_once() {
     let text = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
         fix = [\"x\", \"y\"]\n[[load]]\nkind = \"force\"\nat = [1, 0]\nforce = [0, -100]\n";
     let scene = Scene::from_toml_in(text, folder.path()).unwrap();
-    let unread = Scene::from_toml(text).unwrap();
-    let refused = Simulation::new(&unread).unwrap_err().to_string();
+    let refused = Simulation::new(&Scene::from_toml(text).unwrap()).unwrap_err().to_string();
     assert!(refused.contains("square.msh") && refused.contains("open the scene from its folder"), "{refused}");
     let mut simulation = Simulation::new(&scene).unwrap();
     folder.close().unwrap();

@@ -81,8 +81,7 @@ fn every_case_of_the_box_is_certified() {
     for ([element, cells, plane], length) in bodies.flat_map(|body| [5.0, 10.0, 50.0, 500.0].map(|l| (body, l))) {
         for nu in ["material.poisson=0", "material.poisson=0.3", "material.poisson=0.49"] {
             for alpha in [0.01, 1.0, 10.0, 30.0, 100.0, 1000.0] {
-                let scene = cantilever(length, alpha, &[element, cells, plane, nu]);
-                let mut simulation = Simulation::new(&scene).unwrap();
+                let mut simulation = Simulation::new(&cantilever(length, alpha, &[element, cells, plane, nu])).unwrap();
                 let status = simulation.solve().clone();
                 assert!(simulation.displacement().iter().all(|u| u.x.is_finite() && u.y.is_finite()));
                 if status != Status::Converged || simulation.certify().stable != Some(true) {
@@ -309,8 +308,7 @@ fn supports_fix_the_components_that_they_name() {
 #[test]
 fn a_clamp_is_a_clamp_at_any_size_and_place() {
     for size in [1e-4, 1.0, 1e4] {
-        let scene = Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0]);
-        let simulation = Simulation::new(&scene);
+        let simulation = Simulation::new(&(Scene::beam(10.0 * size, size).clamp("left").force("right", [0.0, -1.0])));
         assert!(simulation.is_ok(), "{size} m: {:?}", simulation.err());
         // A body supported along its middle line only can rotate, at any position.
         let hinged = Scene::beam(10.0 * size, size).with_cells(4, 2).support([0.0, 0.0], &[Axis::X, Axis::Y]);
@@ -364,8 +362,7 @@ fn reactions_balance_moments() {
     let beam = Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
     let clamped = beam.clone().clamp("left").force("right", [300.0, -900.0]);
     let rolling = beam.support([0.0, -0.5], &[Axis::X, Axis::Y]).support([10.0, -0.5], &[Axis::Y]);
-    let rolling = rolling.force([5.0, 0.5], [100.0, -6000.0]);
-    for scene in [clamped, rolling] {
+    for scene in [clamped, rolling.force([5.0, 0.5], [100.0, -6000.0])] {
         let unmoved = Simulation::new(&scene).unwrap().solution().reaction;
         assert!(unmoved.force.norm() < 1e-9 && unmoved.moment.abs() < 1e-9, "{unmoved:?}");
         let simulation = solved(&scene);

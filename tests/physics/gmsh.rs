@@ -75,8 +75,7 @@ fn shipped_meshes_are_read_with_their_curved_sides() {
     assert_eq!(mesh.edges().keys().collect::<Vec<_>>(), ["end", "fillet", "wall"]);
     // The fillet's middle nodes lie on its circle, not on its chords.
     for segment in &mesh.edges()["fillet"] {
-        let middle = mesh.nodes()[segment.nodes()[1] as usize];
-        assert!(((middle - Vector2::new(0.5, 0.5)).norm() - 0.2).abs() < 1e-9);
+        assert!(((mesh.nodes()[segment.nodes()[1] as usize] - Vector2::new(0.5, 0.5)).norm() - 0.2).abs() < 1e-9);
     }
     let straight = Mesh::from_gmsh(text, ElementKind::T3).unwrap();
     assert_eq!(straight.element_count(), mesh.element_count());
@@ -117,8 +116,7 @@ fn unusable_mesh_files_are_refused_with_the_line() {
         let error = error.map_or_else(|e| e.to_string(), |_| String::new());
         assert!(error.contains(message) || message == "$EndElements", "{new}: {error}");
     }
-    let flat = SQUARE.replacen("0 1 0\n9", "2 2 0\n9", 1);
-    let error = Mesh::from_gmsh(&flat, ElementKind::T3).unwrap_err();
+    let error = Mesh::from_gmsh(&SQUARE.replacen("0 1 0\n9", "2 2 0\n9", 1), ElementKind::T3).unwrap_err();
     assert!(matches!(error, GmshError::Mesh(MeshError::Degenerate { element: 1, .. })), "{error}");
     assert!(error.to_string().contains("element 1 has no area"), "{error}");
     assert!(matches!(Mesh::from_gmsh("", ElementKind::T3), Err(GmshError::Syntax { .. })));
@@ -359,8 +357,7 @@ fn quadrilaterals_are_read() {
     assert_eq!(Mesh::gmsh_element(SQUARE), Some(ElementKind::T3));
     assert_eq!(Mesh::gmsh_element(""), None);
     // Not convex: a corner points inwards.
-    let dart = QUADS.replacen("1 1 0\n0 1", "0.2 0.2 0\n0 1", 1);
-    let error = Mesh::from_gmsh(&dart, ElementKind::Q4).unwrap_err();
+    let error = Mesh::from_gmsh(&QUADS.replacen("1 1 0\n0 1", "0.2 0.2 0\n0 1", 1), ElementKind::Q4).unwrap_err();
     assert!(matches!(error, GmshError::Mesh(MeshError::Folded { element: 0 })), "{error}");
     assert!(error.to_string().contains("convex"), "{error}");
 }

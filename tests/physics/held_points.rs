@@ -157,8 +157,7 @@ fn moved_points_do_the_work_that_is_stored() {
         power.push(simulation.support_reactions()[1].force.dot(&to));
     }
     assert!((simulation.probe("point").unwrap() - to).norm() < 1e-12);
-    let three = power.windows(3).step_by(2);
-    let work: f64 = three.map(|p| (p[0] + 4.0 * p[1] + p[2]) / (3.0 * f64::from(STEPS))).sum();
+    let work: f64 = power.windows(3).step_by(2).map(|p| (p[0] + 4.0 * p[1] + p[2]) / (3.0 * f64::from(STEPS))).sum();
     let energy = simulation.solution().energy.elastic;
     assert!((work - energy).abs() < 1e-4 * energy, "{work} {energy}");
     let direct = solved(&bent(1.0)).solution().energy.elastic;
@@ -239,7 +238,6 @@ fn scene_files_have_the_point_of_a_support() {
     assert_eq!(Scene::from_toml(&toml).unwrap().supports, scene.supports);
     assert_eq!(scene.supports[0], Support::point([3.4, 0.1], BOTH));
     assert_eq!(scene.supports[0].place, Place::At([3.4, 0.1]));
-    let wrong = toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1);
-    let error = Scene::from_toml(&wrong).unwrap_err().to_string();
+    let error = Scene::from_toml(&toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1)).unwrap_err().to_string();
     assert!(error.contains("expected at = [x, y] with acts_on = \"point\", got an edge"), "{error}");
 }

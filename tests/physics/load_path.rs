@@ -1,5 +1,4 @@
-//! Compares load paths with theory: critical loads with Euler's, and the work of supports with the stored energy. Also
-//! tests paths that end early.
+//! Compares load paths with theory: critical loads, and the work of supports. Also tests paths that end early.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -40,8 +39,7 @@ fn columns_buckle_at_eulers_loads() {
             for (i, (found, factor)) in path.bifurcations.iter().zip(factors).enumerate() {
                 // For a beam this slender, shear and shortening change the load by a few thousandths, and for higher
                 // modes by a few hundredths.
-                let bound = [0.01, 0.03, 0.08][i];
-                assert!((found.factor * part / factor - 1.0).abs() < bound, "{words}");
+                assert!((found.factor * part / factor - 1.0).abs() < [0.01, 0.03, 0.08][i], "{words}");
                 assert_eq!(found.unstable_modes, [i, i + 1], "{words}");
             }
             for state in &path.states {
@@ -95,8 +93,7 @@ fn commands_name_the_critical_load() {
     let set = ["column", "--set", "load.0.force=[-1043,0]"];
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("path.svg");
-    let args = [&["curve"][..], &set, &["--picture", picture.to_str().unwrap()]].concat();
-    let text = stdout(&warpbeam(&args));
+    let text = stdout(&warpbeam(&[&["curve"][..], &set, &["--picture", picture.to_str().unwrap()]].concat()));
     let buckles = |text: &str| -> f64 {
         let percent = text.split("buckles at ").nth(1).unwrap_or_else(|| panic!("{text}"));
         percent.split(' ').next().unwrap().parse().unwrap()
@@ -124,7 +121,6 @@ fn moved_supports_have_a_residual() {
         assert!(residual.unwrap() <= 1e-8 || floor.is_some_and(|floor| residual.unwrap() <= floor), "{json}");
     }
     // A body that is only translated has no forces to compare the residual with.
-    let carried = scene_with("stretch", &["load.0.force=[0,0]", "support.0.displacement=[0.5,0]"]);
-    let simulation = solved(&carried);
+    let simulation = solved(&scene_with("stretch", &["load.0.force=[0,0]", "support.0.displacement=[0.5,0]"]));
     assert!(simulation.residual().is_finite());
 }

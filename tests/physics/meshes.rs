@@ -45,8 +45,7 @@ fn files_without_a_mesh_are_refused() {
     // Edges with a missing node, with nodes that are no element's side, or with too many nodes are refused.
     for nodes in [&[0, 9][..], &[1, 3], &[0, 0], &[0, 1, 2]] {
         let refused = mesh(square(), ElementKind::T3, triangles(), edge("e", &[nodes]));
-        let expected = MeshError::NoSuchSide { edge: "e".to_owned(), nodes: nodes.to_vec() };
-        assert_eq!(refused, Err(expected));
+        assert_eq!(refused, Err(MeshError::NoSuchSide { edge: "e".to_owned(), nodes: nodes.to_vec() }));
     }
     for nodes in [&[][..], &[1], &[0, 1, 2, 3]] {
         assert_eq!(Segment::new(nodes), None);
@@ -56,8 +55,7 @@ fn files_without_a_mesh_are_refused() {
     // The side is so curved that its element folds over.
     let mut nodes = square();
     nodes.extend([[0.5, 0.8], [1.0, 0.5], [0.5, 0.5]].map(Vector2::from));
-    let folded = mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none());
-    assert_eq!(folded, Err(MeshError::Folded { element: 0 }));
+    assert_eq!(mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none()), Err(MeshError::Folded { element: 0 }));
 }
 
 /// A mesh of the caller, with its own edges, can be solved like any other.

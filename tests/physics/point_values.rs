@@ -67,8 +67,7 @@ fn a_point_has_the_values_of_the_fields() {
                     // The displacement is not recovered.
                     let smooth_value = field.smooth_at(mesh, &nodal, point);
                     assert_eq!(smooth_value.is_none(), field.is_of_displacement(), "{field:?}");
-                    let of_fields = [smooth_value.unwrap_or(raw_value), raw_value];
-                    for (state, value) in [recovered, raw].iter().zip(of_fields) {
+                    for (state, value) in [recovered, raw].iter().zip([smooth_value.unwrap_or(raw_value), raw_value]) {
                         let own = state.field(field).unwrap();
                         let same = (value - own).abs() < 1e-9 * (own.abs() + 1e-6);
                         assert!(same, "{id} {field:?} {:?}: {value} {own}", state.values);
@@ -126,8 +125,7 @@ fn the_numbers_of_a_point_follow_from_each_other() {
         let mut simulation = Simulation::new(&scene).unwrap();
         // Motions stop halfway; other scenes are solved to equilibrium.
         (0..40).for_each(|_| _ = simulation.step());
-        let mesh = simulation.system().mesh();
-        let count = mesh.element_count();
+        let count = simulation.system().mesh().element_count();
         for (element, at) in [(0, [0.2, 0.3]), (count / 2, [0.5, 0.1]), (count - 1, [0.0, 0.4])] {
             let point = MaterialPoint { element, at };
             let states = [PointValues::Recovered, PointValues::Raw].map(|v| simulation.point_state(point, v).unwrap());

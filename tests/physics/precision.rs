@@ -365,8 +365,7 @@ fn the_bound_of_rounding_holds_out_of_balance() {
                         (turn.apply(*x) - x) + turn.apply(own)
                     };
                     let u: Vec<Vector2<f64>> = mesh.nodes().iter().map(move_node).collect();
-                    let state = problem.system().state_of(&u).unwrap();
-                    let found = Rounding::of(problem, &state, Kinematics::Corotated);
+                    let found = Rounding::of(problem, &problem.system().state_of(&u).unwrap(), Kinematics::Corotated);
                     assert!(found.error <= found.bound, "{} {aspect} {angle} {strain} {bend}: {found:?}", element.id());
                     tightest = tightest.min(found.bound / found.error);
                 }

@@ -154,8 +154,7 @@ fn moments_under_weight_and_edge_loads_are_those_of_statics() {
             let line = SectionLine { at: [x, y].into(), angle };
             let section = simulation.section(line).unwrap();
             let (corners, _) = rectangle(&scene);
-            let part = clipped(&corners, line);
-            let (area, centroid) = area_of(&part);
+            let (area, centroid) = area_of(&clipped(&corners, line));
             // The top runs from its crossing to the end.
             let from = x - (0.5 * h - y) * angle.tan();
             let top = (total * ((l - from) / l), Vector2::new(0.5 * (from + l), 0.5 * h));
@@ -176,8 +175,7 @@ fn stresses_along_a_section_are_those_of_beam_theory() {
     for element in ElementKind::all() {
         let scene =
             Scene::beam(10.0, 1.0).with_element(element).with_cells(80, 8).clamp("left").force("right", [0.0, -1.0]);
-        let simulation = solved(&scene).unwrap();
-        let sections = simulation.sections(11).unwrap();
+        let sections = solved(&scene).unwrap().sections(11).unwrap();
         assert_eq!(sections.len(), 11);
         for (i, Section { forces, stress_forces, points, rest, .. }) in sections.iter().enumerate() {
             assert!((rest[0].x - i as f64).abs() < 1e-9 && (rest[1] - rest[0]).norm() > 0.999, "{i}: {rest:?}");

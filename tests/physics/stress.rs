@@ -167,8 +167,7 @@ fn stresses_of_a_beam_are_those_of_the_book() {
     let load = 1e-5 * YOUNG / 12.0;
     for kind in ElementKind::all() {
         let bent = straight_beam(kind, load, 0.0, Rotation::IDENTITY);
-        let sheared = straight_beam(kind, 0.0, load, Rotation::IDENTITY);
-        let (m, q) = (bent.nodal_stress(), sheared.nodal_stress());
+        let (m, q) = (bent.nodal_stress(), straight_beam(kind, 0.0, load, Rotation::IDENTITY).nodal_stress());
         let nodes = bent.system().mesh().nodes();
         let (mut normal, mut shear) = (0.0f64, 0.0f64);
         for ((x, m), q) in nodes.iter().zip(m.cauchy()).zip(q.cauchy()) {
@@ -180,11 +179,9 @@ fn stresses_of_a_beam_are_those_of_the_book() {
             }
         }
         println!("{kind:?}: M y/I to {:.3} %, shear to {:.2} % of the largest", 100.0 * normal, 100.0 * shear);
-        let simple = kind.entry().points.len() == 1;
-        assert!(normal < if simple { 0.06 } else { 0.005 }, "{kind:?}: {normal}");
+        assert!(normal < if kind.entry().points.len() == 1 { 0.06 } else { 0.005 }, "{kind:?}: {normal}");
         // Linear patches approximate the parabola worst on the faces; quadratic ones are more accurate.
-        let linear = kind.entry().sides[0].len() == 2;
-        assert!(shear < if linear { 0.25 } else { 0.03 }, "{kind:?}: {shear}");
+        assert!(shear < if kind.entry().sides[0].len() == 2 { 0.25 } else { 0.03 }, "{kind:?}: {shear}");
     }
 }
 
@@ -282,8 +279,7 @@ fn the_mesh_error_is_about_the_true_one() {
         for kind in ElementKind::all() {
             for along in [10, 20, 40] {
                 let across = ((f64::from(along) * beam.height / beam.length).round() as u32).max(tip);
-                let scene = scene.clone().with_element(kind).with_cells(along, across);
-                let found = Errors::of(&scene, &fine);
+                let found = Errors::of(&scene.clone().with_element(kind).with_cells(along, across), &fine);
                 let text = format!("{id} {kind:?} {along}×{across}: {found:?}");
                 if kind == ElementKind::Q4 && across == 1 {
                     // In a single row every cell has the same error, which recovery cannot detect.

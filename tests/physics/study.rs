@@ -115,8 +115,7 @@ fn a_swing_is_studied() {
     }
     // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they
     // end with those of the others.
-    let explicit = study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler);
-    for m in explicit {
+    for m in study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler) {
         let parts = 1.0 / 60.0 / m.setting.time_step;
         assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
     }
@@ -220,8 +219,7 @@ fn tuning_refuses_demands_below_the_known_error() {
     let block = scene_with("shear", &["load.0.force=[1e6,0]"]);
     let point = Scene::beam(2.0, 1.0).clamp("left").force([2.0, 0.5], [0.0, -100.0]).probe("tip", [2.0, 0.5]);
     for (name, scene, asked) in [("block", block, 5.0), ("point", point, 1.0), ("shear", scene("shear"), 0.01)] {
-        let demand = Demand { max_error_percent: Some(asked), max_time_ms: None };
-        let refused = Tuning::of(&scene, demand, &go_on);
+        let refused = Tuning::of(&scene, Demand { max_error_percent: Some(asked), max_time_ms: None }, &go_on);
         assert!(refused.as_ref().is_err_and(StudyError::is_unknown), "{name}: {:?}", refused.map(|t| t.chosen));
     }
     let [text, _] = ends_in(".".as_ref(), 1, &["tune", "shear", "--error", "0.01%"]);

@@ -178,8 +178,7 @@ fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
         ("-1,234", "write -1234 or -1.234"),
         ("1,000e3", "write 1000e3 or 1.000e3"),
     ] {
-        let refused = parse(text, "N").unwrap_err().to_string();
-        assert_eq!(refused, format!("`{text}` can be read in two ways: {readings}"));
+        assert_eq!(parse(text, "N").unwrap_err().to_string(), format!("`{text}` can be read in two ways: {readings}"));
     }
     let texts = "0,5|-0,5|1,5 kN|30,00|30 00|1,234 567|30.000,5|0,500|1,,000|,5|1234,567|1.000.000|1.000.000 N|1..5";
     for text in texts.split('|') {

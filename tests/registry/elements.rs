@@ -46,8 +46,7 @@ fn samples(entry: &ElementType) -> Vec<[f64; 2]> {
 }
 
 fn the_id_is_the_name_in_scene_files(kind: ElementKind) {
-    let word = toml::Value::try_from(kind).unwrap();
-    assert_eq!(word.as_str(), Some(kind.id()));
+    assert_eq!(toml::Value::try_from(kind).unwrap().as_str(), Some(kind.id()));
     assert_eq!(kind.entry().kind, kind);
 }
 
@@ -101,8 +100,7 @@ fn sides_run_around(kind: ElementKind) {
         let place = |n: usize| Vector2::from(entry.nodes[n]);
         for (j, &n) in side.iter().enumerate() {
             let t = j as f64 / (side.len() - 1) as f64;
-            let expected = place(side[0]) * (1.0 - t) + place(side[side.len() - 1]) * t;
-            assert!((place(n) - expected).norm() < 1e-15);
+            assert!((place(n) - (place(side[0]) * (1.0 - t) + place(side[side.len() - 1]) * t)).norm() < 1e-15);
         }
     }
 }
@@ -178,8 +176,7 @@ fn children_and_lattice_cover_the_cell(kind: ElementKind) {
 /// Returns a mesh of the square [0, 2] × [−1, 1] with irregular elements and, where the element
 /// allows it, curved inner sides.
 fn irregular_mesh(kind: ElementKind) -> Mesh {
-    let square = Scene::beam(2.0, 2.0).with_cells(4, 3).with_element(kind);
-    let mesh = Mesh::beam(square.beam.as_ref().unwrap()).unwrap();
+    let mesh = Mesh::beam(Scene::beam(2.0, 2.0).with_cells(4, 3).with_element(kind).beam.as_ref().unwrap()).unwrap();
     let warp = |x: Vector2<f64>| {
         let bump = x.x * (2.0 - x.x) * (1.0 - x.y * x.y);
         x + Vector2::new(0.12 * (3.0 * x.y + 1.0).sin(), 0.1 * (2.0 * x.x).cos()) * bump
@@ -250,12 +247,10 @@ fn is_inside(x: &Vector2<f64>) -> bool {
 
 fn clockwise_elements_are_reversed(kind: ElementKind) {
     let mesh = irregular_mesh(kind);
-    let entry = kind.entry();
-    let over = entry.turned_over();
+    let over = kind.entry().turned_over();
     let clockwise: Vec<u32> = mesh.elements().flat_map(|e| over.iter().map(|&i| e[i]).collect::<Vec<_>>()).collect();
     assert_ne!(clockwise, mesh.connectivity());
-    let turned = Mesh::new(mesh.nodes().to_vec(), kind, clockwise, mesh.edges().clone()).unwrap();
-    assert_eq!(turned, mesh);
+    assert_eq!(Mesh::new(mesh.nodes().to_vec(), kind, clockwise, mesh.edges().clone()).unwrap(), mesh);
 }
 
 fn refinement_keeps_the_body(kind: ElementKind) {
@@ -284,8 +279,7 @@ fn material_points_are_found_in_curved_elements(kind: ElementKind) {
     let entry = kind.entry();
     for (element, own) in mesh.elements().enumerate() {
         for at in samples(entry).into_iter().filter(|&at| (entry.cell.depth)(at) > 1e-6) {
-            let point = MaterialPoint { element, at };
-            let weights = mesh.weights(point).unwrap();
+            let weights = mesh.weights(MaterialPoint { element, at }).unwrap();
             assert_eq!(weights.iter().map(|w| w.0).collect::<Vec<_>>(), own);
             let place: Vector2<f64> = weights.iter().map(|&(n, w)| mesh.nodes()[n as usize] * w).sum();
             let found = mesh.locate(place).unwrap();
@@ -294,8 +288,7 @@ fn material_points_are_found_in_curved_elements(kind: ElementKind) {
             assert!(off.norm() < 1e-9, "element {element}: {:?} for {at:?}", found.at);
         }
     }
-    let outside = MaterialPoint { element: mesh.element_count(), at: [0.1, 0.1] };
-    assert_eq!(mesh.weights(outside), None);
+    assert_eq!(mesh.weights(MaterialPoint { element: mesh.element_count(), at: [0.1, 0.1] }), None);
     assert_eq!(mesh.locate(Vector2::new(50.0, 0.0)), None);
     // A node on a side is located in some element, whatever the rounding.
     assert!(mesh.nodes().iter().all(|&x| mesh.locate(x).is_some()));
@@ -546,8 +539,7 @@ fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
     // A + G is exact, and A with only the positive part of G is positive definite.
     let parts = dense(&problem, &start, Tangent::WARPED, 0.0) + dense(&problem, &start, Tangent::GEOMETRIC, 0.0);
     assert!((parts - dense(&problem, &start, Tangent::EXACT, 0.0)).norm() < 1e-12 * exact.norm());
-    let definite = dense(&problem, &start, Tangent::DEFINITE, 0.0);
-    assert!(definite.symmetric_eigenvalues().min() > 0.0);
+    assert!(dense(&problem, &start, Tangent::DEFINITE, 0.0).symmetric_eigenvalues().min() > 0.0);
 }
 
 /// A + max(G, 0) exceeds A + G by a positive semidefinite matrix, in compression, tension and bending.
@@ -682,8 +674,7 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     // With all nodes at the origin, f_int is −R K X, which is exact in a rigidly rotated body.
     let turn = Rotation::from_angle(1.1);
     let turned = state(&problem, |x| turn.apply(x));
-    let collapsed = turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap();
-    let offset = forces(&problem, &collapsed);
+    let offset = forces(&problem, &turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap());
     let magnitude = offset.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
     assert!(magnitude > 1.0);
     // A x − R K X vanishes in a rigidly rotated body.

@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use nalgebra::Vector2;
 use warpbeam::{IntegratorKind, Material, MethodKind, Simulation, Status};
 
-use crate::common::motion::{beam, first_mode, lowest_frequency, momentum, run, with};
+use crate::common::motion::{beam, first_mode, grab, lowest_frequency, momentum, run, with};
 use crate::{Test, suite};
 
 const TESTS: &[Test<IntegratorKind>] = tests! {
@@ -34,8 +34,7 @@ fn the_error_has_the_stated_order_in_the_step(kind: IntegratorKind) {
         scene.dynamics.iterations = 0;
         scene.solver.tolerance = 1e-12;
         let mut simulation = Simulation::new(&scene).unwrap();
-        // The amplitude is so small that only the first mode moves: modes along the beam grow with
-        // the square of the amplitude.
+        // Of this amplitude, only the first mode moves: modes along the beam grow with its square.
         let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
         simulation.start_from(&mode).unwrap();
         (0..steps << halvings).for_each(|_| _ = simulation.step());
@@ -85,8 +84,7 @@ fn the_ledger_closes(kind: IntegratorKind) {
     let steps = (1.0 / h).round() as u32;
     for step in 0..steps {
         if step == steps / 4 {
-            let point = simulation.system().mesh().locate(Vector2::new(0.9, 0.01)).unwrap();
-            assert!(simulation.grab(point));
+            grab(&mut simulation, Vector2::new(0.9, 0.01));
         }
         if (steps / 4..steps / 2).contains(&step) {
             let t = f64::from(step) * h;

@@ -1,5 +1,4 @@
-//! Tests that run for every entry of a registry under the entry's name: `cargo test --test registry -- t6` runs those
-//! of one element, `-- newton` those of one method.
+//! Tests of every entry of a registry, under its name: `cargo test --test registry -- t6` runs those of one element.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 /// Lists functions with their names.

@@ -21,15 +21,13 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn the_id_is_the_name_in_scene_files(kind: MethodKind) {
-    let word = toml::Value::try_from(kind).unwrap();
-    assert_eq!(word.as_str(), Some(kind.id()));
+    assert_eq!(toml::Value::try_from(kind).unwrap().as_str(), Some(kind.id()));
     assert_eq!(kind.entry().kind, kind);
 }
 
 fn no_other_method_has_the_same_colour(kind: MethodKind) {
     for dark in [false, true] {
-        let same = METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark));
-        assert_eq!(same.count(), 1);
+        assert_eq!(METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark)).count(), 1);
     }
 }
 
@@ -42,8 +40,7 @@ fn ended(scene: &Scene) -> Simulation {
 /// The extension is δ = P L / (E A) on every mesh.
 fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
     for cells in ["[1,1]", "[16,2]", "[7,3]"] {
-        let scene = scene_with("stretch", &[&format!("beam.cells={cells}")]).with_method(method);
-        let simulation = ended(&scene);
+        let simulation = ended(&scene_with("stretch", &[&format!("beam.cells={cells}")]).with_method(method));
         assert_eq!(*simulation.status(), Status::Converged);
         let result = simulation.solution();
         let expected = 50_000.0 * 4.0 / (1e6 * 0.5);
@@ -53,8 +50,7 @@ fn an_axial_bar_stretches_by_pl_over_ea(method: MethodKind) {
 }
 
 fn without_load_nothing_moves(method: MethodKind) {
-    let scene = scene_with("cantilever", &["load.0.force=[0,0]"]).with_method(method);
-    let simulation = ended(&scene);
+    let simulation = ended(&scene_with("cantilever", &["load.0.force=[0,0]"]).with_method(method));
     assert_eq!(*simulation.status(), Status::Converged);
     assert!(simulation.displacement().iter().all(|u| *u == Vector2::zeros()));
 }
@@ -99,8 +95,7 @@ fn extremes_stay_finite(method: MethodKind) {
 /// Returns the largest distance between two displacements, relative to the largest displacement of the second.
 fn difference(a: &Simulation, b: &Simulation) -> f64 {
     let size = b.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
-    let pairs = a.displacement().iter().zip(b.displacement());
-    pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
+    a.displacement().iter().zip(b.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
 }
 
 /// After any edit of a solved body, the result is that of a solve from rest.
@@ -174,8 +169,7 @@ fn a_restored_state_continues_as_the_saved_one(method: MethodKind) {
         assert_eq!(*simulation.state(), saved);
     }
     assert_eq!(*simulation.solve(), Status::Converged);
-    let other = Simulation::new(&scene("article")).unwrap();
-    assert!(simulation.restore(other.state()).is_err());
+    assert!(simulation.restore(Simulation::new(&scene("article")).unwrap().state()).is_err());
 }
 
 fn a_running_state_is_reported_as_running(method: MethodKind) {

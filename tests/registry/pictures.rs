@@ -77,8 +77,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let entry = mesh.element().entry();
     let lattice = (entry.cell.lattice)(entry.drawn_pieces);
     let position = |element: usize, at: [f64; 2]| {
-        let value = frame.field.smooth_at(mesh, &nodal, MaterialPoint { element, at }).unwrap();
-        colormap::position(value, frame.range)
+        colormap::position(frame.field.smooth_at(mesh, &nodal, MaterialPoint { element, at }).unwrap(), frame.range)
     };
     let mut seen = 0;
     for (i, triangle) in frame.triangles.iter().enumerate() {
@@ -109,8 +108,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
 
     // At the tip, a pixel just inside the body is body and one just outside is background. The outline between them is
     // 1.2 wide.
-    let probe = lab.simulation().solution().probes[0].clone();
-    let tip = project(&camera, rect, probe.x);
+    let tip = project(&camera, rect, lab.simulation().solution().probes[0].clone().x);
     let mesh = lab.simulation().system().mesh();
     let centre = positions.iter().sum::<Vector2<f64>>() / positions.len() as f64;
     // The roll-up's tip lies on its clamp; no other object is drawn at the other scenes' tips.

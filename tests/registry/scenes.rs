@@ -88,8 +88,7 @@ fn the_scene_has_a_description_and_a_probe(id: &'static str) {
 
 fn the_scene_is_unchanged_by_writing_and_reading_toml(id: &'static str) {
     let scene = scene(id);
-    let again = Scene::from_toml_in(&scene.to_toml().unwrap(), "assets/scenes".as_ref()).unwrap();
-    assert_eq!(scene, again);
+    assert_eq!(scene, Scene::from_toml_in(&scene.to_toml().unwrap(), "assets/scenes".as_ref()).unwrap());
 }
 
 /// Reactions and loads are in equilibrium for every method that converges, as forces and as moments about the origin.

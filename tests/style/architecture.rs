@@ -64,8 +64,7 @@ type Imports = BTreeMap<Module, BTreeMap<Module, String>>;
 
 #[test]
 fn no_files_import_each_other_in_a_circle() {
-    let sources = sources("src".as_ref());
-    let circles = circles(&imports(&sources));
+    let circles = circles(&imports(&sources("src".as_ref())));
     assert!(circles.is_empty(), "files import each other in a circle:\n{}", circles.join("\n"));
 }
 
@@ -309,8 +308,7 @@ fn all_background_work_has_an_entry_for_the_page() {
             let names = lines.map(|(kind, _)| kind.split(" by ").next().unwrap().trim());
             kinds.extend(names.map(|name| format!("FactWork<{name}>")));
         }
-        let works = source.split("impl Work for ").skip(1);
-        kinds.extend(works.map(|rest| rest.split(' ').next().unwrap().to_owned()));
+        kinds.extend(source.split("impl Work for ").skip(1).map(|rest| rest.split(' ').next().unwrap().to_owned()));
     }
     assert!(kinds.len() >= 10, "{kinds:?}");
     let missing: Vec<_> = kinds.iter().filter(|kind| !entries.contains(&format!("entry::<{kind}>()"))).collect();

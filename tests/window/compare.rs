@@ -187,8 +187,7 @@ fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
         let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
         let mut seen = 0;
         for nodes in mesh.elements() {
-            let middle = (at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0;
-            let [x, y] = lab.camera().to_view(middle);
+            let [x, y] = lab.camera().to_view((at(nodes[0]) + at(nodes[1]) + at(nodes[2])) / 3.0);
             let pixel = pixel(&drawn, (place.center().x + x as f32) as u32, (place.center().y + y as f32) as u32);
             seen += u32::from(distance(pixel, background) > 8);
         }

@@ -47,8 +47,7 @@ impl Desktop {
     fn start() -> Option<Self> {
         let turn = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let there = |program: &str| {
-            let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap();
-            found.status.success()
+            Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap().status.success()
         };
         let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|p| !there(p)).collect();
         if !missing.is_empty() {
@@ -65,8 +64,7 @@ impl Desktop {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
         let config = tempfile::tempdir().unwrap();
-        // openbox announces itself before it has read its files, and loses windows that are mapped in the meantime. It
-        // runs this command when it is ready.
+        // openbox announces itself too early, and loses windows until it runs this command.
         let ready = config.path().join("ready");
         let mut manager = Command::new("openbox");
         manager.args(["--startup", &format!("touch '{}'", ready.display())]);
@@ -137,8 +135,7 @@ impl<'a> Window<'a> {
 
     /// Returns `true` if every thread of the program sleeps; a thread that waits for a processor counts as running.
     fn sleeps(&self) -> bool {
-        let tasks = std::fs::read_dir(format!("/proc/{}/task", self.process.id())).unwrap();
-        tasks.flatten().all(|task| {
+        std::fs::read_dir(format!("/proc/{}/task", self.process.id())).unwrap().flatten().all(|task| {
             // A thread may end in the meantime.
             let stat = std::fs::read_to_string(task.path().join("stat")).unwrap_or_default();
             stat.rsplit(')').next().is_none_or(|rest| !rest.trim_start().starts_with(['R', 'D']))
@@ -219,8 +216,7 @@ impl<'a> Window<'a> {
     fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
         let (desktop, id) = (self.desktop, self.id.clone());
         let press = || keys.iter().for_each(|key| _ = desktop.key(&id, key));
-        let status = ask_until("the program to end", press, || self.process.try_wait().unwrap());
-        (status.code(), self.said())
+        (ask_until("the program to end", press, || self.process.try_wait().unwrap()).code(), self.said())
     }
 
     /// Closes the window, and checks that the program ends without an error.
@@ -523,8 +519,7 @@ fn edits_survive_a_destroyed_window() {
     window.point(at(0.7));
     window.wait_for_change("the second edit", &before, 1_000);
     desktop.xdotool(&["windowclose", &window.id]);
-    let status = window.process.wait().unwrap();
-    Window::check_end(&(status.code(), window.said()));
+    Window::check_end(&(window.process.wait().unwrap().code(), window.said()));
     assert_ne!(scene().unwrap(), first);
 }
 

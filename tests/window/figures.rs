@@ -68,8 +68,7 @@ fn the_path_and_both_components_can_be_chosen() {
         assert_eq!(axis_names(&ui), [x, y]);
     }
     // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
-    let ui = with_curve(scene("stretch"));
-    assert!(texts(&ui).iter().any(|(text, _, _)| text == "force"));
+    assert!(texts(&with_curve(scene("stretch"))).iter().any(|(text, _, _)| text == "force"));
 }
 
 #[test]
@@ -117,8 +116,7 @@ fn the_first_frame_is_as_the_others() {
         let titles: Vec<_> = texts.iter().filter(|(text, _, _)| is_title(text)).collect();
         assert_eq!(titles.len(), 2, "{id}: {titles:?}");
         let unit = |text: &str| [" m", " mm", " N", " kN"].iter().any(|unit| text.ends_with(unit));
-        let numbers = texts.iter().filter(|(text, _, _)| unit(text) && text.len() < 9);
-        for (text, place, _) in numbers {
+        for (text, place, _) in texts.iter().filter(|(text, _, _)| unit(text) && text.len() < 9) {
             for (title, title_place, _) in &titles {
                 assert!(!place.shrink(1.0).intersects(*title_place), "{id}: {text} {place:?} {title} {title_place:?}");
             }
@@ -155,8 +153,7 @@ fn export(ui: &mut Ui, kind: &str) {
 
 /// Returns the rows of a series as numbers: load, u_x, u_y.
 fn points(rows: &[Vec<String>], series: &str) -> Vec<[f64; 3]> {
-    let own = rows.iter().filter(|row| row[0] == series);
-    own.map(|row| [1, 2, 3].map(|i| row[i].parse().unwrap())).collect()
+    rows.iter().filter(|row| row[0] == series).map(|row| [1, 2, 3].map(|i| row[i].parse().unwrap())).collect()
 }
 
 /// The test changes the current folder, in a process of its own.

@@ -189,8 +189,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
             let words = parts.fold(first, |words, part| words + part.split_once('}').map_or("", |(_, rest)| rest));
             let is_id = words.chars().all(|c| c.is_ascii_lowercase() || "-_./".contains(c));
             let keys = [literal.clone(), literal.replace('{', "%{"), format!("%{{n}} {literal}")];
-            let is_known = keys.iter().any(|key| known.contains_key(key));
-            let needs = !is_id && !is_known && !english(&words).is_empty();
+            let needs = !is_id && !keys.iter().any(|key| known.contains_key(key)) && !english(&words).is_empty();
             if needs && !NOT_SHOWN.split('|').any(|other| other == literal) {
                 missing.push(format!("{}: {literal:?}", path.display()));
             }
@@ -403,8 +402,7 @@ fn the_budget_the_limits_and_every_card_are_in_chinese() {
     let mut ui = settled("article", SIZE);
     ui.key(Key::B);
     assert_chinese(&ui, "before");
-    let study = Study::new(&scene("article"), Extent::Quick, &|_| ControlFlow::Continue(())).unwrap();
-    ui.state_mut().show_study(study);
+    ui.state_mut().show_study(Study::new(&scene("article"), Extent::Quick, &|_| ControlFlow::Continue(())).unwrap());
     ui.run();
     assert_tips_are_chinese(&mut ui, "Budget");
     let mut ui = settled("article", SIZE);

@@ -95,8 +95,7 @@ fn tab_goes_from_left_to_right() {
     for _ in 0..60 {
         ui.key_press(Key::Tab);
         ui.step();
-        let focused = ui.query_by(|node| node.is_focused());
-        visited.extend(focused.and_then(|node| node.accesskit_node().label()));
+        visited.extend(ui.query_by(|node| node.is_focused()).and_then(|node| node.accesskit_node().label()));
     }
     for names in [["Panel", "Language", "Theme", "Help"], ["\u{2039} Back", "Next \u{203a}", "Story", "Leave"]] {
         let places = names.map(|name| visited.iter().position(|seen| seen == name));

@@ -1,5 +1,4 @@
-//! Tests of the mode Limits: its numbers are those of `warpbeam limits`, and its line and strips set load, method and
-//! element.
+//! Tests of the mode Limits: its numbers are those of `warpbeam limits`; its strips set load, method and element.
 
 use std::ops::ControlFlow;
 

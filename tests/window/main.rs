@@ -1,5 +1,4 @@
-//! Tests of the window: most run its interface without a display, `desktop` runs the program on a virtual one. `cargo
-//! test --test window TOPIC` runs one file.
+//! Tests of the window, all but `desktop` without a display. `cargo test --test window TOPIC` runs one file.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 #[path = "../common/mod.rs"]

@@ -208,8 +208,7 @@ fn a_body_that_crosses_itself_is_reported_once() {
     gentle.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap();
     assert!(!is_said(&mut open_of("clip", gentle), 100));
     for id in scene_ids() {
-        let moves = ids_of(Analysis::Dynamic).contains(&id);
-        let said = is_said(&mut open(id), if moves { 100 } else { 60 });
+        let said = is_said(&mut open(id), if ids_of(Analysis::Dynamic).contains(&id) { 100 } else { 60 });
         assert_eq!(said, id == "clip", "{id}");
     }
 }
@@ -221,8 +220,7 @@ fn the_view_of_an_exploded_motion_comes_back() {
     ui.run_steps(4);
     let before = ui.camera().scale;
     ui.edit(|scene| scene.dynamics.integrator = IntegratorKind::SymplecticEuler);
-    let has_stopped = |ui: &Ui| matches!(ui.simulation().status(), Status::Stopped(_));
-    ui.wait_until("an explosion", has_stopped);
+    ui.wait_until("an explosion", |ui: &Ui| matches!(ui.simulation().status(), Status::Stopped(_)));
     ui.run_steps(4);
     ui.click_for("Use tr-bdf2", 8);
     assert!(time(&ui) < 2.0, "it starts again");

@@ -59,15 +59,14 @@ impl Shown {
     /// Returns the value of a row of Details.
     pub fn row(&self, name: &str) -> &str {
         let at = self.0.iter().position(|text| text == name);
-        let value = at.and_then(|at| self.0.get(at + 1));
-        value.map_or_else(|| panic!("no row {name:?}: {:?}", self.0), String::as_str)
+        at.and_then(|at| self.0.get(at + 1)).map_or_else(|| panic!("no row {name:?}: {:?}", self.0), String::as_str)
     }
 
     pub fn starting_with(&self, start: &str) -> Option<&str> {
         self.0.iter().map(String::as_str).find(|text| text.starts_with(start))
     }
 
-    fn has(&self, text: &str) -> bool {
+    pub fn has(&self, text: &str) -> bool {
         self.0.iter().any(|shown| shown == text)
     }
 }
@@ -321,8 +320,7 @@ fn settings_have_the_errors_of_study() {
     let own = written.iter().find(|(row, m)| m.is_applied_to(&scene) && row[column("converged")] == "true");
     let (row, _) = own.unwrap();
     let error: f64 = row[column("error_percent")].parse().unwrap();
-    let solved = solve(&scene)["probes"][0]["error_percent"].as_f64().unwrap();
-    assert_eq!(percent(error), percent(solved));
+    assert_eq!(percent(error), percent(solve(&scene)["probes"][0]["error_percent"].as_f64().unwrap()));
 }
 
 /// Each strip of Limits has the words of a row of `limits`.

@@ -412,8 +412,7 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             ui.click("Panel");
             assert!(ui.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
         }
-        let names = "Run Step Reset Explore Learn Compare Budget Help Theme Panel Limits Sections explain";
-        ui.contains(names.split(' '));
+        ui.contains("Run Step Reset Explore Learn Compare Budget Help Theme Panel Limits Sections explain".split(' '));
         controls_are_inside(&ui);
         if narrow {
             ui.key(Key::P);
@@ -589,8 +588,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!(ui.force(), before);
     assert!(!ui.says(CHANGED) && is_offered_in_compare(&mut ui));
 
-    let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) };
-    let meeting = study.ranking().meeting(demand);
+    let meeting = study.ranking().meeting(Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) });
     assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());
     ui.get_by_label(&format!("{} of {} settings meet both", meeting.len(), study.measurements.len()));
     ui.click("Apply the fastest");
@@ -661,8 +659,7 @@ fn the_fonts_have_every_letter_of_the_texts() {
     let mut texts = "\u{2013}\u{201c}\u{201d}\u{2212}".to_owned();
     for folder in ["app", "method", "element", "model", "scene", "simulation"] {
         for file in crate::common::files::rust_files(&root.join("src").join(folder)) {
-            let text = std::fs::read_to_string(file).unwrap();
-            texts.extend(text.lines().filter_map(|line| line.split("//").next()));
+            texts.extend(std::fs::read_to_string(file).unwrap().lines().filter_map(|line| line.split("//").next()));
         }
     }
     texts.extend(scene_ids().into_iter().map(|id| scene(id).about));
@@ -826,8 +823,7 @@ fn integrators_are_compared_in_panes() {
     ui.get_by_role_and_label(Role::Button, "t3 | t6 | q4").click();
     ui.run_steps(4);
     assert_eq!(times(ui.state()), [0.0; 3], "another mesh starts over");
-    let explored = ui.simulation().state().time();
-    assert!((explored - before).abs() < 1e-12, "the body of Explore waits");
+    assert!((ui.simulation().state().time() - before).abs() < 1e-12, "the body of Explore waits");
 }
 
 /// With its progress.

@@ -56,8 +56,7 @@ fn a_body_is_drawn_with_a_multiple_of_its_displacement() {
     magnify(&mut ui, Magnification::None);
     assert!(pull(&mut ui), "the body is not grabbed");
     let mut article = open("article");
-    let before = positions(article.state());
-    assert_eq!(magnify(&mut article, Magnification::Automatic), before);
+    assert_eq!(magnify(&mut article, Magnification::Automatic), positions(article.state()));
 }
 
 /// The automatic factor falls as the displacement grows, so that the body is drawn at the same place.
@@ -118,8 +117,7 @@ fn every_field_colours_the_body() {
         let (seen, wanted) = (number(&title[field.name().len() + 2..]), number(&value));
         assert!((seen - wanted).abs() < 0.05 * wanted.abs() + 0.05, "{field:?}: {title} is not {value}");
     }
-    let largest = ui.state().frame().range;
-    assert!(largest[0] >= 0.0, "the last field is a magnitude");
+    assert!(ui.state().frame().range[0] >= 0.0, "the last field is a magnitude");
     ui.state_mut().color_with(Field::StressX);
     ui.run();
     let [low, high] = ui.state().frame().range;

@@ -22,8 +22,7 @@ fn undo(ui: &mut Ui) {
 fn forces(lab: &Lab) -> String {
     let simulation = lab.simulation();
     assert_eq!(*simulation.status(), Status::Converged);
-    let section = simulation.section(lab.scene().sections[0]).unwrap();
-    section_chart::text_of(&section, simulation)
+    section_chart::text_of(&simulation.section(lab.scene().sections[0]).unwrap(), simulation)
 }
 
 /// The panel shows the forces that the library computes; each change is one step of undo.
@@ -37,8 +36,7 @@ fn a_section_is_added_moved_and_removed() {
     let simulation = ui.simulation();
     let section = simulation.section(line).unwrap();
     // The force at the tip, and its lever arm about the middle of the cut.
-    let arm = simulation.solution().probes[0].x - section.middle();
-    let moment = arm.perp(&Vector2::new(0.0, -1000.0));
+    let moment = (simulation.solution().probes[0].x - section.middle()).perp(&Vector2::new(0.0, -1000.0));
     assert!((section.force - Vector2::new(0.0, -1000.0)).norm() < 1e-4, "{section:?}");
     assert!((section.forces.moment - moment).abs() < 1e-4 * moment.abs(), "{section:?} {moment}");
     let text = forces(ui.state());
