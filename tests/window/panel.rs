@@ -3,6 +3,7 @@
 use crate::common::lab::*;
 use crate::common::{ids_of, scene_ids, solve_error, solve_u};
 use crate::ui_interaction::is_solved;
+use warpbeam::Field;
 use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, Plane};
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
@@ -283,7 +284,7 @@ fn a_refused_value_moves_nothing() {
 #[test]
 fn a_fixed_range_of_colours_is_set() {
     let mut ui = open("article");
-    ui.key(Key::Num4);
+    ui.state_mut().color_with(Field::RotationAngle);
     ui.get_by_label_contains("View: ").click();
     ui.run_steps(8);
     ui.run();

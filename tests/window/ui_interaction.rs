@@ -665,7 +665,8 @@ fn read(path: &std::path::Path) -> Scene {
 #[test]
 fn settings_go_from_one_lab_to_the_next() {
     let [mut first, mut second] = [open("article"), open("article")];
-    [Key::P, Key::Num4, Key::B, Key::T].into_iter().for_each(|key| first.key(key));
+    first.state_mut().color_with(Field::RotationAngle);
+    [Key::P, Key::B, Key::T].into_iter().for_each(|key| first.key(key));
     let settings = first.state().settings(&first.ctx);
     assert_ne!(second.state().settings(&second.ctx), settings);
     let ctx = second.ctx.clone();
