@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 28_086),
+    ("app", &["src/app"], 27_500),
     ("study", &["src/study"], 8_119),
     ("model", &["src/model", "src/scene"], 3_586),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
-    ("simulation", &["src/simulation"], 2_962),
+    ("simulation", &["src/simulation"], 2_848),
     ("assembly", &["src/assembly"], 3_040),
-    ("cli", &["src/cli"], 2_817),
+    ("cli", &["src/cli"], 2_813),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_843),
-    ("plot", &["src/plot"], 1_029),
+    ("plot", &["src/plot"], 996),
     ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 23_664),
+    ("tests", &["tests"], 21_440),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 66_280;
+const SRC: usize = 65_543;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 
