@@ -129,7 +129,7 @@ fn same(number: f64, json: &serde_json::Value) -> bool {
     (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
 }
 
-/// A row for every step. The last row is the result, and the energy ledger balances in every row.
+/// The table has a row for every step. The last one is the result, and the energy ledger balances in every row.
 #[test]
 fn a_motion_is_written_as_a_table() {
     let folder = tempfile::tempdir().unwrap();
@@ -173,7 +173,7 @@ fn a_motion_is_written_as_a_table() {
     }
 }
 
-/// For ParaView: existing files, increasing times, and the result at the end.
+/// A series for ParaView has existing files, increasing times, and the result at the end.
 #[test]
 fn a_motion_is_written_as_a_series_of_states() {
     let folder = tempfile::tempdir().unwrap();
@@ -297,7 +297,7 @@ fn an_interrupted_command_writes_its_partial_result() {
     }
 }
 
-/// And only there.
+/// A progress bar is drawn on a terminal only.
 #[cfg(target_os = "linux")]
 #[test]
 fn long_commands_show_a_progress_bar_on_a_terminal() {
@@ -352,7 +352,7 @@ fn small_motions_have_digits() {
     assert!(curve.contains("tip displacement, µm"), "{curve}");
 }
 
-/// By the path `-`; its mesh file is found from the current folder.
+/// The path `-` is standard input; the scene's mesh file is found from the current folder.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_scene_is_read_from_standard_input() {
@@ -471,7 +471,7 @@ fn curve_prints_linear_theory_the_reference_and_every_method() {
     refuses(&["curve", "snap", "--picture", "x.svg", "--of", "nobody"], names);
 }
 
-/// With the supports held it is stable; the table says where it would be unstable under a force in place of the motion.
+/// The arch is stable with held supports; the table says where a force in place of the motion would make it unstable.
 #[test]
 fn curve_follows_an_arch_through_its_limit_load() {
     let folder = tempfile::tempdir().unwrap();

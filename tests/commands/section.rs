@@ -98,7 +98,7 @@ fn a_cut_in_linear_theory_has_moved_with_the_body() {
     assert!(stderr(&refused).contains("expected -100 to 100 rad"), "{}", stderr(&refused));
 }
 
-/// With the values of `section`; a line beside the body is refused before the solve, with its key.
+/// `solve` prints the values of `section`; a line beside the body is refused before the solve, with its key.
 #[test]
 fn sections_of_a_scene_are_printed_with_its_results() {
     let lines = "section=[{at=[\"400 cm\", 0.0]}, {at=[7.0, 0.1], angle=\"20°\"}]";

@@ -72,7 +72,7 @@ pub fn on_a_terminal(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
         program.env("TERM", "xterm").stdin(Stdio::null()).stdout(Stdio::null()).stderr(terminal.slave).spawn().unwrap()
     };
     let mut running = Running(Some(start(program(folder, args))));
-    // Reading the terminal fails once the program has ended, and nobody else holds its other side.
+    // The read ends when the last copy of the slave is closed: the program has the only one.
     let (mut screen, mut text) = (File::from(terminal.master), Vec::new());
     let _ = screen.read_to_end(&mut text);
     (running.0.take().unwrap().wait().unwrap().code(), String::from_utf8_lossy(&text).into_owned())

@@ -259,7 +259,7 @@ fn the_solver_solves_or_refuses_small_scenes() {
     assert!(set_up > 600 && converged > 200, "too few of the random scenes are scenes: {set_up}, {converged}");
 }
 
-/// For bodies whose points are held, and whose supports turn and move.
+/// The bodies have held points, and supports that turn and move.
 #[test]
 fn paths_are_followed_or_refused() {
     let counts = Counts::default();

@@ -91,7 +91,7 @@ fn the_result_does_not_depend_on_the_frame_of_reference() {
     }
 }
 
-/// Under a large load (the article's figure 1).
+/// The load is large, as in the article's figure 1.
 #[test]
 fn linear_theory_makes_the_body_grow_and_warping_does_not() {
     let scene = scene("cantilever");

@@ -32,7 +32,7 @@ fn solved_like(row: &Row) -> Simulation {
     solved(&scene_with(row.scene, &[&set[0], &set[1]]))
 }
 
-/// To six digits, except in plane stress (CalculiX shears a wedge) and large rotations (to the order of the strain).
+/// Six digits agree, except in plane stress (CalculiX shears a wedge) and large rotations (order of the strain).
 #[test]
 fn displacements_are_those_of_calculix() {
     let rows = rows();

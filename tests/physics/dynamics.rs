@@ -408,7 +408,7 @@ fn auto_sees_a_column_buckle() {
     assert!(error <= 1.0, "{error} {:?}", report(&auto));
 }
 
-/// With any previous state: the decisions of `auto` do not depend on time measurements.
+/// The decisions of `auto` depend on no time measurement, whatever the previous state was.
 #[test]
 fn auto_is_reproduced_to_the_last_bit() {
     // Linear theory is used for the smaller load until its phase may be inaccurate.
@@ -595,7 +595,7 @@ fn the_critical_step_follows_edits() {
     assert_eq!(simulation.motion().unwrap().critical_step(), None);
 }
 
-/// By the trapezoidal rule over short steps, or with the force at the end of a step, which implicit Euler applies.
+/// The trapezoidal rule integrates the work over short steps; implicit Euler applies the force at the end of a step.
 #[test]
 fn work_is_force_times_displacement() {
     for (kind, close) in [(EULER, 1e-9), (TR_BDF2, 2e-3), (ENERGY_MOMENTUM, 2e-3), (SYMPLECTIC, 2e-3)] {

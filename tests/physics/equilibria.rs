@@ -217,7 +217,7 @@ fn an_unstable_equilibrium_is_reported_as_unstable() {
     }
 }
 
-/// For the part of the load that it reports. The residual is that of the whole load.
+/// The state is the equilibrium under the part of the load that is reported. The residual is that of the whole load.
 #[test]
 fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     let moment = |factor: f64, most: u32| {
@@ -239,7 +239,7 @@ fn out_of_iterations_newton_leaves_an_equilibrium_of_less_load() {
     assert!((a - b).norm() < 1e-3 * b.norm(), "{a} {b}");
 }
 
-/// In the warped iteration; ρ grows with the load. Newton's method has no such ratio.
+/// Steps of the warped iteration shrink by ρ, which grows with the load. Newton's method has no such ratio.
 #[test]
 fn steps_shrink_by_rho() {
     let mut before = 0.0;
@@ -356,7 +356,7 @@ fn a_reset_goes_back_to_the_start() {
     }
 }
 
-/// With the lever arms of the deformed body, at a clamp and at a roller that has moved.
+/// The lever arms are those of the deformed body, at a clamp and at a roller that has moved.
 #[test]
 fn reactions_balance_moments() {
     let beam = Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
@@ -380,7 +380,7 @@ fn reactions_balance_moments() {
     }
 }
 
-/// As Newton's method does, with the same result. Out of iterations, it keeps an equilibrium of less load.
+/// `auto` takes load steps to the result of Newton's method. Out of iterations, it keeps an equilibrium of less load.
 #[test]
 fn auto_takes_load_steps_where_needed() {
     for (id, factor) in [("cantilever", 30.0), ("elastica", 30.0)] {
@@ -450,7 +450,7 @@ fn a_support_on_moved_nodes_restarts_the_search() {
     assert!(simulation.displacement().iter().any(|u| u.norm() > 0.0), "it holds what was held");
 }
 
-/// And says so. If the search converges earlier, the status is converged.
+/// The status says that the result was accepted. If the search converges earlier, the status is converged.
 #[test]
 fn a_result_is_accepted_after_the_iterations_that_a_scene_asks_for() {
     for method in ["newton", "warped"] {

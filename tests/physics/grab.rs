@@ -229,7 +229,7 @@ fn the_mouse_spring_has_its_stated_stiffness() {
     assert!(held.displacement().iter().all(|u| u.norm() < 1e-12), "let go, it goes back");
 }
 
-/// With a slack spring at every instant of every step.
+/// The spring of a steady pointer is slack at every instant of every step.
 #[test]
 fn a_body_goes_along_with_a_steady_pointer() {
     let (h, velocity) = (1.0 / 60.0, Vector2::new(0.3, -0.2));
@@ -289,7 +289,7 @@ fn a_grab_survives_a_new_support() {
     assert!(lifted.y > 0.15 && force.norm() > 0.0, "{lifted}");
 }
 
-/// To a quarter of the moved mass over h²; the damping is limited too, so that the corner comes to rest.
+/// The stiffness is at most a quarter of the moved mass over h²; limited damping lets the corner come to rest.
 #[test]
 fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
     let static_scene = Scene::beam(1.0, 0.5).with_cells(3, 1).with_material(Material::new(1e6, 0.3)).clamp("left");

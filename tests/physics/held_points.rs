@@ -22,7 +22,7 @@ fn on_two_points([pin, roller]: [[f64; 2]; 2], force: Vector2<f64>) -> Scene {
     scene.probe("pin", pin).probe("roller", roller).probe("tip", "right")
 }
 
-/// Of a determinate beam, on every element: in a cell, on a side, two in one cell, two side by side.
+/// Points that hold a determinate beam lie in a cell, on a side, two in one cell, or side by side, on every element.
 #[test]
 fn points_stay_and_their_reactions_are_those_of_statics() {
     let mut random = Random(7);
@@ -199,7 +199,7 @@ fn section_forces_jump_at_the_point() {
     assert!(behind.norm() < 1e-7 * 300.0, "{behind}");
 }
 
-/// With every integrator: the point rests, and the motion is that of a physical pendulum.
+/// The held point rests, and the motion is that of a physical pendulum, with every integrator.
 #[test]
 fn a_body_swings_about_its_point() {
     use IntegratorKind::{EnergyMomentum, ImplicitEuler, SymplecticEuler, TrBdf2};

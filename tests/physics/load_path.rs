@@ -18,7 +18,7 @@ fn column(part: f64, hold: impl Fn(Scene) -> Scene) -> Scene {
     hold(scene).force("right", [-part * euler, 0.0]).probe("tip", "right")
 }
 
-/// With every kind of support; each higher critical load on the path adds an unstable mode.
+/// Columns with every kind of support buckle there; each higher critical load on the path adds an unstable mode.
 #[test]
 fn columns_buckle_at_eulers_loads() {
     type Hold = fn(Scene) -> Scene;

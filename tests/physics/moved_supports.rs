@@ -93,7 +93,7 @@ fn a_swung_strut_buckles_and_jumps() {
     assert!(json["stable"] == true, "{json}");
 }
 
-/// Unless the body jumps: a rigid motion stores nothing, a stretch by a fifth stores E/2 · 0.2² per volume.
+/// A rigid motion stores nothing, a stretch by a fifth E/2 · 0.2² per volume; a jump loses energy.
 #[test]
 fn the_work_of_turned_supports_is_the_stored_energy() {
     // On their straight way the ends come closer, which stores several kJ in the long beam in between.

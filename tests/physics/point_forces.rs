@@ -7,7 +7,7 @@ use warpbeam::{Load, MethodKind, Place, Scene, Simulation, Status};
 use crate::common::random::Random;
 use crate::common::solved;
 
-/// About the point at rest in linear theory, and about that of now in large rotations, on every element.
+/// The moment is taken about the point at rest in linear theory, about the moved one in large rotations.
 #[test]
 fn a_clamp_balances_the_force_at_its_point() {
     let force = Vector2::new(1.0, -3.0);

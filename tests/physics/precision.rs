@@ -338,7 +338,7 @@ fn the_bound_of_rounding_holds() {
     }
 }
 
-/// For bodies rotated by any angle, with random strain or bending in every cell.
+/// The bound holds for bodies rotated by any angle, with random strain or bending in every cell.
 #[test]
 fn the_bound_of_rounding_holds_out_of_balance() {
     let mut random = Random(1);

@@ -218,7 +218,7 @@ fn on_finer_cells(scene: &Scene, times: u32) -> Option<Vec<Vector2<f64>>> {
     solved.then(|| simulation.solution().probes.iter().map(|probe| probe.u).collect())
 }
 
-/// On cells a 32nd of the scene's own size: a logarithm may hide behind a part that converges.
+/// Cells a 32nd of the scene's own size judge the bounds: a logarithm may hide behind a part that converges.
 #[test]
 fn bounds_beside_points_hold_on_finer_meshes() {
     let seeds = crate::common::sampled(0..200_u64, 40);

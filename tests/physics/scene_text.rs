@@ -167,7 +167,7 @@ fn change(scene: &mut Scene, random: &mut Random) {
     }
 }
 
-/// For built-in scenes, random ones, and every notation, with comments that a complete rewrite would lose.
+/// Texts of built-in and random scenes are edited in every notation, with comments that a complete rewrite would lose.
 #[test]
 fn edited_texts_describe_the_edited_scenes() {
     let mut texts: Vec<String> = registry::BUILT_IN.iter().map(|scene| scene.toml.to_owned()).collect();

@@ -255,7 +255,7 @@ fn sections_in_motion_carry_the_inertia() {
     }
 }
 
-/// From both sides, with no forces in a free end, and minus the reaction at the clamp.
+/// Sections balance from both sides; a free end carries no force, and the clamp minus the reaction.
 #[test]
 fn sections_of_a_swinging_body_balance_loads_inertia_and_reaction() {
     for (element, integrator) in ElementKind::all().flat_map(|e| IntegratorKind::all().map(move |i| (e, i))) {

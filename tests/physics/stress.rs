@@ -85,7 +85,7 @@ fn kirsch_plate(kind: ElementKind, cells: [u32; 2], pull: f64, turn: Rotation) -
     solved_on(&scene, mesh)
 }
 
-/// At all nodes of Kirsch's plate; the largest one at the hole converges to 3.
+/// Stresses converge at all nodes of Kirsch's plate; the largest one at the hole converges to 3.
 #[test]
 fn stresses_at_a_hole_converge() {
     let pull = 1e-6 * YOUNG;
@@ -185,7 +185,7 @@ fn stresses_of_a_beam_are_those_of_the_book() {
     }
 }
 
-/// By 37°; quantities relative to the body are unchanged.
+/// A body rotated by 37° has rotated stresses; quantities relative to the body are unchanged.
 #[test]
 fn stresses_rotate_with_the_body() {
     let turn = Rotation::from_angle(37f64.to_radians());

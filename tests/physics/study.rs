@@ -135,7 +135,7 @@ fn a_swing_is_studied() {
     assert!(study.ranking().within(0.5 * own).is_empty());
 }
 
-/// Also when it is cancelled during timed or untimed runs.
+/// A study that is cancelled during timed or untimed runs keeps its measurements too.
 #[test]
 fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
@@ -243,7 +243,7 @@ fn a_cancelled_tuning_chooses_from_what_was_measured() {
     assert!(tuning.study.measurements.len() < 60);
 }
 
-/// With finite numbers. A step that is too short to be run to the end is reported.
+/// The files have finite numbers. A step that is too short to be run to the end is reported.
 #[test]
 fn study_of_a_motion_writes_its_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -285,7 +285,7 @@ fn study_of_a_motion_writes_its_files() {
     refuses(&["tune", "swing"], "expected a scene with analysis = \"static\"");
 }
 
-/// Or their duration, however slow they are: linear theory is wrong for a body that sags.
+/// Motions are studied over periods or their duration, however slow: linear theory is wrong for a body that sags.
 #[test]
 fn slow_motions_are_studied_over_their_periods() {
     for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
@@ -317,7 +317,7 @@ fn slow_motions_are_studied_over_their_periods() {
     }
 }
 
-/// In the summary and in the table; ranks that the reference cannot tell apart are marked.
+/// The summary and the table include the reference's error; ranks that it leaves open are marked.
 #[test]
 fn bounds_of_a_study_include_the_error_of_the_reference() {
     let study = Study::new(&scene("shear"), Extent::Quick, &go_on).unwrap();

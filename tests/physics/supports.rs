@@ -322,7 +322,7 @@ fn shallow_arch_limit(length: f64, rise: f64, [bending, stiffness]: [f64; 2]) ->
     best
 }
 
-/// That of beam theory. With a free crown the exact tangent is indefinite beyond; with it supported, it is stable.
+/// The limit load is that of beam theory. Beyond it the arch is unstable with a free crown, stable with a held one.
 #[test]
 fn the_arch_passes_its_limit_load() {
     let scene = crate::common::scene("snap");

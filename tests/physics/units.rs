@@ -164,7 +164,7 @@ fn plain_numbers_are_si() {
     }
 }
 
-/// With both readings if there are two. Spaces separate groups, too.
+/// The error names both readings of a comma if there are two. Spaces separate groups, too.
 #[test]
 fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
     let spaced = [("30 000", 3e4), ("30\u{a0}000 N", 3e4), ("1 200 kN", 1.2e6), ("12kN", 12e3), ("1.2e4", 1.2e4)];

@@ -294,7 +294,7 @@ fn material_points_are_found_in_curved_elements(kind: ElementKind) {
     assert!(mesh.nodes().iter().all(|&x| mesh.locate(x).is_some()));
 }
 
-/// In linear theory, and in the warped formulation with an added rotation by 70°.
+/// The patch test holds in linear theory, and in the warped formulation with an added rotation by 70°.
 fn patch_test(kind: ElementKind) {
     let turn = Rotation::from_angle(70f64.to_radians());
     let (gradient, stretch) = (Matrix2::new(0.02, -0.01, 0.03, -0.015), Matrix2::new(1.02, 0.01, 0.01, 0.97));
@@ -330,7 +330,7 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     }
 }
 
-/// Of a rotated body, against closed forms; the von Mises stress includes the stress across the plane in plane strain.
+/// The fields of a rotated body have closed forms; the von Mises stress in plane strain includes that across the plane.
 fn fields_of_a_uniform_stretch(kind: ElementKind) {
     let degrees = -70.0f64;
     let turn = Rotation::from_angle(degrees.to_radians());
@@ -394,7 +394,7 @@ fn fields_of_a_uniform_stretch(kind: ElementKind) {
     }
 }
 
-/// With the part of an element's own modes.
+/// The energy includes the part of an element's own modes.
 fn the_strains_at_points_add_up_to_the_energy(kind: ElementKind) {
     for plane in [Plane::Stress, Plane::Strain] {
         let problem = problem(&irregular_scene(plane), kind);
@@ -445,7 +445,7 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
     assert!(inversions[..2] == [0, 0] && inversions[3] > 1 && inversions[3] < mesh.element_count(), "{inversions:?}");
 }
 
-/// In a body whose ends are rotated against each other by more than two radians.
+/// The ends of the body are rotated against each other by more than two radians.
 fn the_rotation_at_points_is_the_local_one(kind: ElementKind) {
     let scene = Scene::beam(16.0, 1.0).with_cells(16, 1).with_element(kind).clamp("left");
     let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
@@ -557,7 +557,7 @@ fn the_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
     }
 }
 
-/// However far apart they are. The force has no resultant and no moment.
+/// The two states may be far apart. The force has no resultant and no moment.
 fn the_work_between_two_states_is_the_difference_of_energies(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     let (system, moduli) = (problem.system(), problem.material().membrane());
@@ -722,7 +722,7 @@ fn smooth_gradient(x: Vector2<f64>) -> Matrix2<f64> {
     Matrix2::new(1.3 * a.cos() * b.cos(), -0.7 * a.sin() * b.sin(), c.cos() * d.sin(), 1.1 * c.sin() * d.cos())
 }
 
-/// Order hᵖ with the degree p of the shape functions, under the loads of a smooth field in linear theory.
+/// The rate is hᵖ with the degree p of the shape functions, under the loads of a smooth field in linear theory.
 fn the_energy_norm_converges_at_its_rate(kind: ElementKind) {
     let degree = (kind.entry().sides[0].len() - 1) as f64;
     let errors = [4, 8, 16].map(|n| energy_norm_error(kind, n));

@@ -34,7 +34,7 @@ fn the_error_has_the_stated_order_in_the_step(kind: IntegratorKind) {
         scene.dynamics.iterations = 0;
         scene.solver.tolerance = 1e-12;
         let mut simulation = Simulation::new(&scene).unwrap();
-        // Of this amplitude, only the first mode moves: modes along the beam grow with its square.
+        // The amplitude is so small that only the first mode moves: modes along the beam grow with its square.
         let mode: Vec<_> = first_mode(&simulation).into_iter().map(|u| u * 1e-6).collect();
         simulation.start_from(&mode).unwrap();
         (0..steps << halvings).for_each(|_| _ = simulation.step());
@@ -72,7 +72,7 @@ fn a_pulse_leaves_its_impulse(kind: IntegratorKind) {
     assert!((linear - Vector2::new(0.0, 4.0)).norm() < 0.01, "{linear}");
 }
 
-/// With all entries at once: weight, pulses, damping, a mouse spring that is released, and an edit.
+/// The ledger has all entries at once: weight, pulses, damping, a mouse spring that is released, and an edit.
 fn the_ledger_closes(kind: IntegratorKind) {
     let h = step(kind, 1.0 / 120.0);
     let scene = with("swing", kind, h, 1, 1.0).force("right", [0.0, 30.0]).pulse(0.1, 0.3);
@@ -142,7 +142,7 @@ fn linear_theory_is_the_limit_of_small_loads(kind: IntegratorKind) {
     assert!((corotated - linear).norm() < 1e-4 * linear.norm(), "{corotated} {linear}");
 }
 
-/// With or without a ledger, from a snapshot, and after a reset.
+/// The motion is the same with or without a ledger, from a snapshot, and after a reset.
 fn motion_is_reproduced_to_the_last_bit(kind: IntegratorKind) {
     let scene = if kind.entry().is_explicit() {
         with("swing", kind, 2e-4, 1, 0.1)

@@ -173,7 +173,7 @@ fn cancel_restores_the_state_before_the_edit() {
     agrees_with_solve(&mut ui);
 }
 
-/// Of the meshes that it requests: one at a time, and always the last one.
+/// A dragged slider requests many meshes; they are set up one at a time, and the last one always is.
 #[test]
 fn a_dragged_slider_sets_up_few_models() {
     let mut ui = open("cantilever");

@@ -298,7 +298,7 @@ fn beginning(ui: &Ui, begin: &str) -> Vec<(Pos2, String)> {
     painted(ui).into_iter().filter(|(_, text)| text.starts_with(begin)).collect()
 }
 
-/// For any mesh.
+/// Every pane has the value at the point under the pointer, whatever its mesh is.
 #[test]
 fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     let mut ui = compared("article", "linear,warped,newton:t6");
@@ -324,7 +324,7 @@ fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     assert!(beginning(&ui, "von Mises (Cauchy): ").is_empty());
 }
 
-/// While the panes of equilibria are inactive.
+/// Motions are compared in their own panes, while those of equilibria are inactive.
 #[test]
 fn motions_have_panes_of_their_own() {
     let mut ui = open_of("swing", scene("swing"));
@@ -335,7 +335,7 @@ fn motions_have_panes_of_their_own() {
     assert!(ui.state().motion_panes().iter().all(|pane| pane.place().is_some()));
 }
 
-/// In their headers too.
+/// Paused panes say so in their headers too.
 #[test]
 fn paused_panes_are_paused_everywhere() {
     let mut ui = open_of("article", scene("article"));

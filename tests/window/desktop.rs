@@ -500,7 +500,7 @@ fn edits_survive_a_killed_window() {
     assert!(!copies.join("1.toml").exists());
 }
 
-/// So the menu of macOS ends the program.
+/// Edits survive a window that is destroyed at once, as the menu of macOS does it.
 #[test]
 fn edits_survive_a_destroyed_window() {
     let Some(desktop) = Desktop::start() else { return };

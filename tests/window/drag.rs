@@ -112,7 +112,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
     }
 }
 
-/// Or it is at rest; one message has the remedy.
+/// Beyond the limit the body is at rest, or in an equilibrium of the same direction; one message has the remedy.
 #[test]
 fn beyond_the_limit_the_drawn_body_belongs_to_a_load_of_the_same_direction() {
     let mut ui = open("article");

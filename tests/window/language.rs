@@ -176,7 +176,7 @@ const NOT_SHOWN: &str = "wasm32|Cmd+|the browser is set to keep nothing|.toml,.m
     expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}|\
     {}: expected a file name ending in .gif, or the name of a folder for numbered pictures, which ffmpeg makes a film of";
 
-/// Or in the list above. If a single word in lower case is shown, the tests that read the window find it.
+/// A text is in the catalogue or in the list above. The tests that read the window find single words in lower case.
 #[test]
 fn every_text_of_the_sources_is_in_the_catalogue() {
     let known = catalogue();
@@ -248,7 +248,7 @@ fn every_named_entry_of_the_library_is_in_the_catalogue() {
     }
 }
 
-/// And no English words.
+/// A translation has the placeholders of its original, and no English words.
 #[test]
 fn translations_have_the_placeholders_of_their_originals() {
     let places = |text: &str| -> BTreeSet<String> {
@@ -310,7 +310,7 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     again.get_by_label(&zh("Run"));
 }
 
-/// Every fold, the pickers, the drawer, the card of a point, messages and remedies, the help and the dialog.
+/// Chinese are every fold, the pickers, the drawer, a point's card, messages and remedies, the help and the dialog.
 #[test]
 fn exploring_is_in_chinese() {
     let mut ui = settled("article", [1280.0, 2400.0]);
@@ -353,7 +353,7 @@ fn entries_are_chinese(ui: &mut Ui, picker: &str) {
     ui.run_steps(6);
 }
 
-/// Their states, load paths and supports.
+/// The states, load paths and supports of scenes of every kind have Chinese texts.
 #[test]
 fn scenes_of_every_kind_are_in_chinese() {
     let size = [1280.0, 2000.0];
@@ -369,7 +369,7 @@ fn scenes_of_every_kind_are_in_chinese() {
     }
 }
 
-/// The time, the plots, and the other integrators.
+/// The time, the plots and the other integrators have Chinese texts.
 #[test]
 fn motions_are_in_chinese() {
     let mut ui = open_of("swing", [1280.0, 2000.0]);
@@ -449,7 +449,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
     }
 }
 
-/// In both languages.
+/// No control of the toolbar overlaps another in either language.
 #[test]
 fn nothing_of_the_toolbar_overlaps_in_windows_of_any_width() {
     let names = "Scene Step Reset Undo Redo Explore Learn Compare Budget Limits Help Theme Language Panel";

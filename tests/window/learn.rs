@@ -56,7 +56,7 @@ fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// And its body and view. Keys switch between the cards.
+/// Leaving Learn shows one's own scene, body and view again. Keys switch between the cards.
 #[test]
 fn leaving_learn_restores_the_previous_scene() {
     let mut ui = open(SIZE);
@@ -87,7 +87,7 @@ fn leaving_learn_restores_the_previous_scene() {
     assert_eq!(*ui.scene(), before.0);
 }
 
-/// Also through controls at the right end of a row.
+/// The Tab key moves the focus from left to right, also through controls at the right end of a row.
 #[test]
 fn tab_goes_from_left_to_right() {
     let mut ui = at_card(2);
@@ -292,7 +292,7 @@ fn the_residual_falls_by_rho() {
     ui.get_by_label(&format!("Residual {:.1e} after {n} iterations; rho = {rho:.2}", residuals[n - 1]));
 }
 
-/// Card 7: `warped` diverges there.
+/// Card 7: `newton` converges under a load where ρ of `warped` exceeds 1, and `warped` diverges.
 #[test]
 fn newton_converges_where_rho_exceeds_one() {
     let mut ui = at_card(7);
@@ -307,7 +307,7 @@ fn newton_converges_where_rho_exceeds_one() {
     assert!(rho.is_some_and(|rho| rho > 1.0));
 }
 
-/// Card 8: the one that `solve` reports.
+/// Card 8: each element has the error that `solve` reports.
 #[test]
 fn locking_has_each_elements_error() {
     let mut ui = at_card(8);
@@ -436,7 +436,7 @@ fn the_camera_does_not_hide_the_growth_of_the_body() {
     }
 }
 
-/// On the first card.
+/// The first card names the article and its source.
 #[test]
 fn the_article_and_its_source_are_named() {
     let ui = at_card(1);
@@ -447,7 +447,7 @@ fn the_article_and_its_source_are_named() {
     assert!(text(&ui, "K: ").contains("stiffness matrix (N/m). u: displacements of the nodes (m)"));
 }
 
-/// It is set in a smaller font instead.
+/// A formula that is wider than its column is set in a smaller font.
 #[test]
 fn no_formula_is_wider_than_its_column() {
     let mut ui = open([640.0, 480.0]);

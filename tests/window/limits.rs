@@ -50,7 +50,7 @@ fn undo(ui: &mut Ui) {
     ui.run_steps(3);
 }
 
-/// In words and order.
+/// The strips have the words and the order of the command.
 #[test]
 fn strips_are_those_of_the_command() {
     let (ui, scene) = (opened(scene("article")), scene("article"));
@@ -110,7 +110,7 @@ fn a_click_on_a_strip_sets_method_and_element() {
     assert_eq!(used(&ui), before);
 }
 
-/// While another strip is used.
+/// The strip of an early stop is there while another strip is used.
 #[test]
 fn the_strip_of_an_early_stop_stays() {
     let mut ui = opened(scene_with("article", &["solver.accept_after=2"]));

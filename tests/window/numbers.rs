@@ -212,7 +212,7 @@ fn panes_have_the_numbers_of_solve() {
     assert!(diverged > 0);
 }
 
-/// With each method, and those of the reference solution.
+/// The rows of the load curve have the numbers of `solve` with each method, and those of the reference solution.
 #[test]
 fn rows_of_the_load_curve_have_the_numbers_of_solve() {
     for id in ["cantilever", "elastica"] {
@@ -272,7 +272,7 @@ fn cards_have_the_numbers_of_solve() {
     assert!(errors >= 6 && rhos == 2, "{errors} errors, {rhos} numbers ρ");
 }
 
-/// In the list of Budget and the table of Learn. The error of the scene's own setting is that of `solve`.
+/// The list of Budget has the errors of `study`. The error of the scene's own setting is that of `solve`.
 #[test]
 fn settings_have_the_errors_of_study() {
     let folder = tempfile::tempdir().unwrap();

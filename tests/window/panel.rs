@@ -111,7 +111,7 @@ fn values_out_of_range_are_refused_with_a_message() {
     ui.expect(&["cells in all"]);
 }
 
-/// In its field; Escape restores the value.
+/// A refused text stays in its field; Escape restores the value.
 #[test]
 fn a_refused_text_stays_for_correction() {
     let mut ui = open("cantilever");
@@ -306,7 +306,7 @@ fn a_fixed_range_of_colours_is_set() {
     assert_eq!(ends(&ui), first, "the scale has moved under the pointer");
 }
 
-/// By one hundredth.
+/// An arrow key changes the value of a slider by one hundredth.
 #[test]
 fn arrow_keys_step_a_slider_finely() {
     let mut ui = open("article");
@@ -639,7 +639,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert!(ui.state().study().0.is_none());
 }
 
-/// Those of `auto`, in every frame.
+/// The decisions of `auto` are displayed in every frame.
 #[test]
 fn decisions_are_shown() {
     let mut ui = open("elastica");
@@ -703,7 +703,7 @@ fn a_beam_is_pulled_and_springs_back() {
     assert!(ui.simulation().mouse_spring().is_none());
 }
 
-/// In real time; it is reset to its start or to a mark.
+/// A motion runs in real time; a reset returns to its start.
 #[test]
 fn a_motion_is_run_paused_stepped_pulled_and_reset() {
     let mut ui = open_of("swing");
@@ -756,7 +756,7 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
     }
 }
 
-/// And the plots, with a message; the others continue.
+/// An integrator that becomes unstable leaves comparison and plots with a message; the others continue.
 #[test]
 fn an_unstable_integrator_leaves_the_comparison() {
     let mut ui = open_of("swing");
@@ -794,7 +794,7 @@ fn a_motions_settings_are_measured_and_applied() {
     assert!(ui.state().motion_study().is_none_or(|study| study.is_partial));
 }
 
-/// With one clock, and each with its energy drift. With another element all motions restart.
+/// The panes of integrators have one clock, and each its energy drift. With another element all motions restart.
 #[test]
 fn integrators_are_compared_in_panes() {
     // A coarse mesh keeps a busy machine near real time.
@@ -827,7 +827,7 @@ fn integrators_are_compared_in_panes() {
     assert!((ui.simulation().state().time() - before).abs() < 1e-12, "the body of Explore waits");
 }
 
-/// With its progress.
+/// The slot of the error has the progress of the reference solution.
 #[test]
 fn the_error_shows_that_the_reference_is_being_computed() {
     let mut ui = open_of("cook");

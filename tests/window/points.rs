@@ -124,7 +124,7 @@ fn every_field_colours_the_body() {
     assert!(low == -high && high > 0.0, "a signed field has a symmetric range");
 }
 
-/// Two thirds of it in a window of any size, unless all values are asked for in a small one.
+/// A card leaves two thirds of the body free in a window of any size, unless a small one shows all values.
 #[test]
 fn a_card_leaves_the_body_in_view() {
     let id = egui::Id::unique("probe");
@@ -162,7 +162,7 @@ fn a_card_leaves_the_body_in_view() {
     }
 }
 
-/// With a row in every pane of Compare. The card has the stresses in both axes.
+/// A point that is kept has a row in every pane of Compare. Its card has the stresses in both axes.
 #[test]
 fn a_point_is_kept_as_a_probe() {
     let mut ui = open("article");
@@ -207,7 +207,7 @@ fn the_panel_chooses_field_and_magnification() {
     assert!(!texts(&ui).iter().any(|text| text.contains("displacement ×")));
 }
 
-/// To any point, a force and a support also to a corner or the middle of an edge; each in one step of undo.
+/// A base is dragged to any point; forces and supports also snap to corners and middles. Each is one step of undo.
 #[test]
 fn bases_of_objects_are_dragged_along_the_body() {
     let scene = scene("cantilever").probe("p1", [4.0, 0.2]).section([6.0, 0.0], 0.0).support([2.0, -0.5], &[Axis::Y]);
@@ -262,7 +262,7 @@ fn bases_of_objects_are_dragged_along_the_body() {
     assert!(ui.state().probed().is_some(), "a press without a drag inspects");
 }
 
-/// With units.
+/// Coordinates are typed with units.
 #[test]
 fn coordinates_of_a_point_are_typed() {
     let mut ui = open_of("cantilever", scene("cantilever").force([5.0, 0.5], [0.0, -10.0]));

@@ -216,7 +216,7 @@ fn with_reduced_motion_the_story_is_five_stills() {
     is_default(ui.state());
 }
 
-/// And shows its card afterwards. The user's scene stays.
+/// The story that Learn tells ends on the card it began at. The user's scene stays.
 #[test]
 fn learn_tells_the_story_again() {
     let mut ui = open([900.0, 600.0], lab("cantilever"));

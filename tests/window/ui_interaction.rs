@@ -85,7 +85,7 @@ fn a_force_dragged_too_far_keeps_the_last_equilibrium_in_view() {
     assert_eq!(*ui.simulation().status(), Status::Converged);
 }
 
-/// In place of a state that diverges, everything shown belongs to the last equilibrium.
+/// Where the state diverges, the body and all its numbers are those of the last equilibrium.
 #[test]
 fn numbers_beside_the_last_equilibrium_are_its_own() {
     let mut ui = open("article");
@@ -121,7 +121,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     assert_ne!(details(&ui), before);
 }
 
-/// Also after a load was dragged over several equilibria.
+/// The pane agrees with the panel also after a load was dragged over several equilibria.
 #[test]
 fn a_pane_with_the_panels_setting_shows_the_equilibrium_of_the_panel() {
     let mut ui = open("article");
@@ -186,7 +186,7 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     assert_eq!(ui.scene().solver.accept_after, 0);
 }
 
-/// As TIME is, whatever the load before was, and after an edit that needs no iteration.
+/// Like TIME, the iterations are those from rest, whatever the load before was, and after an edit that needs none.
 #[test]
 fn iterations_are_counted_from_rest() {
     let mut ui = open("article");
@@ -243,7 +243,7 @@ fn shift_snaps_the_direction_and_a_force_can_be_dragged_away_and_back() {
     assert!(ui.force()[1] > 0.0, "{:?}", ui.force());
 }
 
-/// The tip before the body below it, the body before the background.
+/// A press takes the tip rather than the body below it, and the body rather than the background.
 #[test]
 fn a_press_takes_the_tip_or_the_body_or_the_view_and_never_two() {
     // An arrow along the beam, inwards, so that its tip is over the body.
@@ -378,7 +378,7 @@ fn moment(ui: &Ui) -> f64 {
     loads.find_map(|l| if let Load::Moment { moment, .. } = l { Some(*moment) } else { None }).unwrap()
 }
 
-/// Dragged around its centre: further is larger, and back beyond the start is the opposite sense.
+/// The end of a moment's arrow is dragged around its centre: further is larger, back beyond the start turns its sense.
 #[test]
 fn the_end_of_a_moments_arrow_sets_it() {
     let mut ui = open("roll-up");
@@ -503,7 +503,7 @@ fn the_gallery_is_navigated_by_keys() {
     }
 }
 
-/// On macOS, Cmd in place of Ctrl.
+/// The names of shortcuts have Cmd in place of Ctrl on macOS.
 #[test]
 fn shortcuts_have_the_names_of_the_system() {
     use OperatingSystem::{Mac, Nix, Windows};
@@ -611,7 +611,7 @@ fn the_eased_view_ends_where_the_other_jumps() {
     assert_eq!(eases.camera(), goal);
 }
 
-/// In a dialog too. A file that another program has changed can be reloaded.
+/// Files are dropped, or opened and saved in a dialog. A file that another program has changed can be reloaded.
 #[test]
 fn files_are_dropped_opened_saved_and_offered_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -723,7 +723,7 @@ fn loads_and_supports_are_put_on_other_edges() {
     assert_eq!(*ui.scene(), scene("cantilever"));
 }
 
-/// When a file is dropped, or the window is closed. Undo restores discarded edits.
+/// A question precedes a dropped file and the closing of the window. Undo restores discarded edits.
 #[test]
 fn unsaved_edits_are_asked_about() {
     const QUESTION: &str = "Save the changes to \u{201c}Cantilever\u{201d}?";
@@ -938,7 +938,7 @@ fn the_colour_bar_is_not_on_the_arrow_of_a_weight() {
     }
 }
 
-/// For any force, in the fitted view.
+/// The colour bar leaves the arrow's tip free in the fitted view, whatever the force is.
 #[test]
 fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
     let mut met = 0;
@@ -1015,7 +1015,7 @@ fn a_file_changed_by_another_program_is_not_overwritten_without_a_question() {
     assert!(ui.state_mut().request_close(&ctx), "all is saved");
 }
 
-/// And is given once.
+/// A warning is given once.
 #[test]
 fn a_warning_stays_until_it_is_closed() {
     let mut ui = open("article");
@@ -1074,7 +1074,7 @@ fn the_menu_of_a_point_adds_and_removes_objects() {
     assert!(ui.query_by_label("Add a probe here").is_none());
 }
 
-/// With room for its label.
+/// A low view has room for the arrow of a large force and for its label.
 #[test]
 fn the_arrow_of_a_large_force_ends_in_a_low_view() {
     for size in [[640.0, 480.0], [900.0, 600.0]] {
@@ -1090,7 +1090,7 @@ fn the_arrow_of_a_large_force_ends_in_a_low_view() {
     }
 }
 
-/// Also where it is far larger than the result.
+/// A body after a single iteration is in view, also where it is far larger than the result.
 #[test]
 fn a_stepped_body_stays_in_view() {
     let mut large = scene("article");
