@@ -12,7 +12,7 @@ use super::{CliError, json, named, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
 use crate::scene::{self, Scene};
-use crate::study::limits::{self, GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
+use crate::study::limits::{self, GOOD, LimitPoint, LimitResult, MethodLimits, Strip, USABLE, load_text};
 use crate::study::moved_points;
 
 /// Runs the command.
@@ -21,9 +21,8 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     outputs.check()?;
     let (scene, system) = validated(&source)?;
-    let moved = moved_points(&scene, system.mesh());
     let seams = system.seams().iter().map(ToString::to_string);
-    let notes: Vec<String> = seams.chain(moved.iter().map(ToString::to_string)).collect();
+    let notes: Vec<String> = seams.chain(moved_points(&scene, system.mesh()).iter().map(ToString::to_string)).collect();
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
@@ -50,29 +49,25 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
         }
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
-            let own = limits.large_reference_error_percent().map(percent);
-            let own = own.map_or_else(String::new, |own| format!(", its own error is at most {own}"));
+            let own = limits.large_reference_error_percent();
+            let own = own.map_or_else(String::new, |own| format!(", its own error is at most {}", percent(own)));
             let _ = writeln!(text, "the reference solution is known at {known} of {all} loads{own}");
-            if let Some(critical) = limits.critical.map(load) {
-                let _ = writeln!(text, "critical load {critical}: the load path from rest buckles or jumps there");
-            }
+            limits.criticals_text(&axis).into_iter().for_each(|criticals| text += &(criticals + "\n"));
             writeln!(text)
         }
     };
     let ends = if limits.duration.is_some() { "finishes to" } else { "converges to" };
-    let head = [format!("within {GOOD} %"), format!("within {USABLE} %"), ends.into(), "strains > 10 %".into()];
-    let names: Vec<String> = limits.strips.iter().map(|strip| strip.name(str::to_owned)).collect();
-    let width = names.iter().map(String::len).fold(11, usize::max);
-    let rows: Vec<[String; 4]> =
-        limits.strips.iter().map(|strip| strip.words(&axis, limits.range).map(|cell| cell.to_string())).collect();
-    let widths: [usize; 4] = std::array::from_fn(|i| {
-        let cells = rows.iter().map(|row| row[i].chars().count());
-        cells.fold(head[i].len(), usize::max).max(15)
-    });
-    let names = std::iter::once(String::new()).chain(names);
-    for (name, row) in names.zip(std::iter::once(&head).chain(&rows)) {
-        let _ = write!(text, "{name:<width$}");
-        row.iter().zip(widths).for_each(|(cell, width)| _ = write!(text, "  {cell:>width$}"));
+    let head = ["", &format!("within {GOOD} %"), &format!("within {USABLE} %"), ends, "strains > 10 %"];
+    let row = |strip: &Strip| {
+        let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
+        [strip.name(str::to_owned), good, usable, converges, law]
+    };
+    let rows: Vec<[String; 5]> =
+        std::iter::once(head.map(str::to_owned)).chain(limits.strips.iter().map(row)).collect();
+    let width = |i: usize| rows.iter().map(|row| row[i].chars().count()).fold(if i == 0 { 11 } else { 15 }, usize::max);
+    for [name, cells @ ..] in &rows {
+        let _ = write!(text, "{name:<width$}", width = width(0));
+        cells.iter().enumerate().for_each(|(i, cell)| _ = write!(text, "  {cell:>width$}", width = width(i + 1)));
         text.push('\n');
     }
     text
@@ -85,13 +80,16 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
     for strip in &limits.strips {
         let Strip { element, integrator, points, .. } = strip;
         let method = strip.method_name(str::to_owned);
-        for LimitPoint { factor, displacement, error_percent, max_strain, inverted_elements, .. } in points {
-            let error = error_percent.map_or_else(String::new, |error| error.to_string());
+        for LimitPoint { factor, result, .. } in points {
+            let Some(LimitResult { displacement, max_strain, inverted_elements, error: Some(error) }) = result else {
+                continue;
+            };
+            let error = error.percent.map_or_else(String::new, |error| error.to_string());
             let first = match integrator {
                 Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),
                 None => format!("{},{method},{factor}", element.id()),
             };
-            let [x, y] = [displacement.x, displacement.y];
+            let [x, y]: [f64; 2] = (*displacement).into();
             let _ = writeln!(text, "{first},{x},{y},{error},{max_strain},{inverted_elements}");
         }
     }
@@ -101,19 +99,20 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
 fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String {
     let axis = limits::axis(scene);
     let strip = |strip: &Strip| {
+        let fails = strip.fails();
         let mut object = json!({
             "element": strip.element.id(),
             "method": strip.method.id(),
             "accept_after": strip.accept_after,
             "within_1_percent": strip.within(GOOD),
             "within_5_percent": strip.within(USABLE),
-            "error_known_to": strip.last_known().map(|(factor, _)| factor),
-            "converges_to": strip.ends_at(),
-            "converges_again_from": strip.converges_again_from(limits.range),
-            "does_not_converge": strip.fails,
+            "error_known_to": strip.last_known(),
+            "converges_to": fails.first().map(|[end, _]| end),
+            "converges_again_from": fails.first().map(|[_, again]| again).filter(|again| **again < limits.range[1]),
+            "does_not_converge": fails,
             "law_ends_at": strip.law_ends_at(),
+            "critical_load_factor": limits.critical_of(strip.element),
         });
-        // Equilibria have no integrator.
         if let Some(integrator) = strip.integrator {
             object["integrator"] = json!(integrator.id());
         }
@@ -133,7 +132,7 @@ fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String 
             object["duration"] = json!(duration);
             object["mesh_error_percent"] = json!(limits.mesh_error_percent);
         }
-        None => object["critical_load_factor"] = json!(limits.critical),
+        None => object["critical_load_factor"] = json!(limits.critical()),
     }
     json::text(&object)
 }

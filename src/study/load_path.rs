@@ -286,6 +286,29 @@ impl LoadPath {
         Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
     }
 
+    /// Returns the load factor at which the path of a simulation's scene first jumps or buckles; `None` if it does neither
+    /// before its end, or the search is cancelled.
+    pub(super) fn first_event(simulation: &Simulation, observe: Observer<'_>) -> Option<f64> {
+        Self::followed(simulation, true, observe)?.summary.first_event()
+    }
+
+    /// Follows the path of a simulation's scene by its follower alone, to its end or, with `to_jump`, the first jump; there is
+    /// no displacement if it does not reach the full load. `None` if the search is cancelled.
+    fn followed(simulation: &Simulation, to_jump: bool, observe: Observer<'_>) -> Option<PathFromRest> {
+        let mut tracer = Tracer::new(simulation)?;
+        let mut follower = PathFollower::start(&mut tracer.equations(), 1.0)?;
+        let mut progress = PathProgress::Continue;
+        while matches!(progress, PathProgress::Continue) && !(to_jump && follower.has_jumped()) {
+            observe(Progress::at(follower.last().factor)).is_continue().then_some(())?;
+            progress = follower.advance(&mut tracer.equations(), MAX_SOLVES);
+            drop(follower.take_parts());
+        }
+        let events = follower.take_events();
+        let is_at_end = matches!(progress, PathProgress::Reached);
+        let end = is_at_end.then(|| follower.last().state.displacement.to_vec());
+        Some(PathFromRest { summary: PathSummary::of(events.jump, &events.bifurcations), end })
+    }
+
     /// Follows the load path of a scene to its end; `None` for a motion, if the path cannot be followed, or is cancelled,
     /// or the model is too large.
     #[must_use]

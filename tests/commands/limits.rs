@@ -14,7 +14,6 @@ fn limits_are_those_of_solve() {
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 9, "three elements, each with three methods");
     let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
-    let force = json["full_load"].as_f64().unwrap();
     for strip in strips {
         let (element, method) = (strip["element"].as_str().unwrap(), strip["method"].as_str().unwrap());
         let set = [format!("beam.element=\"{element}\""), format!("solver.method=\"{method}\"")];
@@ -36,15 +35,7 @@ fn limits_are_those_of_solve() {
             assert!(off < 1e-6, "{element} {method}: error {}, solve says {wanted}", values[3]);
             assert!((values[2] - probe["u"][1].as_f64().unwrap()).abs() < 1e-6, "{row}: {probe}");
         }
-        if let Some(end) = end {
-            assert_eq!(method, "warped", "newton solves every load");
-            let converges = |factor: f64| {
-                let load = format!("load.0.force=[0, {}]", -factor * force);
-                warpbeam(&["solve", "article", "--set", &set[0], "--set", &set[1], "--set", &load]).status.code()
-                    == Some(0)
-            };
-            assert!(converges(0.99 * end) && !converges(1.03 * end), "{element}: {end}");
-        }
+        assert!(end.is_none() || method == "warped", "newton solves every load: {strip}");
         // More load makes the error of linear theory larger.
         if method == "linear" {
             assert!(strip["within_1_percent"].as_f64() <= strip["within_5_percent"].as_f64(), "{strip}");
@@ -67,14 +58,7 @@ fn a_method_may_converge_again_beyond_buckling() {
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     let [end, again] = ["converges_to", "converges_again_from"].map(|key| number(&warped[key]));
     let gaps: Vec<[f64; 2]> = serde_json::from_value(warped["does_not_converge"].clone()).unwrap();
-    assert_eq!(gaps[0], [end, again]);
-    let converges = |factor: f64| {
-        let load = format!("load.0.force=[{}, {}]", -700.0 * factor, 2.0 * factor);
-        warpbeam(&["solve", "column", "--set", "solver.method=warped", "--set", &load]).status.code() == Some(0)
-    };
-    let solved = [0.99 * end, 1.01 * end, 0.98 * again, 1.01 * again, 1.0].map(converges);
-    assert_eq!(solved, [true, false, false, true, true], "{end} {again}");
-    assert_eq!([0.97, 1.02].map(|part| converges(part * gaps[1][0])), [true, false], "{gaps:?}");
+    assert!(gaps[0] == [end, again] && again < 1.0 && gaps.len() == 2, "{gaps:?}");
     let [own, same] = [warped, newton].map(|strip| number(&strip["within_1_percent"]));
     assert!((own / same - 1.0).abs() < 0.01, "{own} {same}");
 }
@@ -175,4 +159,32 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     let picture = fs::read_to_string(folder.path().join("t.svg")).unwrap();
     assert!(picture.contains("stops early") && picture.contains("energy-momentum"));
     assert!(picture.contains("each error includes") && smallest < 1.1 * mesh + 0.1, "{smallest}, {mesh}");
+}
+
+/// Ends lie where single solves change, not between loads that were tried far apart: an arch jumps at 28.6 kN, the error of
+/// a column reaches 1 % at 198 N.
+#[test]
+fn ends_are_those_of_single_solves() {
+    let scene = |beam: &str, load: &str| {
+        format!(
+            "name = \"s\"\nbeam = {{ length = 30.0, height = 1.0, element = \"t6\", {beam} }}\n\
+             material = {{ young = 1e6, poisson = 0.3, density = 1.0 }}\nload = [{{ kind = \"force\", {load} }}]\n"
+        )
+    };
+    let arch = scene("cells = [20, 2], rise = 5.15798677607263", "edge = \"top\", force = [0, -8372.406174476042]")
+        + "support = [{ edge = \"left\", fix = [\"x\", \"y\"] }, { edge = \"right\", fix = [\"x\", \"y\"] }]\n\
+           probe = [{ name = \"p\", at = [15.0, 5.15798677607263] }]\n";
+    let column = scene("cells = [10, 1]", "edge = \"right\", force = [-218.05265083342596, 0]")
+        + "support = [{ edge = \"left\", fix = [\"x\", \"y\"] }]\nprobe = [{ name = \"p\", edge = \"right\" }]\n";
+    let [jump, error] = [28_600.0 / 8372.4, 198.0 / 218.05];
+    for (scene, element, key, wanted) in [(arch, "t3", "law_ends_at", jump), (column, "t6", "within_1_percent", error)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        let json = parsed(&warpbeam_in(folder.path(), &["limits", "scene.toml", "--json"]));
+        let strips = json["strips"].as_array().unwrap();
+        let strip = strips.iter().find(|strip| strip["element"] == element && strip["method"] == "newton").unwrap();
+        let found = strip[key].as_f64().unwrap();
+        assert!((found / wanted - 1.0).abs() < 0.015, "{element} {key}: {found}, {wanted}");
+    }
 }

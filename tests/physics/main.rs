@@ -19,6 +19,7 @@ mod equilibria;
 mod gmsh;
 mod grab;
 mod held_points;
+mod limits;
 mod load_path;
 mod meshes;
 mod moments;

@@ -161,19 +161,6 @@ fn the_line_sets_the_load() {
     assert!((ratio - 1.05).abs() < 0.01, "{ratio}");
 }
 
-#[test]
-fn an_edit_of_the_body_computes_the_limits_again() {
-    let mut ui = opened(scene("article"));
-    ui.edit(|scene| scene.beam.as_mut().unwrap().length *= 2.0);
-    ui.run_steps(2);
-    settle(&mut ui);
-    let limits = MethodLimits::of(ui.scene(), &|_| ControlFlow::Continue(())).unwrap();
-    let linear = limits.strips.iter().find(|s| (s.element, s.method) == (ElementKind::T6, MethodKind::Linear)).unwrap();
-    let usable = &linear.words(&LoadAxis::of(ui.scene()), limits.range)[1];
-    let (label, _) = strip(&ui, "t6 linear:").unwrap();
-    assert!(label.contains(&format!("within 5 %: {usable};")), "{label}: {usable}");
-}
-
 /// A click on a strip sets the integrator, and the line sets the time step.
 #[test]
 fn a_motion_has_limits_of_its_integrators() {
