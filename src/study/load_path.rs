@@ -15,8 +15,9 @@ use crate::method::{
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
 use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{Equilibrium, Simulation, Status, SupportReaction, supports_power};
+use crate::simulation::{Deformation, Equilibrium, Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest, largest_distance};
+use crate::stress::LAW_HOLDS;
 use crate::timings::Timings;
 
 /// Equilibrium on the path.
@@ -210,6 +211,14 @@ const NEXT: f64 = 1.5;
 /// as the same equilibrium.
 const SAME: f64 = 0.02;
 
+/// Returns `true` if the result of full steps from rest counts as the end of the path, and its strains are so large that the
+/// material may have jumped on the path.
+fn is_taken_for_path(simulation: &Simulation) -> bool {
+    let is_direct = simulation.equilibrium().is_some_and(|search| search.load_steps() == 1);
+    let strain = || Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress()).max_strain;
+    is_direct && strain() > LAW_HOLDS
+}
+
 impl LoadPath {
     /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
     #[must_use]
@@ -239,7 +248,7 @@ impl LoadPath {
         if is_small && simulation.problem().supports().move_the_body() {
             return Some(Self::traced(simulation, observe)?.to(simulation.displacement()));
         }
-        let mut summary = match search.path_events() {
+        let mut summary = match search.path_events().filter(|_| !is_small || !is_taken_for_path(simulation)) {
             Some(events) => PathSummary::of(events.jump, &events.bifurcations),
             None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
             None => return None,
@@ -280,6 +289,9 @@ impl LoadPath {
             follower.solve_watched(&mut |follower| observe(Progress { fraction: reached(follower), now: Some(&now) }));
         if flow.is_break() || *follower.status() != Status::Converged {
             return None;
+        }
+        if is_taken_for_path(&follower) {
+            return Self::followed(&follower, false, observe).filter(|path| path.end.is_some());
         }
         let events = follower.equilibrium()?.path_events()?;
         let summary = PathSummary::of(events.jump, &events.bifurcations);
