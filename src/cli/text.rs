@@ -327,7 +327,8 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     for claim in Claim::of_curve(curve) {
         let _ = writeln!(text, "{claim}");
     }
-    text.push('\n');
+    let [along, across] = scene.beam.as_ref().map_or([0; 2], |beam| beam.cells);
+    let _ = writeln!(text, "\nfinite elements, {} {along}×{across}:", scene.element().id());
     for point in &curve.methods {
         let unstable = point.status == Status::Converged && point.stable == Some(false);
         let word = point.status.word() + if unstable { ", unstable" } else { "" };

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::claim::Claim;
 use super::ranking::{Ranked, Ranking};
-use super::trade::Study;
+use super::trade::{Measurement, Study};
 use super::tune::Tuning;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
@@ -124,17 +124,19 @@ impl std::fmt::Display for Tuning {
         let e = &chosen.error;
         writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
         writeln!(f, "{}:", Claim::of_tuning(self))?;
-        writeln!(
-            f,
-            "  {}: {:.4} ms, error at most {:.4} %",
-            chosen.setting,
-            chosen.milliseconds(),
-            study.ranking().error_bound(chosen)
-        )?;
+        let cost = |m: &Measurement| {
+            let bound = study.ranking().error_bound(m);
+            format!("{}: {:.4} ms, error at most {bound:.4} %", m.setting, m.milliseconds())
+        };
+        writeln!(f, "  {}", cost(chosen))?;
         write!(
             f,
             "  of which mesh {:.4} %, stopped early {:.4} %, linear theory {:.4} %, the reference's own {:.4} %",
             e.discretization, e.iteration, e.model, study.against.own_error_percent
-        )
+        )?;
+        match self.fastest_within_error().filter(|_| !self.met) {
+            Some(other) => write!(f, "\nthe fastest within the error:\n  {}", cost(other)),
+            None => Ok(()),
+        }
     }
 }
