@@ -330,7 +330,7 @@ impl Ui {
 
     /// Runs frames until a condition holds, with a short sleep after each for background tasks.
     pub fn wait_until(&mut self, what: &str, holds: impl Fn(&Self) -> bool) {
-        for _ in 0..6000 {
+        for _ in 0..12_000 {
             if holds(self) {
                 return;
             }
@@ -394,15 +394,8 @@ pub fn painted(ui: &Ui) -> Vec<(Pos2, String)> {
 }
 
 /// Runs frames until `done`, with a short sleep after each for background tasks; returns the number of frames.
-pub fn wait(ui: &mut Ui, what: &str, done: impl Fn(&Lab) -> bool) -> u32 {
-    for frame in 0..6000 {
-        if done(ui.state()) {
-            return frame;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        ui.step();
-    }
-    unreachable!("{what}: never")
+pub fn wait(ui: &mut Ui, what: &str, done: impl Fn(&Lab) -> bool) {
+    ui.wait_until(what, |ui| done(ui.state()));
 }
 
 /// Runs frames until every displayed result is known, and shows it.
