@@ -1,5 +1,6 @@
 //! Commands without a window.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -17,10 +18,11 @@ use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene};
 use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
+use crate::study::extremes::{self, Case, Entry, motion, rest};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
     Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MotionStudy, PathSummary, Reference, Study,
-    StudyError, Tuning, extremes, moved_points, parallel, path_chart,
+    StudyError, Tuning, moved_points, parallel, path_chart,
 };
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
@@ -325,34 +327,29 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
 }
 
 pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
-    let (cases, motion_cases) = (extremes::cases(extent(out)), extremes::motion::cases(extent(out)));
+    let (cases, motion_cases) = (rest::cases(extent(out)), motion::cases(extent(out)));
     let all = cases.len() + motion_cases.len();
     let watch = Watch::new();
     let observe = |done: usize| {
         watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
         watch.flow()
     };
-    let entries = parallel::map(
-        &cases,
-        |case, _| case.solve().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
-        observe,
-    );
-    let entries: Vec<_> = entries.into_iter().flatten().collect::<Result<_, _>>()?;
-    let motions = parallel::map(
-        &motion_cases,
-        |case, _| case.run().map_err(|error| CliError::Simulation { scene: format!("{case:?}"), error }),
-        |done| observe(cases.len() + done),
-    );
-    let motions: Vec<_> = motions.into_iter().flatten().collect::<Result<_, _>>()?;
+    let entries = solve_atlas(&cases, observe)?;
+    let motions = solve_atlas(&motion_cases, |done| observe(cases.len() + done))?;
     drop(watch);
     let missing = all - entries.len() - motions.len();
-    let summary = format!("{}\n{}", extremes::summary(&entries), extremes::motion::summary(&motions));
-    let (table, drawing) = (extremes::table(&entries), plot::atlas(&entries));
-    write_folder(&out.folder, "extremes", &table, &drawing, Some(&summary))?;
-    let (table, drawing) = (extremes::motion::table(&motions), plot::motion_atlas(&motions));
-    write_folder(&out.folder, "extremes-motion", &table, &drawing, None)?;
+    let summary = format!("{}\n{}", rest::summary(&entries), motion::summary(&motions));
+    write_folder(&out.folder, "extremes", &extremes::table(&entries), &plot::atlas(&entries), Some(&summary))?;
+    write_folder(&out.folder, "extremes-motion", &extremes::table(&motions), &plot::atlas(&motions), None)?;
     text::print(&summary)?;
     Ok(ended(missing > 0, &format!("{} not in the atlas", count(missing as u64, "case"))))
+}
+
+/// Solves all cases, or until `observe` cancels the rest.
+fn solve_atlas<C: Case>(cases: &[C], observe: impl FnMut(usize) -> ControlFlow<()>) -> Result<Vec<Entry<C>>, CliError> {
+    let failed = |case: &C, error| CliError::Simulation { scene: format!("{case:?}"), error };
+    let entries = parallel::map(cases, |case, _| case.solve().map_err(|error| failed(case, error)), observe);
+    entries.into_iter().flatten().collect()
 }
 
 fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {

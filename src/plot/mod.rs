@@ -7,7 +7,7 @@ mod figure;
 mod limits;
 mod trade;
 
-pub use atlas::{atlas, motion_atlas};
+pub use atlas::atlas;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;

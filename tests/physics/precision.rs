@@ -12,28 +12,26 @@ use warpbeam::element::{ElementType, Lame, QuadraturePoint, StrainRate, Tangent}
 use warpbeam::method::Reason;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;
-use warpbeam::study::extremes::{Case, CaseBody, CaseStart, Outcome};
-use warpbeam::{ElementKind, Mesh, MethodKind, Simulation, State, Status};
+use warpbeam::study::extremes::rest::{RestCase, Variant};
+use warpbeam::study::extremes::{Case, Entry, Outcome};
+use warpbeam::{ElementKind, Mesh, MethodKind, Simulation, Solution, State, Status};
 
 /// Returns a cantilever with L/H = 1000 under α = 1e-6.
-fn slender(element: ElementKind, method: MethodKind) -> Case {
-    Case {
-        body: CaseBody::Beam,
+fn slender(element: ElementKind, method: MethodKind) -> RestCase {
+    RestCase {
         element,
         method,
-        start: CaseStart::Rest,
+        variant: Variant::Plain,
         alpha: 1e-6,
         young: 1e6,
         poisson: 0.3,
         slenderness: 1e3,
         aspect: 5.0,
-        distortion: 0.0,
-        moved: false,
     }
 }
 
 /// Solves a case until its residual stops decreasing.
-fn at_its_floor(case: Case) -> Simulation {
+fn at_its_floor(case: RestCase) -> Simulation {
     let mut scene = case.scene();
     scene.solver.tolerance = 1e-14;
     let mut simulation = Simulation::new(&scene).unwrap();
@@ -68,7 +66,7 @@ fn plain_floor(problem: &Problem) -> f64 {
 fn the_second_part_of_the_displacement_lowers_the_floor() {
     for element in ElementKind::all() {
         for aspect in [1.0, 50.0] {
-            let simulation = at_its_floor(Case { aspect, ..slender(element, MethodKind::Linear) });
+            let simulation = at_its_floor(RestCase { aspect, ..slender(element, MethodKind::Linear) });
             let (plain, residual) = (plain_floor(simulation.problem()), simulation.residual());
             assert!(plain > 15.0 * residual, "{} {aspect}: {plain:e} {residual:e}", element.id());
         }
@@ -329,7 +327,7 @@ fn the_bound_of_rounding_holds() {
             (MethodKind::Newton, 30.0, 100.0),
             (MethodKind::Newton, 10.0, 5.0),
         ] {
-            let simulation = at_its_floor(Case { alpha, slenderness, ..slender(element, method) });
+            let simulation = at_its_floor(RestCase { alpha, slenderness, ..slender(element, method) });
             let kinematics = if simulation.is_linear() { Kinematics::Linear } else { Kinematics::Corotated };
             let found = Rounding::of(simulation.problem(), simulation.state(), kinematics);
             let what = format!("{} {} {alpha} {slenderness}: {found:?}", element.id(), method.id());
@@ -345,7 +343,7 @@ fn the_bound_of_rounding_holds_out_of_balance() {
     let mut random = || random.between(-1.0, 1.0);
     for element in ElementKind::all() {
         for (aspect, poisson) in [(1.0, 0.0), (5.0, 0.3), (50.0, 0.4999)] {
-            let case = Case { aspect, poisson, slenderness: 4.0 * aspect, ..slender(element, MethodKind::Newton) };
+            let case = RestCase { aspect, poisson, slenderness: 4.0 * aspect, ..slender(element, MethodKind::Newton) };
             let scene = case.scene();
             let beam = scene.beam.clone().unwrap();
             let cell = Vector2::new(beam.length / f64::from(beam.cells[0]), beam.height / f64::from(beam.cells[1]));
@@ -389,17 +387,17 @@ fn a_residual_at_its_rounding_floor_counts_as_converged() {
     // Nearly incompressible, with cells fifty times as long as high: the bound may exceed the usual tolerance.
     let mut at_floor = 0;
     for (element, alpha) in [ElementKind::T6, ElementKind::Q4].into_iter().flat_map(|e| [(e, 0.01), (e, 0.1)]) {
-        let case = Case { alpha, poisson: 0.4999, aspect: 50.0, ..slender(element, MethodKind::Newton) };
-        let entry = case.solve().unwrap();
-        assert_eq!(entry.outcome, Outcome::Certified, "{} {alpha}: {:e}", element.id(), entry.residual);
-        match entry.residual_floor {
-            Some(floor) => assert!(entry.residual <= floor && floor <= 1e-5, "{}: {floor:e}", element.id()),
-            None => assert!(entry.residual <= case.scene().solver.tolerance, "{}: {:e}", element.id(), entry.residual),
+        let case = RestCase { alpha, poisson: 0.4999, aspect: 50.0, ..slender(element, MethodKind::Newton) };
+        let Entry { outcome, solution: Solution { residual, residual_floor, .. }, .. } = case.solve().unwrap();
+        assert_eq!(outcome, Outcome::Certified, "{} {alpha}: {residual:e}", element.id());
+        match residual_floor {
+            Some(floor) => assert!(residual <= floor && floor <= 1e-5, "{}: {floor:e}", element.id()),
+            None => assert!(residual <= case.scene().solver.tolerance, "{}: {residual:e}", element.id()),
         }
-        at_floor += usize::from(entry.residual_floor.is_some());
+        at_floor += usize::from(residual_floor.is_some());
     }
     assert!(at_floor > 0, "each of them meets its tolerance");
-    let mut scene = Case { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene();
+    let mut scene = RestCase { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene();
     let mut simulation = Simulation::new(&scene).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
     assert_eq!(simulation.equilibrium().unwrap().residual_floor(), None);
