@@ -86,20 +86,6 @@ fn an_early_stop_has_a_strip() {
     assert!(solved["status"] == "accepted" && (at_load[3] / wanted - 1.0).abs() < 1e-6, "{at_load:?} {wanted}");
 }
 
-/// The axis of loads in a picture is logarithmic.
-#[test]
-fn equal_distances_in_a_picture_are_equal_ratios() {
-    let folder = tempfile::tempdir().unwrap();
-    succeeds_in(folder.path(), &["limits", "article", "--picture", "t.svg"]);
-    let svg = fs::read_to_string(folder.path().join("t.svg")).unwrap();
-    let document = roxmltree::Document::parse(&svg).unwrap();
-    let [low, own, high] = ["300 N", "30 kN", "300 kN"].map(|text| {
-        let node = document.descendants().find(|node| node.has_tag_name("text") && node.text() == Some(text));
-        node.unwrap().attribute("x").unwrap().parse::<f64>().unwrap()
-    });
-    assert!((own - low - 2.0 * (high - own)).abs() < 0.2);
-}
-
 /// The load at which linear theory is 5 % off the exact beam is that of `curve`.
 #[test]
 fn the_limit_of_linear_theory_is_that_of_the_exact_beam() {

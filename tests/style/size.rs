@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_843),
     ("plot", &["src/plot"], 894),
     ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 21_438),
+    ("tests", &["tests"], 21_498),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 65_195;
