@@ -422,7 +422,7 @@ fn the_end_of_a_moments_arrow_sets_it() {
     assert_eq!(*ui.scene(), scene("roll-up"));
     turn(&mut ui, 20.0, Modifiers::NONE);
     assert_ne!(moment(&ui), before);
-    ui.run_steps(10);
+    settle(&mut ui);
     ui.double_click(ui.tip());
     assert_eq!(moment(&ui), before);
 }
