@@ -131,7 +131,7 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
         assert!(points.iter().all(|point| point[1] >= mesh), "{integrator}: {mesh}, {points:?}");
         smallest = points.iter().fold(smallest, |least, point| least.min(point[1]));
         let Some(end) = strip["converges_to"].as_f64() else { continue };
-        assert!(end > 0.0 && (end >= last[0]), "{integrator}: {end}, {points:?}");
+        assert!(end > 0.97 * last[0], "next to its end {integrator} may finish with a longer step: {end}, {points:?}");
         let finishes = |factor: f64| {
             let step = format!("dynamics.time_step={}", factor * own);
             let integrator = format!("dynamics.integrator=\"{integrator}\"");
