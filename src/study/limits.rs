@@ -48,7 +48,7 @@ const LARGE_OWN: f64 = 0.5;
 /// Ratio of two loads between which a change is not sought any more.
 const FINE: f64 = 1.01;
 /// Largest number of loads of a strip that are added to find where its results change.
-const MOST_ADDED: usize = 60;
+const MAX_ADDED: usize = 60;
 
 /// Error of a result, in classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,7 +149,7 @@ impl Property {
 
 /// Answer to the question if a load has a property.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Answer {
+enum Ternary {
     Yes,
     No,
     /// The reference solution does not tell.
@@ -158,23 +158,23 @@ enum Answer {
 
 impl LimitPoint {
     /// Returns the answer to a question; `None` if it was not sought at this load.
-    fn answer(&self, property: Property) -> Option<Answer> {
-        let of = |holds: bool| if holds { Answer::Yes } else { Answer::No };
+    fn answer(&self, property: Property) -> Option<Ternary> {
+        let of = |holds: bool| if holds { Ternary::Yes } else { Ternary::No };
         match property {
             Property::Converges => Some(of(self.converges)),
             Property::Law if self.converges => Some(of(!self.result?.is_beyond_law())),
             Property::Law => None,
-            Property::Within(_) if !self.converges => Some(Answer::No),
+            Property::Within(_) if !self.converges => Some(Ternary::No),
             Property::Within(limit) => Some(match self.result?.error? {
-                LimitError { percent: None, .. } => Answer::Unknown,
-                LimitError { percent: Some(error), .. } if error <= limit => Answer::Yes,
+                LimitError { percent: None, .. } => Ternary::Unknown,
+                LimitError { percent: Some(error), .. } if error <= limit => Ternary::Yes,
                 // Without the error of the reference, which is large, it may be within the limit.
                 LimitError { percent: Some(error), reference_percent: Some(own) }
                     if error - own <= limit && own > LARGE_OWN * limit =>
                 {
-                    Answer::Unknown
+                    Ternary::Unknown
                 }
-                _ => Answer::No,
+                _ => Ternary::No,
             }),
         }
     }
@@ -251,22 +251,22 @@ impl Strip {
     }
 
     /// Returns the loads at which a property was sought, with the answers.
-    fn answers(&self, property: Property) -> impl Iterator<Item = (f64, Answer)> {
+    fn answers(&self, property: Property) -> impl Iterator<Item = (f64, Ternary)> {
         self.points.iter().filter_map(move |point| Some((point.factor, point.answer(property)?)))
     }
 
     /// Returns the rows of loads that have a property, from small to large.
     fn runs(&self, property: Property) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
-        let mut last: Option<(f64, Answer)> = None;
+        let mut last: Option<(f64, Ternary)> = None;
         for (factor, answer) in self.answers(property) {
-            let follows = last.is_some_and(|(_, last)| last == Answer::Yes);
+            let follows = last.is_some_and(|(_, last)| last == Ternary::Yes);
             match (answer, runs.last_mut().filter(|_| follows)) {
-                (Answer::Yes, Some(run)) => run.range[1] = factor,
-                (Answer::Yes, None) => {
+                (Ternary::Yes, Some(run)) => run.range[1] = factor,
+                (Ternary::Yes, None) => {
                     runs.push(Run { range: [factor; 2], before: last.map(|(before, _)| before), ends: false });
                 }
-                (Answer::No, Some(run)) => run.ends = factor <= FINE * run.range[1],
+                (Ternary::No, Some(run)) => run.ends = factor <= FINE * run.range[1],
                 _ => {}
             }
             last = Some((factor, answer));
@@ -290,9 +290,9 @@ impl Strip {
     #[must_use]
     pub fn within(&self, percent: f64) -> Option<f64> {
         match self.answers(Property::Within(percent)).next()? {
-            (_, Answer::Unknown) => None,
-            (_, Answer::No) => Some(0.0),
-            (_, Answer::Yes) => {
+            (_, Ternary::Unknown) => None,
+            (_, Ternary::No) => Some(0.0),
+            (_, Ternary::Yes) => {
                 let end = self.runs(Property::Within(percent)).first()?.range[1];
                 (self.last_known() != Some(end)).then_some(end)
             }
@@ -322,7 +322,7 @@ impl Strip {
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
     #[must_use]
     pub fn law_ends_at(&self) -> Option<f64> {
-        self.answers(Property::Law).find(|(_, answer)| *answer == Answer::No).map(|(factor, _)| factor)
+        self.answers(Property::Law).find(|(_, answer)| *answer == Ternary::No).map(|(factor, _)| factor)
     }
 
     /// Returns the strip in pieces: each load has the middle between it and its neighbours. The pieces of a strip that is
@@ -337,7 +337,7 @@ impl Strip {
             // Loads at which the error was not sought have that of the load below.
             let rating = point.rating().or(last.map(|last| last.rating)).unwrap_or(Rating::Unknown);
             let is_beyond_law = match point.answer(Property::Law) {
-                Some(answer) => answer == Answer::No,
+                Some(answer) => answer == Ternary::No,
                 None => point.converges && last.is_some_and(|last| last.is_beyond_law),
             };
             match pieces.last_mut() {
@@ -359,7 +359,7 @@ impl Strip {
         let of = |property: Property| {
             let Some((run, again)) = self.first_run(property) else {
                 return match self.answers(property).next() {
-                    Some((_, Answer::No)) => sentence!("not at %{load}", load = load(range[0])),
+                    Some((_, Ternary::No)) => sentence!("not at %{load}", load = load(range[0])),
                     _ => sentence!("not known"),
                 };
             };
@@ -414,18 +414,18 @@ impl Strip {
         })
     }
 
-    /// Returns two neighbouring loads between which a property changes that `is_sought` at the larger one, unless they lie
-    /// next to each other; and `true` if the property is an error.
-    fn change(&self, is_sought: &dyn Fn(Property, f64) -> bool) -> Option<([f64; 2], bool)> {
+    /// Returns the middle between two neighbouring loads at which a property that `is_sought` at the larger one differs,
+    /// unless they lie next to each other; and `true` if the property is an error.
+    fn change(&self, is_sought: &dyn Fn(Property, f64) -> bool) -> Option<(f64, bool)> {
         Property::ALL.iter().find_map(|&property| {
-            let answers: Vec<(f64, Answer)> = self.answers(property).collect();
-            let is_change = |pair: &&[(f64, Answer)]| {
+            let answers: Vec<(f64, Ternary)> = self.answers(property).collect();
+            let is_change = |pair: &&[(f64, Ternary)]| {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
-                let is_known = before != Answer::Unknown && after != Answer::Unknown;
+                let is_known = before != Ternary::Unknown && after != Ternary::Unknown;
                 before != after && is_known && to > FINE * from && is_sought(property, to)
             };
             let is_error = matches!(property, Property::Within(_));
-            answers.windows(2).find(is_change).map(|pair| ([pair[0].0, pair[1].0], is_error))
+            answers.windows(2).find(is_change).map(|pair| ((pair[0].0 * pair[1].0).sqrt(), is_error))
         })
     }
 
@@ -636,7 +636,7 @@ impl MethodLimits {
                 range: RANGE,
                 duration: None,
                 mesh_error_percent: None,
-                criticals: criticals.clone(),
+                criticals,
                 reference: factors.iter().map(|&factor| (factor, None)).collect(),
                 strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
             },
@@ -661,13 +661,13 @@ impl MethodLimits {
             all_done(found)
         };
         solve_references(&factors, 0)?;
-        let added = steep(&so_far.reference());
+        let added = steep(&so_far.limits().reference);
         so_far.change(|limits| {
             limits.reference.extend(added.iter().map(|&factor| (factor, None)));
             limits.reference.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         });
         solve_references(&added, factors.len())?;
-        let compared: Vec<f64> = so_far.reference().into_iter().map(|(factor, _)| factor).collect();
+        let compared: Vec<f64> = so_far.limits().reference.iter().map(|(factor, _)| *factor).collect();
         let is_new = |factor: &f64| compared.iter().all(|other| (other / factor).ln().abs() > FINE.ln());
         let between: Vec<(f64, bool)> = between.filter(is_new).map(|factor| (factor, false)).collect();
         let all = (compared.len() + settings.len()) as f64;
@@ -707,9 +707,8 @@ impl MethodLimits {
                     Property::Within(_) => !references.folds(factor),
                     _ => true,
                 };
-                let critical = criticals.iter().filter(|(element, _)| *element == own.element());
-                let near =
-                    critical.filter_map(|(_, factor)| *factor).flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
+                let critical = so_far.limits().critical_of(own.element());
+                let near = critical.into_iter().flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
                 let near = near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor));
                 let mut factors: Vec<(f64, bool)> = compared.iter().copied().chain(near).map(|at| (at, true)).collect();
                 factors.extend(&between);
@@ -840,20 +839,19 @@ impl<'a> SoFar<'a> {
         Self { limits: Mutex::new(limits), partial }
     }
 
+    fn limits(&self) -> MutexGuard<'_, MethodLimits> {
+        self.limits.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Changes the limits, and reports them.
     fn change(&self, change: impl FnOnce(&mut MethodLimits)) {
-        let mut limits = self.limits.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut limits = self.limits();
         change(&mut limits);
         (self.partial)(&limits);
     }
 
     fn set(&self, row: usize, strip: &Strip) {
         self.change(|limits| _ = limits.strips.get_mut(row).map(|old| old.clone_from(strip)));
-    }
-
-    /// Returns the reference displacements.
-    fn reference(&self) -> Vec<(f64, Option<Vector2<f64>>)> {
-        self.limits.lock().unwrap_or_else(PoisonError::into_inner).reference.clone()
     }
 
     fn end(self) -> MethodLimits {
@@ -912,9 +910,9 @@ fn at(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Tries a strip's loads, from small to large, each compared with the reference if it has `true`, and those between which a property changes that `is_sought` at the larger
-/// one, until they lie next to each other. `solve` starts from rest, as `warpbeam solve` does, and compares the result with
-/// the reference if its second argument is `true`. `report` receives the strip so far.
+/// Tries a strip's loads, from small to large, and then those between which a property changes that `is_sought`, beside a
+/// peak of the error, and next to the end of convergence. `factors` have `true` where the result is compared with the
+/// reference, as the second argument of `solve` says, which starts from rest. `report` receives the strip so far.
 fn follow(
     mut strip: Strip,
     factors: &[(f64, bool)],
@@ -927,10 +925,10 @@ fn follow(
         strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
         report(&strip);
     }
-    for _ in 0..MOST_ADDED {
-        let change = strip.change(is_sought).map(|([from, to], is_error)| ((from * to).sqrt(), is_error));
-        let change = change.or_else(|| Some((strip.beside_peak(is_sought)?, true)));
-        let Some((factor, is_error)) = change.or_else(|| Some((strip.untried()?, false))) else { break };
+    for _ in 0..MAX_ADDED {
+        let peak = || Some((strip.beside_peak(is_sought)?, true));
+        let next = strip.change(is_sought).or_else(peak).or_else(|| Some((strip.untried()?, false)));
+        let Some((factor, is_error)) = next else { break };
         strip.insert(solve(factor, is_error)?);
     }
     strip.done = 1.0;
@@ -1029,7 +1027,7 @@ mod tests {
         for point in points {
             let piece = pieces.iter().find(|piece| point.factor <= piece.range[1]).unwrap();
             let rating = point.rating().unwrap_or(Rating::Good);
-            let is_beyond_law = point.answer(Property::Law) == Some(Answer::No);
+            let is_beyond_law = point.answer(Property::Law) == Some(Ternary::No);
             assert_eq!((piece.rating, piece.is_beyond_law), (rating, is_beyond_law), "{point:?}");
         }
     }

@@ -248,7 +248,10 @@ impl LoadPath {
         if is_small && simulation.problem().supports().move_the_body() {
             return Some(Self::traced(simulation, observe)?.to(simulation.displacement()));
         }
-        let mut summary = match search.path_events().filter(|_| !is_small || !is_taken_for_path(simulation)) {
+        let mut summary = match search.path_events() {
+            Some(_) if is_small && is_taken_for_path(simulation) => {
+                Self::followed(simulation, false, observe)?.to(simulation.displacement())
+            }
             Some(events) => PathSummary::of(events.jump, &events.bifurcations),
             None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
             None => return None,
@@ -291,7 +294,7 @@ impl LoadPath {
             return None;
         }
         if is_taken_for_path(&follower) {
-            return Self::followed(&follower, false, observe).filter(|path| path.end.is_some());
+            return Self::followed(&follower, false, observe);
         }
         let events = follower.equilibrium()?.path_events()?;
         let summary = PathSummary::of(events.jump, &events.bifurcations);
@@ -304,21 +307,23 @@ impl LoadPath {
         Self::followed(simulation, true, observe)?.summary.first_event()
     }
 
-    /// Follows the path of a simulation's scene by its follower alone, to its end or, with `to_jump`, the first jump; there is
-    /// no displacement if it does not reach the full load. `None` if the search is cancelled.
+    /// Follows the path of a simulation's scene by its follower alone, to the full load or, with `to_jump`, to the first jump or
+    /// the end of the path; `None` if the full load is not reached without `to_jump`, or the search is cancelled.
     fn followed(simulation: &Simulation, to_jump: bool, observe: Observer<'_>) -> Option<PathFromRest> {
         let mut tracer = Tracer::new(simulation)?;
         let mut follower = PathFollower::start(&mut tracer.equations(), 1.0)?;
+        let now = sentence!("following the load path");
         let mut progress = PathProgress::Continue;
         while matches!(progress, PathProgress::Continue) && !(to_jump && follower.has_jumped()) {
-            observe(Progress::at(follower.last().factor)).is_continue().then_some(())?;
+            observe(Progress { fraction: follower.last().factor, now: Some(&now) }).is_continue().then_some(())?;
             progress = follower.advance(&mut tracer.equations(), MAX_SOLVES);
             drop(follower.take_parts());
         }
         let events = follower.take_events();
         let is_at_end = matches!(progress, PathProgress::Reached);
         let end = is_at_end.then(|| follower.last().state.displacement.to_vec());
-        Some(PathFromRest { summary: PathSummary::of(events.jump, &events.bifurcations), end })
+        let summary = PathSummary::of(events.jump, &events.bifurcations);
+        (to_jump || is_at_end).then_some(PathFromRest { summary, end })
     }
 
     /// Follows the load path of a scene to its end; `None` for a motion, if the path cannot be followed, or is cancelled,

@@ -93,14 +93,4 @@ impl Tuning {
         let (measured, meeting) = (ended.len(), meeting.len());
         Ok(Self { chosen, demand, met: best.is_some(), is_partial, measured, meeting, study })
     }
-
-    /// Returns the fastest setting that converges and whose error meets the demand, at any time; `None` if there is none, or no
-    /// error is demanded.
-    pub(super) fn fastest_within_error(&self) -> Option<&Measurement> {
-        let demand = Demand { max_time_ms: None, ..self.demand };
-        demand.max_error_percent?;
-        let ranking = self.study.ranking();
-        let meeting = self.study.measurements.iter().filter(|m| m.converged && ranking.meets(*m, demand));
-        meeting.min_by_key(|m| m.time.total())
-    }
 }

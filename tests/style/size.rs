@@ -11,7 +11,7 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_500),
-    ("study", &["src/study"], 7_876),
+    ("study", &["src/study"], 7_871),
     ("model", &["src/model", "src/scene"], 3_586),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
     ("simulation", &["src/simulation"], 2_848),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_498),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 65_195;
+const SRC: usize = 65_190;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 

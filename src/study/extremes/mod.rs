@@ -76,7 +76,7 @@ impl Outcome {
 }
 
 /// Element, and name of the method or integrator.
-pub type Series = (&'static str, String);
+pub type AtlasSeries = (&'static str, String);
 
 /// Case of an atlas.
 pub trait Case: Copy + Debug + Send + Sync {
@@ -90,7 +90,7 @@ pub trait Case: Copy + Debug + Send + Sync {
     const HEADER: &'static str;
 
     /// Returns the element and the name of the method or integrator.
-    fn series(&self) -> Series;
+    fn series(&self) -> AtlasSeries;
 
     /// Returns the labels of the case's row and column in the picture; `None` if the picture does not show the case.
     fn cell(&self) -> Option<[String; 2]>;
@@ -167,7 +167,7 @@ pub(crate) fn labels<C, L: PartialEq>(entries: &[Entry<C>], label: impl Fn(&C) -
 }
 
 /// Formats the counts of outcomes as text, with a row for each of these series.
-fn outcome_table<C: Case>(entries: &[Entry<C>], series: &[Series]) -> String {
+fn outcome_table<C: Case>(entries: &[Entry<C>], series: &[AtlasSeries]) -> String {
     let counts = counts(entries, |case| Some(case.series()));
     let columns = C::OUTCOMES.map(|outcome| outcome.id().to_owned());
     text_table::<C>(series, &columns, 14, |series, column| Some(counts.get(series)?[column].to_string()))
@@ -175,10 +175,10 @@ fn outcome_table<C: Case>(entries: &[Entry<C>], series: &[Series]) -> String {
 
 /// Formats a table as text, with a row for each series that has a cell, and columns of this width.
 fn text_table<C: Case>(
-    series: &[Series],
+    series: &[AtlasSeries],
     columns: &[String],
     width: usize,
-    cell: impl Fn(&Series, usize) -> Option<String>,
+    cell: impl Fn(&AtlasSeries, usize) -> Option<String>,
 ) -> String {
     let name_width = series.iter().map(|(_, name)| name.len()).max().unwrap_or(0).max(7);
     let line = |element: &str, name: &str, cells: Vec<String>| {

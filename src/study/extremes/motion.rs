@@ -1,7 +1,7 @@
 //! Stability atlas of motions: every integrator at extremes of stiffness, time step and weight.
 
 use super::super::Extent;
-use super::{Case, Entry, Outcome, Series, labels, outcome_table};
+use super::{AtlasSeries, Case, Entry, Outcome, labels, outcome_table};
 use crate::dynamics::{Counts, INTEGRATORS};
 use crate::format::{count, number};
 use crate::scene::{ElementKind, IntegratorKind, Material, Scene};
@@ -54,7 +54,7 @@ impl Case for MotionCase {
     const COLUMNS: &'static str = "E, Pa";
     const HEADER: &'static str = "element,integrator,solves,young,time_step_s,gravity,outcome,steps_taken,solves_taken,halvings,energy_drift,tip_x,tip_y";
 
-    fn series(&self) -> Series {
+    fn series(&self) -> AtlasSeries {
         let entry = self.integrator.entry();
         let name = match self.iterations {
             _ if entry.is_explicit() || entry.always_iterates => entry.id.to_owned(),

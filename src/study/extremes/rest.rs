@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 
 use super::super::Extent;
-use super::{Case, Entry, Outcome, Series, counts, labels, outcome_table, text_table};
+use super::{AtlasSeries, Case, Entry, Outcome, counts, labels, outcome_table, text_table};
 use crate::format::number;
 use crate::mesh::Mesh;
 use crate::method::METHODS;
@@ -30,10 +30,10 @@ pub enum Variant {
 }
 
 /// Returns the initial position of a node with this index and rest position, for a beam of height 1 m.
-type Place = fn(usize, Vector2<f64>) -> Vector2<f64>;
+type StartPosition = fn(usize, Vector2<f64>) -> Vector2<f64>;
 
 /// Initial states other than rest, with their identifiers in tables.
-pub const STARTS: [(&str, Place); 4] = [
+pub const STARTS: [(&str, StartPosition); 4] = [
     // Every node on the axis: all elements without area.
     ("flat", |_, x| Vector2::new(x.x, 0.0)),
     // Mirrored at the axis: all elements inverted.
@@ -163,7 +163,7 @@ impl Case for RestCase {
     const COLUMNS: &'static str = "load α = P L²/EI";
     const HEADER: &'static str = "element,method,start,alpha,young,poisson,length_over_height,cell_aspect,outcome,iterations,residual,tip_x_over_l,tip_y_over_l,moved,distortion,mesh,residual_floor";
 
-    fn series(&self) -> Series {
+    fn series(&self) -> AtlasSeries {
         (self.element.id(), self.method.id().to_owned())
     }
 
@@ -259,7 +259,7 @@ pub fn summary(entries: &[Entry<RestCase>]) -> String {
     };
     let counts = counts(entries, |case| Some((group(case)?, case.series(), number(case.alpha))));
     for cases in labels(entries, group) {
-        let percent = |series: &Series, column: usize| {
+        let percent = |series: &AtlasSeries, column: usize| {
             let row = counts.get(&(cases, series.clone(), alphas[column].clone()))?;
             let [certified, converged, ..] = *row;
             Some(format!("{:.0}", 100.0 * (certified + converged) as f64 / row.iter().sum::<usize>() as f64))
