@@ -65,90 +65,65 @@ pub enum Field {
 }
 
 impl Field {
-    /// All fields; those of one kind follow each other.
-    pub const ALL: [Self; 22] = [
-        Self::VonMises,
-        Self::StressX,
-        Self::StressY,
-        Self::ShearStress,
-        Self::MaterialStressX,
-        Self::MaterialStressY,
-        Self::MaterialShearStress,
-        Self::LargerPrincipalStress,
-        Self::SmallerPrincipalStress,
-        Self::LargestStrain,
-        Self::StrainX,
-        Self::StrainY,
-        Self::ShearStrain,
-        Self::LargerPrincipalStrain,
-        Self::SmallerPrincipalStrain,
-        Self::Displacement,
-        Self::DisplacementX,
-        Self::DisplacementY,
-        Self::ReferenceDistance,
-        Self::RotationAngle,
-        Self::EnergyDensity,
-        Self::MeshError,
+    /// Identifier, name and unit of every field in their order, and `true` if values of both signs occur. Those of one
+    /// kind follow each other.
+    const TABLE: [(Self, &str, &str, &str, bool); 22] = [
+        (Self::VonMises, "von-mises", "von Mises (Cauchy)", "Pa", false),
+        (Self::StressX, "stress-x", "stress σ_x", "Pa", true),
+        (Self::StressY, "stress-y", "stress σ_y", "Pa", true),
+        (Self::ShearStress, "shear-stress", "shear stress τ_xy", "Pa", true),
+        (Self::MaterialStressX, "material-stress-x", "stress σ_x, material axes", "Pa", true),
+        (Self::MaterialStressY, "material-stress-y", "stress σ_y, material axes", "Pa", true),
+        (Self::MaterialShearStress, "material-shear-stress", "shear stress τ_xy, material axes", "Pa", true),
+        (Self::LargerPrincipalStress, "principal-stress-1", "principal stress σ_1", "Pa", true),
+        (Self::SmallerPrincipalStress, "principal-stress-2", "principal stress σ_2", "Pa", true),
+        (Self::LargestStrain, "largest-strain", "largest strain", "", false),
+        (Self::StrainX, "strain-x", "strain ε_x, material axes", "", true),
+        (Self::StrainY, "strain-y", "strain ε_y, material axes", "", true),
+        (Self::ShearStrain, "shear-strain", "shear strain γ_xy, material axes", "", true),
+        (Self::LargerPrincipalStrain, "principal-strain-1", "principal strain ε_1", "", true),
+        (Self::SmallerPrincipalStrain, "principal-strain-2", "principal strain ε_2", "", true),
+        (Self::Displacement, "displacement", "displacement", "m", false),
+        (Self::DisplacementX, "displacement-x", "displacement u_x", "m", true),
+        (Self::DisplacementY, "displacement-y", "displacement u_y", "m", true),
+        (Self::ReferenceDistance, "reference-distance", "distance to the reference", "m", false),
+        (Self::RotationAngle, "rotation", "rotation angle", "°", true),
+        (Self::EnergyDensity, "energy-density", "strain energy density", "J/m³", false),
+        (Self::MeshError, "mesh-error", "mesh error, estimated", "%", false),
     ];
-
-    /// Returns identifier, name and unit.
-    fn texts(self) -> (&'static str, &'static str, &'static str) {
-        match self {
-            Self::VonMises => ("von-mises", "von Mises (Cauchy)", "Pa"),
-            Self::StressX => ("stress-x", "stress σ_x", "Pa"),
-            Self::StressY => ("stress-y", "stress σ_y", "Pa"),
-            Self::ShearStress => ("shear-stress", "shear stress τ_xy", "Pa"),
-            Self::MaterialStressX => ("material-stress-x", "stress σ_x, material axes", "Pa"),
-            Self::MaterialStressY => ("material-stress-y", "stress σ_y, material axes", "Pa"),
-            Self::MaterialShearStress => ("material-shear-stress", "shear stress τ_xy, material axes", "Pa"),
-            Self::LargerPrincipalStress => ("principal-stress-1", "principal stress σ_1", "Pa"),
-            Self::SmallerPrincipalStress => ("principal-stress-2", "principal stress σ_2", "Pa"),
-            Self::LargestStrain => ("largest-strain", "largest strain", ""),
-            Self::StrainX => ("strain-x", "strain ε_x, material axes", ""),
-            Self::StrainY => ("strain-y", "strain ε_y, material axes", ""),
-            Self::ShearStrain => ("shear-strain", "shear strain γ_xy, material axes", ""),
-            Self::LargerPrincipalStrain => ("principal-strain-1", "principal strain ε_1", ""),
-            Self::SmallerPrincipalStrain => ("principal-strain-2", "principal strain ε_2", ""),
-            Self::Displacement => ("displacement", "displacement", "m"),
-            Self::DisplacementX => ("displacement-x", "displacement u_x", "m"),
-            Self::DisplacementY => ("displacement-y", "displacement u_y", "m"),
-            Self::ReferenceDistance => ("reference-distance", "distance to the reference", "m"),
-            Self::RotationAngle => ("rotation", "rotation angle", "°"),
-            Self::EnergyDensity => ("energy-density", "strain energy density", "J/m³"),
-            Self::MeshError => ("mesh-error", "mesh error, estimated", "%"),
+    /// All fields.
+    pub const ALL: [Self; 22] = {
+        let (mut all, mut i) = ([Self::VonMises; 22], 0);
+        while i < all.len() {
+            all[i] = Self::TABLE[i].0;
+            assert!(all[i] as usize == i, "the table is in the order of the fields");
+            i += 1;
         }
-    }
+        all
+    };
 
     /// Returns the identifier.
     #[must_use]
     pub fn id(self) -> &'static str {
-        self.texts().0
+        Self::TABLE[self as usize].1
     }
 
     /// Returns the name for display.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.texts().1
+        Self::TABLE[self as usize].2
     }
 
     /// Returns the unit, empty for pure numbers.
     #[must_use]
     pub fn unit(self) -> &'static str {
-        self.texts().2
+        Self::TABLE[self as usize].3
     }
 
     /// Returns `true` if values of both signs occur.
     #[must_use]
     pub fn has_sign(self) -> bool {
-        !matches!(
-            self,
-            Self::VonMises
-                | Self::LargestStrain
-                | Self::Displacement
-                | Self::ReferenceDistance
-                | Self::EnergyDensity
-                | Self::MeshError
-        )
+        Self::TABLE[self as usize].4
     }
 
     /// Returns `true` if the field has one value per element and none at nodes.
