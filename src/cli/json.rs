@@ -57,6 +57,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "fixed_point_rho": certificate.fixed_point_rho,
         "max_rotation_deg": known(deformation.max_rotation_deg),
         "max_strain": known(deformation.max_strain),
+        "area_change_percent": known(100.0 * deformation.area_change),
         "inverted_elements": deformation.inverted_elements,
         "max_von_mises": stress.largest.map(|largest| json!({
             "value": largest.von_mises,

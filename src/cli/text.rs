@@ -14,7 +14,7 @@ use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 #[cfg(feature = "app")]
 use crate::render::AdapterReport;
 use crate::scene::{Analysis, Place, Scene, Support, registry};
-use crate::simulation::{MotionResult, Solution, Status};
+use crate::simulation::{Deformation, MotionResult, Solution, Status};
 use crate::study::{
     Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, path_chart, section_chart, support_name,
     support_text,
@@ -152,14 +152,11 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     for claim in claims.iter().filter(|claim| matches!(claim, Claim::BeamTheory { .. })) {
         let _ = writeln!(text, "  {claim}");
     }
-    let deformation = &solution.deformation;
-    let _ = writeln!(
-        text,
-        "largest rotation {}, largest strain {}, inverted elements {}",
-        within.rotation.engineering(deformation.max_rotation_deg, "°"),
-        engineering(100.0 * within.strain.rounded(deformation.max_strain), "%"),
-        deformation.inverted_elements
-    );
+    let Deformation { max_rotation_deg, max_strain, area_change, inverted_elements } = solution.deformation;
+    let rotation = within.rotation.engineering(max_rotation_deg, "°");
+    let [strain, area] = [max_strain, area_change].map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
+    let _ = write!(text, "largest rotation {rotation}, largest strain {strain}, change of the area {area}, ");
+    let _ = writeln!(text, "inverted elements {inverted_elements}");
     if let Some(largest) = stress.largest {
         let node = mesh.node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
         let (value, at) = (within.stress.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));

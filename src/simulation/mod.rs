@@ -40,6 +40,7 @@ pub use field::Field;
 pub use point::{PointState, PointValues};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use results::ProbeStress;
+use results::area_change;
 pub use results::{
     Deformation, Energy, ProbeResult, StressResult, SupportReaction, energy, probe_results, reaction,
     support_reactions, supports_power,
@@ -604,6 +605,12 @@ impl Simulation {
             polar(&Matrix2::new(c, -s, s, c)).unwrap_or(Rotation::IDENTITY)
         };
         self.state().rotations().chunks(per_element).map(mean).collect()
+    }
+
+    /// Returns the change of the body's area relative to its area at rest, ∫ det F dA / ∫ dA − 1.
+    #[must_use]
+    pub fn area_change(&self) -> f64 {
+        area_change(&self.body.problem, &self.body.state)
     }
 
     /// Returns the results of the current state.

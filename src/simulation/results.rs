@@ -59,6 +59,8 @@ pub struct Deformation {
     pub max_strain: f64,
     /// Number of elements with det F ≤ 0 at a point.
     pub inverted_elements: usize,
+    /// Change of the body's area relative to its area at rest: ∫ det F dA / ∫ dA − 1.
+    pub area_change: f64,
 }
 
 impl Deformation {
@@ -72,6 +74,7 @@ impl Deformation {
         let mut result = Self {
             max_strain: strains.fold(0.0, f64::max),
             max_rotation_deg: rotations.fold(0.0, f64::max).to_degrees(),
+            area_change: area_change(problem, state),
             ..Self::default()
         };
         let mut last_inverted = None;
@@ -86,6 +89,20 @@ impl Deformation {
         });
         result
     }
+}
+
+/// Returns the change of a body's area relative to its area at rest, ∫ det F dA / ∫ dA − 1.
+#[must_use]
+pub fn area_change(problem: &Problem, state: &State) -> f64 {
+    let elements = problem.system().elements();
+    let (mut rest, mut change) = (0.0, 0.0);
+    elements.visit_strains(problem.material().lame(), &state.displacement, &state.rotations, &mut |q, h, _| {
+        let area = elements.point_area(q);
+        rest += area;
+        // det (I + H) − 1, without cancellation.
+        change += area * (h.trace() + h.determinant());
+    });
+    change / rest
 }
 
 /// Returns the results of every probe of a problem for a state.

@@ -10,8 +10,8 @@ use warpbeam::method::METHODS;
 use warpbeam::rotation::Rotation;
 use warpbeam::solver::Factor;
 use warpbeam::{
-    Axis, Deformation, ElementKind, Field, Load, Material, MaterialPoint, Mesh, NodalStress, Plane, Scene, Simulation,
-    State, Status,
+    Axis, Deformation, ElementKind, Field, Load, Material, MaterialPoint, Mesh, NodalStress, Plane, Scene, Segment,
+    Simulation, State, Status,
 };
 
 use crate::{Test, suite};
@@ -425,9 +425,20 @@ fn areas_and_inversions_are_those_of_the_map(kind: ElementKind) {
         // A fold: part of the body is inverted.
         |x| Vector2::new((2.0 * x.x).sin(), x.y + 0.2 * x.x * x.y),
     ];
+    // The area inside the outline; a side is a parabola through its nodes.
+    let inside = |x: &dyn Fn(u32) -> Vector2<f64>| -> f64 {
+        let side = |side: &Segment| match *side.nodes() {
+            [a, middle, b] => (x(a).perp(&x(middle)) + x(middle).perp(&x(b))) / 1.5 - x(a).perp(&x(b)) / 6.0,
+            _ => 0.5 * x(side.ends()[0]).perp(&x(side.ends()[1])),
+        };
+        mesh.outline().iter().map(side).sum()
+    };
     let mut inversions = Vec::new();
     for place in places {
         let state = state(&problem, place);
+        let rest = |node: u32| mesh.nodes()[node as usize];
+        let change = inside(&|node| rest(node) + state.displacement()[node as usize]) / inside(&rest) - 1.0;
+        assert!((deformation_of(&problem, &state).area_change - change).abs() < 1e-12, "{change}");
         let (mut least, mut inverted) = (f64::INFINITY, 0);
         for own in mesh.elements() {
             let rest: Vec<_> = own.iter().map(|&n| mesh.nodes()[n as usize]).collect();

@@ -206,7 +206,11 @@ fn panes_have_the_numbers_of_solve() {
             let seconds = bar.filter(|_| is_panels).unwrap_or_else(|| pane.seconds().unwrap());
             let time = engineering(two_digits(seconds), "s");
             let iterations = count(json["iterations"].as_u64().unwrap(), "iteration");
+            let (header, area) = header.rsplit_once(" \u{b7} area ").unwrap();
             assert!(header.ends_with(&format!(": error {error}, {time} \u{b7} {iterations}")), "{what}: {header}");
+            let area: f64 = area.replace('\u{2212}', "-").trim_end_matches(" %").parse().unwrap();
+            let rest = (area - json["area_change_percent"].as_f64().unwrap()).abs();
+            assert!(rest < 0.006 + 0.05 * area.abs(), "{what}: {header}, {area} %");
         }
     }
     assert!(diverged > 0);

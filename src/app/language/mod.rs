@@ -106,6 +106,21 @@ pub(super) fn percent(value: f64) -> String {
     tr(&format::percent(value)).to_owned()
 }
 
+/// Formats the relative change of an area.
+pub(super) fn area_text(change: f64) -> String {
+    fill!("area %{change}", change = signed_percent(change))
+}
+
+/// Formats a relative change in percent, with its sign.
+pub(super) fn signed_percent(change: f64) -> String {
+    let sign = if change > 0.0 { "+" } else { "\u{2212}" };
+    match (1e4 * change.abs()).round() / 100.0 {
+        0.0 => "0 %".to_owned(),
+        size if size.is_finite() => format!("{sign}{}", percent(size)),
+        _ => "\u{2013}".to_owned(),
+    }
+}
+
 /// Formats the bound of an error, percent: translation of [`format::bound_percent`].
 pub(super) fn bound_percent(value: f64) -> String {
     tr(&format::bound_percent(value)).to_owned()

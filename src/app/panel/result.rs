@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, load_text, rho, stability, state_text};
-use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
+use crate::app::language::{count, fill, joined, percent, said, sentence, signed_percent, tr};
 use crate::app::panel::supports;
 use crate::app::readout::Readout;
 use crate::app::session::clock::fraction;
@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     };
     if let Some(motion) = simulation.motion() {
         motion_rows(&mut row, input, motion);
-        probe_row(&mut row, simulation);
+        displacement_rows(&mut row, simulation);
         frame_row(&mut row, input, ("Step", "Computing time of a time step"));
     } else {
         search_rows(&mut row, input, errors);
@@ -64,7 +64,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         "Iterations since the last change, from the state before it; the status has those from rest. Residual: out-of-balance force over the sum of the elements' absolute \
          forces",
     );
-    probe_row(row, simulation);
+    displacement_rows(row, simulation);
     let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
         || UNKNOWN.to_owned(),
         |(error, reference)| {
@@ -126,13 +126,14 @@ fn time(duration: std::time::Duration) -> String {
     engineering(three_digits(duration.as_secs_f64()), "s")
 }
 
-fn probe_row(row: &mut ResultRow<'_>, simulation: &Simulation) {
+fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
     /// Largest number of probes that are shown.
     const MAX_PROBES: usize = 8;
     for probe in simulation.problem().probes().iter().take(MAX_PROBES) {
         let u = probe.mean(simulation.displacement());
         row(&format!("{} Δx, Δy", tr(&probe.name)), engineering_pair(u.into(), "m"), "Displacement of the probe");
     }
+    row("Area", signed_percent(simulation.area_change()), "Change of the body\u{2019}s area, compared with rest");
 }
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.

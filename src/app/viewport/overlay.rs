@@ -9,7 +9,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, 
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
-use crate::app::language::{fill, percent, tr};
+use crate::app::language::{area_text, fill, percent, tr};
 use crate::app::session::history::MotionSample;
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
@@ -51,6 +51,8 @@ pub(crate) struct Overlay<'a> {
     pub exact: &'a [Vec<Vector2<f64>>],
     /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
+    /// Relative changes of the area of the drawn body and of the linear solution.
+    pub areas: [Option<f64>; 2],
     /// Simulated time, s.
     pub time: f64,
     /// Direction of the arrow of a zero force, degrees.
@@ -641,13 +643,15 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     if rect.width() < KEY_WIDTH {
         return;
     }
-    let with_error = |word: &str, error: Option<f64>| match error {
-        Some(error) => format!("{word}  {}", percent(error)),
-        None => word.to_owned(),
+    let values = |word: &str, error: Option<f64>, area: Option<f64>| {
+        let error = error.map(|error| format!("  {}", percent(error))).unwrap_or_default();
+        let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
+        format!("{}{error}{}", tr(word), area.unwrap_or_default())
     };
+    let [own_area, linear_area] = overlay.areas;
     let own = match overlay.scene.analysis {
-        Analysis::Static => with_error(tr(overlay.scene.solver.method.id()), overlay.errors.own),
-        Analysis::Dynamic => tr(overlay.scene.dynamics.integrator.id()).to_owned(),
+        Analysis::Static => values(overlay.scene.solver.method.id(), overlay.errors.own, own_area),
+        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), None, own_area),
     };
     let mut lines = Vec::new();
     if overlay.magnification != 1.0 {
@@ -662,7 +666,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         ));
     }
     if overlay.ghost.is_some() {
-        let text = with_error(tr(MethodKind::Linear.id()), overlay.errors.linear);
+        let text = values(MethodKind::Linear.id(), overlay.errors.linear, linear_area);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {

@@ -599,6 +599,7 @@ impl BodyView {
             ghost: self.ghost(content),
             exact: &exact,
             errors,
+            areas: [Some(shown), session.linear()].map(|body| body.map(Simulation::area_change)),
             time: shown.state().time(),
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().opened),

@@ -7,7 +7,7 @@ use web_time::{Duration, Instant};
 use self::grid::{Preset, grow};
 use self::panes::{ComparedPane, Condition, PaneChange, Panes};
 use crate::app::diagnosis::{coarse_text, error_color, error_text, error_tip};
-use crate::app::language::{count, fill, joined, percent, said, sentence, tr};
+use crate::app::language::{area_text, count, fill, joined, percent, said, sentence, tr};
 use crate::app::session::compared_solve::{Activity, ComparedSolve, Equations, FrameConditions};
 use crate::app::session::live::Live;
 use crate::app::task::thread::{POLL, QUIET_POLL};
@@ -24,7 +24,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::sentence::Sentence;
-use crate::simulation::Status;
+use crate::simulation::{Simulation, Status};
 use crate::state::largest;
 use crate::study::{Reference, Setting, SolveFromRest};
 
@@ -377,7 +377,8 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
                 // Images without bars omit the time, which differs from run to run.
                 let time = pane.shown_seconds(input).filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
-                (false, format!("{time}{}{stopped}{inverted}", count(end.iterations, "iteration")))
+                let area = area_text(pane.simulation().map_or(0.0, Simulation::area_change));
+                (false, format!("{time}{}{stopped}{inverted} · {area}", count(end.iterations, "iteration")))
             }
         },
         Activity::Works(iterations) => {

@@ -343,6 +343,7 @@ impl<P: ComparedPane> Panes<P> {
                 ghost: None,
                 exact: if wanted.is_some() { &[] } else { exact },
                 errors: Errors::default(),
+                areas: [None; 2],
                 time,
                 direction: input.direction,
                 opening: input.opening,

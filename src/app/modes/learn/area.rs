@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::{Learn, triangle};
 use crate::app::action::Action;
-use crate::app::language::{fill, percent, spaced, tr};
+use crate::app::language::{fill, percent, signed_percent, spaced, tr};
 use crate::app::readout::Readout;
 use crate::app::widgets::number_field::{NumberField, SliderScale};
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
@@ -22,22 +22,20 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     ui.add_space(4.0);
     let method = shown.scene.solver.method;
     let palette = Palette::new(ui.visuals());
-    let own = triangle::area_growth(shown.simulation);
-    row(ui, &palette, method.id(), Some(own), palette.method(method));
-    if method != MethodKind::Linear {
-        let linear = shown.linear.map(triangle::area_growth);
-        row(ui, &palette, MethodKind::Linear.id(), linear, palette.method(MethodKind::Linear));
+    let linear = shown.linear.filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
+    for (body, method) in [(shown.simulation, method)].into_iter().chain(linear) {
+        row(ui, &palette, method.id(), Some(body.area_change()), palette.method(method));
     }
     let outline = shown.reference.filter(|_| shown.simulation.is_at_rest()).map(|reference| &reference.outline);
     let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
         let rest: f64 = shown.simulation.system().nodal_areas().iter().sum();
-        100.0 * (lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0)
+        lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0
     });
     row(ui, &palette, "reference", exact, palette.exact);
     let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.linear);
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
         let text = fill!(
-            "linear: \u{3b8} up to %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",
+            "largest element: \u{3b8} = %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",
             angle = number(three_digits(angle)),
             drawn = number(three_digits(angle.atan().to_degrees())),
             growth = percent(100.0 * angle * angle)
@@ -90,23 +88,13 @@ fn enclosed(line: &[Vector2<f64>]) -> f64 {
     0.5 * line.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>()
 }
 
-/// Formats a growth, percent, with its sign.
-pub(super) fn growth_text(growth: f64) -> String {
-    /// Smaller values, percent, are shown as zero.
-    const NOTHING: f64 = 5e-3;
-    if growth.abs() < NOTHING {
-        return "0 %".to_owned();
-    }
-    format!("{}{}", if growth > 0.0 { "+" } else { "\u{2212}" }, percent(growth.abs()))
-}
-
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
-    /// Growth at the end of the bar, percent.
-    const FULL: f64 = 110.0;
-    const NAME: f32 = 100.0;
+    /// Growth at the end of the bar.
+    const FULL: f64 = 1.1;
+    const NAME: f32 = 132.0;
     const NUMBER: f32 = 78.0;
-    let name = fill!("area, %{name}", name = tr(name));
-    let text = growth.map_or_else(|| "\u{2013}".to_owned(), growth_text);
+    let name = fill!("whole body, %{name}", name = tr(name));
+    let text = growth.map_or_else(|| "\u{2013}".to_owned(), signed_percent);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     let painter = ui.painter();
     let put = |x: f32, text: RichText| {
@@ -124,5 +112,5 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {text}")));
-    response.on_hover_text(tr("Area growth of the beam, compared with rest"));
+    response.on_hover_text(tr("Change of the body\u{2019}s area, compared with rest"));
 }

@@ -71,19 +71,6 @@ pub(super) fn assembled(simulation: &Simulation) -> Option<DMatrix<f64>> {
     Some(sum)
 }
 
-/// Returns the growth of a body's area ∫ det F dA, percent of the area at rest.
-pub(super) fn area_growth(simulation: &Simulation) -> f64 {
-    let (problem, state) = (simulation.problem(), simulation.state());
-    let elements = problem.system().elements();
-    let (mut rest, mut now) = (0.0, 0.0);
-    elements.visit_strains(problem.material().lame(), state.displacement(), state.rotations(), &mut |q, h, _| {
-        let area = elements.point_area(q);
-        rest += area;
-        now += area * (Matrix2::identity() + h).determinant();
-    });
-    100.0 * (now / rest - 1.0)
-}
-
 /// Returns the largest angle θ, rad, of linear theory in a body: half the difference of the derivatives of the
 /// displacement across each other.
 pub(super) fn largest_linear_angle(simulation: &Simulation) -> f64 {
