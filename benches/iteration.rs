@@ -29,7 +29,10 @@ fn scene(id: &str, set: &[String]) -> Scene {
 /// Returns a cantilever with about 120, 1 440, 5 440 and 20 000 unknowns.
 fn sizes() -> Vec<Scene> {
     [[20, 2], [80, 8], [160, 16], [320, 30]]
-        .map(|[nx, ny]| scene("cantilever", &[format!("beam.cells=[{nx},{ny}]")]))
+        .map(|[nx, ny]| {
+            let cells = format!("beam.cells=[{nx},{ny}]");
+            scene("cantilever", &[cells, "beam.element=t3".to_owned(), "load.0.force=[0,-1000]".to_owned()])
+        })
         .to_vec()
 }
 

@@ -111,7 +111,7 @@ pub(super) struct RecordArgs {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub set: SetArgs,
-    /// Record the story of the window's first start, 20 s on the article's beam, in place of a scene.
+    /// Record the story of the window's first start, 20 s on the default scene, in place of a scene.
     #[arg(long, conflicts_with_all = ["scene", "assignments", "seconds", "speed"])]
     pub story: bool,
     /// File or folder to write.

@@ -26,8 +26,8 @@ macro_rules! built_in {
 
 /// Built-in scenes; the first is the default.
 pub const BUILT_IN: &[BuiltIn] = built_in![
-    "article",
     "cantilever",
+    "article",
     "gravity",
     "bridge",
     "stretch",
@@ -62,7 +62,7 @@ pub(crate) fn mesh(file: &str) -> Option<&'static str> {
 }
 
 /// Default scene.
-pub const DEFAULT: &str = "article";
+pub const DEFAULT: &str = "cantilever";
 
 /// Returns the built-in scene with this name.
 #[must_use]

@@ -80,9 +80,9 @@ fn the_axial_bar_has_the_analytic_displacement_energy_and_reaction() {
 
 #[test]
 fn set_changes_any_value() {
-    let json = solve_json(&["cantilever", "--set", "beam.cells=[20,2]", "--set", "solver.method=linear"]);
+    let json = solve_json(&["cantilever", "--set", "beam.cells=[10,1]", "--set", "solver.method=linear"]);
     assert_eq!((json["dofs"].as_u64(), json["method"].as_str()), (Some(120), Some("linear")));
-    let double = solve_u(&["cantilever", "--set", "solver.method=linear", "--set", "load.0.force=[0,-2000]"]);
+    let double = solve_u(&["cantilever", "--set", "solver.method=linear", "--set", "load.0.force=[0,-3000]"]);
     let single = solve_u(&["cantilever", "--set", "solver.method=\"linear\""]);
     assert!((double.y / single.y - 2.0).abs() < 1e-9);
     // A table that the file does not contain.

@@ -112,7 +112,7 @@ fn sections_of_a_scene_are_printed_with_its_results() {
     assert_eq!(values("solve").as_array().unwrap()[..], each);
     assert_eq!(values("section").as_array().unwrap()[..], each);
     let force = each[0]["force"][1].as_f64().unwrap();
-    assert!((force + 1000.0).abs() < 1e-4, "{force}");
+    assert!((force + 1500.0).abs() < 1e-4, "{force}");
     let text = stdout(&of("solve", &[]));
     let line = text.lines().find(|line| line.starts_with("section at (7, 0.1) m, normal at 20°: N ")).unwrap();
     assert!(line.contains(", V ") && line.contains(", M "), "{line}");

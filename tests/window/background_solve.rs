@@ -97,7 +97,7 @@ fn every_edit_of_a_large_model_ends_with_the_result_of_solve() {
         ("a load", &|ui| ui.type_into("Force", "700")),
         ("a direction", &|ui| ui.type_into("Direction", "-60")),
         ("a method", &|ui| pick(ui, "Method", "newton")),
-        ("an element", &|ui| pick(ui, "Element", "t6")),
+        ("an element", &|ui| pick(ui, "Element", "q4")),
         ("a mesh", &|ui| ui.type_into("Cells along", "30")),
         ("a material", &|ui| ui.type_into("Young E", "2 MPa")),
         ("a reset", &|ui| ui.get_by_label("Reset").click()),

@@ -7,8 +7,8 @@ use warpbeam::scene::Load;
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::{LoadCurve, Reference};
 
-/// Force under which linear theory's tip moves as far as the exact one, but in another direction.
-const FORCE: &str = "load.0.force=[0,-553]";
+/// Mesh and force with which linear theory's tip moves as far as the exact one, but in another direction.
+const SETS: &[&str] = &["beam.element=t3", "beam.cells=[80,8]", "load.0.force=[0,-553]"];
 
 /// Returns a solved scene with its load curve.
 fn with_curve(scene: Scene) -> Ui {
@@ -37,7 +37,7 @@ fn label(ui: &Ui, begin: &str) -> String {
 
 #[test]
 fn a_wrong_displacement_of_the_right_length_has_an_error() {
-    let cantilever = scene_with("cantilever", &[FORCE]);
+    let cantilever = scene_with("cantilever", SETS);
     let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
     let ui = compared(cantilever.clone(), "linear,newton");
     let pane = &ui.state().panes()[0];
@@ -61,7 +61,7 @@ fn axis_names(ui: &Ui) -> Vec<String> {
 
 #[test]
 fn the_path_and_both_components_can_be_chosen() {
-    let mut ui = with_curve(scene_with("cantilever", &[FORCE]));
+    let mut ui = with_curve(scene_with("cantilever", SETS));
     assert_eq!(axis_names(&ui), ["force", "u_y of tip"]);
     for (button, x, y) in [("Path", "u_x of tip", "u_y of tip"), ("u_x", "force", "u_x of tip")] {
         ui.click(button);
@@ -73,7 +73,7 @@ fn the_path_and_both_components_can_be_chosen() {
 
 #[test]
 fn loads_are_plotted_in_their_unit() {
-    let mut scene = scene_with("cantilever", &[FORCE]);
+    let mut scene = scene_with("cantilever", SETS);
     let (idle, small) = (Load::force("top", [0.0, 0.0]), Load::force("top", [3.0, 4.0]));
     let (own, moment) = (scene.loads[0].clone(), |size| Load::moment("right", size));
     for (loads, name, unit, full) in [
@@ -106,7 +106,7 @@ fn texts(ui: &Ui) -> Vec<(String, Rect, Rect)> {
 /// On the first frame, titles of axes are already next to their numbers, and no text is clipped.
 #[test]
 fn the_first_frame_is_as_the_others() {
-    for (id, sets) in [("cantilever", &[FORCE][..]), ("article", &[]), ("snap", &[]), ("stretch", &[])] {
+    for (id, sets) in [("cantilever", SETS), ("article", &[]), ("snap", &[]), ("stretch", &[])] {
         let mut ui = open_solved("scene", scene_with(id, sets));
         ui.key_press(Key::L);
         let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "reaction in this direction"];
@@ -163,7 +163,7 @@ fn curves_are_saved_as_files() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let cantilever = scene_with("cantilever", &[FORCE]);
+    let cantilever = scene_with("cantilever", SETS);
     let mut ui = with_curve(cantilever.clone());
     std::env::set_current_dir(folder.path()).unwrap();
     export(&mut ui, "CSV");

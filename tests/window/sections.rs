@@ -36,8 +36,9 @@ fn a_section_is_added_moved_and_removed() {
     let simulation = ui.simulation();
     let section = simulation.section(line).unwrap();
     // The force at the tip, and its lever arm about the middle of the cut.
-    let moment = (simulation.solution().probes[0].x - section.middle()).perp(&Vector2::new(0.0, -1000.0));
-    assert!((section.force - Vector2::new(0.0, -1000.0)).norm() < 1e-4, "{section:?}");
+    let (force, tip) = (Vector2::from(ui.force()), simulation.solution().probes[0].x);
+    let moment = (tip - section.middle()).perp(&force);
+    assert!((section.force - force).norm() < 1e-4, "{section:?}");
     assert!((section.forces.moment - moment).abs() < 1e-4 * moment.abs(), "{section:?} {moment}");
     let text = forces(ui.state());
     ui.get_by_label(&text);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::lab::*;
 use warpbeam::app::Settings;
-use warpbeam::scene::ElementKind;
+use warpbeam::scene::{ElementKind, registry::DEFAULT};
 
 /// Time between two frames, s.
 const FRAME: f64 = 0.25;
@@ -23,7 +23,7 @@ fn open(size: [f32; 2], lab: Lab) -> Ui {
 
 /// Returns a window of the story at its start.
 fn story() -> Ui {
-    let mut ui = open(SIZE, lab("article"));
+    let mut ui = open(SIZE, lab(DEFAULT));
     ui.state_mut().tell_story();
     show(&mut ui, 0.0);
     ui
@@ -61,16 +61,6 @@ fn size(scene: &Scene) -> f64 {
     force(scene)[0].hypot(force(scene)[1])
 }
 
-/// Returns the area of a body of triangles, m².
-fn area(simulation: &Simulation) -> f64 {
-    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    let area_of = |nodes: &[u32]| {
-        let [a, b, c] = [0, 1, 2].map(|i| mesh.nodes()[nodes[i] as usize] + u[nodes[i] as usize]);
-        0.5 * (b - a).perp(&(c - a))
-    };
-    mesh.elements().map(area_of).sum()
-}
-
 /// The window shows five captions of at most eight words in twenty seconds. Afterwards the scene is as it was opened.
 #[test]
 fn five_short_captions_are_shown_in_twenty_seconds() {
@@ -79,7 +69,7 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
     tell(&mut ui, |ui, time, part| {
         let (_, caption) = ui.state().story().unwrap();
         assert!(ui.query_by_label(caption).is_some(), "{caption:?} is not shown");
-        assert_eq!(ui.state().title(), "The article's beam \u{2013} warpbeam");
+        assert_eq!(ui.state().title(), "Cantilever \u{2013} warpbeam");
         if captions.len() <= part {
             captions.push(caption);
         }
@@ -93,7 +83,7 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
 
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
 fn is_default(lab: &Lab) {
-    assert_eq!((lab.story(), lab.scene()), (None, &crate::common::scene("article")));
+    assert_eq!((lab.story(), lab.scene()), (None, &crate::common::scene(DEFAULT)));
     assert!(lab.simulation().status().is_success() && !lab.can_undo() && !lab.can_redo());
 }
 
@@ -101,7 +91,7 @@ fn is_default(lab: &Lab) {
 #[test]
 fn the_numbers_of_the_window_tell_the_story() {
     let mut ui = story();
-    let usual = size(&crate::common::scene("article"));
+    let usual = size(&crate::common::scene(DEFAULT));
     let mut last = [const { None }; 5];
     let (mut lost, mut errors, mut largest) = (Vec::new(), Vec::new(), 0.0_f64);
     tell(&mut ui, |ui, _, part| {
@@ -111,26 +101,27 @@ fn the_numbers_of_the_window_tell_the_story() {
         assert_eq!(method == MethodKind::Newton, part == 2 || part == 3);
         assert!(converges || part == 1, "part {part} under {load} N");
         if part <= 1 && load >= usual {
-            // The window rounds to two digits.
-            assert_eq!(rho.unwrap() >= 1.0, !converges, "ρ = {rho:?} under {load} N");
-            largest = largest.max(rho.unwrap());
+            // Near 1 the limit of iterations decides.
+            let rho = rho.unwrap();
+            assert!((rho - 1.0).abs() < 0.02 || (rho > 1.0) != converges, "ρ = {rho} under {load} N");
+            largest = largest.max(rho);
         }
         if part == 1 {
             lost.push((!converges, ui.query_by_label_contains(" not reached").is_some()));
         }
-        last[part] = Some((load, [Some(lab.simulation()), lab.linear()].map(|body| area(body.unwrap()))));
+        last[part] = Some((load, [Some(lab.simulation()), lab.linear()].map(|body| body.unwrap().area_change())));
         if part == 3 && load == usual {
             errors.push((element, error(ui)));
         }
     });
     let [first, second, third, ..] = last.map(Option::unwrap);
     let (warped, linear) = (first.1[0], first.1[1]);
-    assert!((warped - 5.0).abs() < 0.25 && linear > 6.0, "areas {warped} and {linear} of 5 m\u{b2}");
+    assert!(warped.abs() < 1e-3 && linear > 0.4, "changes of the area: {warped} and {linear}");
     assert!(lost.contains(&(false, false)) && lost.ends_with(&[(true, true)]), "{lost:?}");
     assert!(largest > 1.0, "ρ = {largest}");
     assert!(third.0 > second.0 && second.0 > first.0);
     let (before, after) = (errors.first().unwrap(), errors.last().unwrap());
-    assert_eq!((before.0, after.0), (ElementKind::T3, ElementKind::Q4));
+    assert_eq!((before.0, after.0), (ElementKind::T3, ElementKind::T6));
     assert!(before.1 > 5.0 * after.1, "{errors:?}");
 }
 
@@ -197,12 +188,13 @@ fn the_arrow_is_handed_over() {
     ui.move_to(tip + vec2(0.0, 30.0));
     ui.drop_at(tip + vec2(0.0, 30.0));
     ui.step();
-    assert!(size(ui.scene()) > 33e3 && ui.state().can_undo(), "{} N", size(ui.scene()));
+    let usual = size(&crate::common::scene(DEFAULT));
+    assert!(size(ui.scene()) > 1.1 * usual && ui.state().can_undo(), "{} N", size(ui.scene()));
 }
 
 #[test]
 fn with_reduced_motion_the_story_is_five_stills() {
-    let mut ui = open(SIZE, lab("article"));
+    let mut ui = open(SIZE, lab(DEFAULT));
     let mut settings = Settings::default();
     settings.reduced_motion = true;
     let ctx = ui.ctx.clone();
@@ -219,7 +211,7 @@ fn with_reduced_motion_the_story_is_five_stills() {
 /// The story that Learn tells ends on the card it began at. The user's scene stays.
 #[test]
 fn learn_tells_the_story_again() {
-    let mut ui = open([900.0, 600.0], lab("cantilever"));
+    let mut ui = open([900.0, 600.0], lab("article"));
     let own = ui.scene().clone();
     // Another scene than the default one would be lost.
     ui.state_mut().tell_story();

@@ -13,7 +13,7 @@ use warpbeam::{Field, PointValues};
 #[test]
 fn dragging_the_tip_of_the_arrow_sets_the_force() {
     let mut ui = open("cantilever");
-    let (camera, before, start) = (ui.camera(), ui.tip(), ui.on_body([10.0, 0.0]));
+    let (camera, usual, before, start) = (ui.camera(), -ui.force()[1], ui.tip(), ui.on_body([10.0, 0.0]));
     let vector = before + vec2(-30.0, -12.0) - start;
     ui.drag(before, start + vector);
     let [fx, fy] = ui.force();
@@ -21,7 +21,7 @@ fn dragging_the_tip_of_the_arrow_sets_the_force() {
     let direction = fy.atan2(fx).to_degrees();
     assert!((direction - wanted).abs() < 0.6, "the arrow points to {wanted}°, the force to {direction}°");
     let shorter = f64::from(vector.length() / (before - start).length());
-    assert!((fx.hypot(fy) / 1000.0 - shorter).abs() < 0.02, "an arrow of {shorter} times the length: {fx} {fy}");
+    assert!((fx.hypot(fy) / usual - shorter).abs() < 0.02, "an arrow of {shorter} times the length: {fx} {fy}");
     let shown = ui.field("Direction");
     assert!(shown.starts_with(&format!("{direction:.0}")), "{shown} {direction}");
     is_solved(&ui, &["cantilever", "--set", &format!("load.0.force=[{fx},{fy}]")]);
@@ -369,7 +369,7 @@ fn values_go_back_to_those_of_the_scene() {
         ui.run_steps(2);
         ui.hover_at(at(0.3));
         ui.run_steps(60);
-        assert_eq!(ui.says("Double click, or Delete on the slider: 1 kN"), is_said);
+        assert_eq!(ui.says("Double click, or Delete on the slider: 1.5 kN"), is_said);
     }
 }
 
@@ -585,7 +585,7 @@ fn the_view_does_not_follow_unconverged_states() {
             _ = ui.run()
         }
         let ratio = ui.camera().scale / before;
-        assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
+        assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
     }
     assert!(matches!(ui.simulation().status(), Status::Diverged(_)));
 }

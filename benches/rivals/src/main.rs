@@ -128,7 +128,7 @@ fn run(mut body: Rapier<'_>, targets: &[Vector2<f64>]) -> (Duration, Vec<Arrival
 }
 
 fn cantilever(assignments: &[&str]) -> Simulation {
-    let set = [assignments, &["beam.element=t3", "solver.method=newton"]].concat();
+    let set = [assignments, &["beam.element=t3", "load.0.force=[0,-1000]", "solver.method=newton"]].concat();
     let source = Source { name: "cantilever".into(), assignments: set.iter().map(|&set| set.to_owned()).collect() };
     let mut newton = Simulation::new(&open(&source).unwrap()).unwrap();
     assert!(newton.solve().is_success());

@@ -26,6 +26,13 @@ pub(crate) struct Document {
     text: Option<Arc<str>>,
 }
 
+/// Opens the built-in scene with this name.
+pub(crate) fn built_in(id: &str) -> Option<(Source, Scene)> {
+    let source = Source { name: id.into(), assignments: Vec::new() };
+    let scene = scene::open(&source).ok()?;
+    Some((source, scene))
+}
+
 /// Reason for which a scene was not saved.
 #[derive(Debug, Error)]
 #[error("{}", Sentence::from(self))]

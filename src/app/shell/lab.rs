@@ -9,7 +9,7 @@ use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::limits::LimitMap;
 use crate::app::panel::PanelState;
 use crate::app::readout::Readout;
-use crate::app::session::document::Document;
+use crate::app::session::document::{Document, built_in};
 use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::{Notice, Session};
@@ -19,7 +19,7 @@ use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Mode, ViewOptions};
 use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
-use crate::scene::{Scene, Source};
+use crate::scene::{Scene, Source, registry};
 use crate::simulation::{Simulation, Status};
 
 /// Request of the lab to the window that shows it.
@@ -204,7 +204,7 @@ impl Lab {
     /// Creates a lab that shows the first built-in scene until `scene`, which is large, has been meshed in the
     /// background; `None` if the built-in scene cannot be shown.
     pub(crate) fn opening(source: Source, scene: Scene) -> Option<Self> {
-        let (own, meanwhile) = learn::article()?;
+        let (own, meanwhile) = built_in(registry::DEFAULT)?;
         let mut simulation = Simulation::new(&meanwhile).ok()?;
         simulation.solve();
         let mut lab = Self::new(own, meanwhile, simulation);

@@ -1,8 +1,9 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
-use crate::app::modes::learn::{self, Learn};
+use crate::app::modes::learn::Learn;
 use crate::app::session::Session;
+use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
 use crate::app::view_options::{Mode, ViewOptions};
 use crate::simulation::Simulation;
@@ -18,7 +19,7 @@ impl Lab {
     }
 
     fn enter(&mut self) {
-        let session = learn::article()
+        let session = built_in("article")
             .and_then(|(source, scene)| Some(Session::new(source, scene.clone(), Simulation::new(&scene).ok()?)));
         let own = &mut self.desk;
         let (bars, narrow) = (own.view.bars, own.view.narrow);
@@ -56,7 +57,7 @@ impl Lab {
     /// Sets up the scene and the view of the card.
     pub(super) fn set_card_up(&mut self) {
         let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
-        let Some((source, mut scene)) = learn::article() else { return };
+        let Some((source, mut scene)) = built_in("article") else { return };
         (setup.edit)(&mut scene);
         let reach = setup.reach.and_then(|reach| {
             let mut scene = scene.clone();

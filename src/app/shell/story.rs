@@ -1,17 +1,17 @@
-//! Story of the first start: in five parts the article's beam shows linear theory, the limit of the warped iteration,
-//! Newton's method and another element. At the end the user's own scene is as before.
+//! Story of the first start: in five parts the default scene shows linear theory, the limit of the warped iteration,
+//! Newton's method and another element. It ends as it began: with that scene, or with the card of Learn that was open.
 
 use egui::{Align2, Event, FontId, Painter, Rect, Role, Sense, Stroke, TouchPhase, Ui, WidgetInfo, vec2};
 use nalgebra::Vector2;
 
 use crate::app::language::tr;
-use crate::app::modes::learn;
 use crate::app::platform::page;
+use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
 use crate::app::view_options::ViewOptions;
 use crate::app::widgets::palette::{HEADLINE, Palette};
 use crate::render::{Camera, Margins};
-use crate::scene::{ElementKind, MethodKind};
+use crate::scene::{ElementKind, MethodKind, registry};
 
 /// Part of the story.
 struct Part {
@@ -34,26 +34,26 @@ const PARTS: [Part; 5] = [
     Part {
         caption: "Linear theory (orange) grows; warped keeps its area.",
         seconds: 5.0,
-        setting: |t| (MethodKind::Warped, ElementKind::T3, between(0.0, 1.0, t / 0.8)),
+        setting: |t| (MethodKind::Warped, ElementKind::T6, between(0.0, 1.0, t / 0.8)),
         outlines: [true, false],
     },
     Part {
         caption: "Beyond ρ ≈ 1 the warped iteration diverges.",
         seconds: 4.5,
-        setting: |t| (MethodKind::Warped, ElementKind::T3, between(1.0, PAST, t / 0.8)),
+        setting: |t| (MethodKind::Warped, ElementKind::T6, between(1.0, PAST, t / 0.8)),
         outlines: [false, false],
     },
     Part {
         caption: "Newton\u{2019}s method carries on.",
         seconds: 3.0,
-        setting: |t| (MethodKind::Newton, ElementKind::T3, between(PAST, FAR, t / 0.8)),
+        setting: |t| (MethodKind::Newton, ElementKind::T6, between(PAST, FAR, t / 0.8)),
         outlines: [false, false],
     },
     Part {
-        caption: "Same five cells, another element: the error falls.",
+        caption: "Same cells, another element: the error falls.",
         seconds: 4.5,
         setting: |t| {
-            let element = if t < 0.5 { ElementKind::T3 } else { ElementKind::Q4 };
+            let element = if t < 0.5 { ElementKind::T3 } else { ElementKind::T6 };
             (MethodKind::Newton, element, between(FAR, 1.0, t / 0.25))
         },
         outlines: [false, true],
@@ -61,17 +61,17 @@ const PARTS: [Part; 5] = [
     Part {
         caption: "Your turn: drag the arrow.",
         seconds: 3.0,
-        setting: |_| (MethodKind::Warped, ElementKind::T3, 1.0),
+        setting: |_| (MethodKind::Warped, ElementKind::T6, 1.0),
         outlines: [true, true],
     },
 ];
 
 /// Space that the bodies of all parts take beyond the beam at rest, m: to the right and below.
-const BEYOND: Vector2<f64> = Vector2::new(0.6, 4.0);
+const BEYOND: Vector2<f64> = Vector2::new(0.5, 7.0);
 /// Distance of the caption from the top of the view, points: below the line key and the note of a diverged load.
 const CAPTION: f32 = 80.0;
 /// Margins around the bodies, as parts of the height of the view; the caption is above them.
-const MARGINS: [f64; 2] = [0.2, 0.16];
+const MARGINS: [f64; 2] = [0.26, 0.12];
 
 /// Moves from one load to another, with zero velocity at both ends.
 fn between(from: f64, to: f64, t: f64) -> f64 {
@@ -85,17 +85,17 @@ pub(crate) fn seconds() -> f64 {
 }
 
 impl Lab {
-    /// Tells the story on the article's beam, from the time of the next [`Self::advance`] on. Does nothing if an edited
+    /// Tells the story on the default scene, from the time of the next [`Self::advance`] on. Does nothing if an edited
     /// scene or another one would be lost.
     pub fn tell_story(&mut self) {
-        let Some((source, article)) = learn::article() else { return };
-        let is_lost = self.lesson.is_none() && (*self.scene() != article || self.can_undo());
+        let Some((source, scene)) = built_in(registry::DEFAULT) else { return };
+        let is_lost = self.lesson.is_none() && (*self.scene() != scene || self.can_undo());
         if self.story.is_some() || is_lost {
             return;
         }
         let Desk { session, view, panel, .. } = &mut self.desk;
         // Cannot fail: the scene is built in.
-        if session.set_scene(article).is_err() {
+        if session.set_scene(scene).is_err() {
             return;
         }
         session.rebase(source);

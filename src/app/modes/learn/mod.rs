@@ -16,7 +16,7 @@ use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{self, Scene, Source, registry};
+use crate::scene::Scene;
 use crate::simulation::{Simulation, Status};
 
 mod area;
@@ -290,7 +290,7 @@ impl Learn {
                 if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
                     actions.push(Action::Card(card));
                 }
-                let tip = "Twenty seconds on the article\u{2019}s beam; any key or click ends them";
+                let tip = "A story of twenty seconds; any key or click ends it";
                 if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
                     actions.push(Action::Story);
                 }
@@ -408,16 +408,10 @@ pub fn card_count() -> usize {
     CARDS.len()
 }
 
-/// Returns the article's scene and its source.
-pub(crate) fn article() -> Option<(Source, Scene)> {
-    let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-    let scene = scene::open(&source).ok()?;
-    Some((source, scene))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::session::document::built_in;
 
     /// The fonts have all characters of the cards and of the texts around them.
     #[test]
@@ -442,7 +436,7 @@ mod tests {
     #[test]
     fn every_card_sets_up_a_scene_and_has_a_text() {
         for card in CARDS {
-            let (_, mut scene) = article().unwrap();
+            let (_, mut scene) = built_in("article").unwrap();
             (card.setup.edit)(&mut scene);
             assert!(scene.validate().is_ok(), "{}", card.title);
             let sentences = card.text.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
