@@ -112,6 +112,38 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
     }
 }
 
+/// To the border in every direction and back, body and arrow are in view, and the force follows from the pointer alone.
+#[test]
+fn a_dragged_body_stays_in_view() {
+    let sizes = [[1280.0, 800.0], [960.0, 600.0], [800.0, 900.0], [640.0, 480.0]];
+    let ids = ["article", "cantilever", "bridge", "cook", "incline"];
+    let cases = (0..320).map(|case| (ids[case % 5], sizes[case / 5 % 4], case / 20));
+    for case @ (id, size, direction) in sampled(cases, 19) {
+        let mut lab = lab_of(id, scene(id));
+        lab.solve();
+        lab.set_frame_work(Duration::from_secs(20));
+        let mut ui = window(size, lab);
+        ui.run();
+        let (tip, way) = (ui.tip(), Vec2::angled(std::f32::consts::TAU * direction as f32 / 16.0));
+        let view = ui.state().view_rect().expand(1.0);
+        let to_border = (0..2000).take_while(|step| view.contains(tip + way * *step as f32)).count();
+        let mut forces = std::collections::BTreeMap::from([(0, ui.force())]);
+        ui.hold(tip);
+        for step in (1..=6).chain((0..6).rev()) {
+            let scale = ui.camera().scale;
+            ui.move_to(tip + way * (to_border * step / 6) as f32);
+            ui.step();
+            assert!(ui.camera().scale <= scale, "{case:?}, {step}: it moves nearer");
+            let places = ui.state().frame().positions.iter().map(|place| in_view(ui.state(), *place));
+            let outside = places.chain([ui.tip()]).map(|at| view.signed_distance_to_pos(at)).fold(-1e9, f32::max);
+            assert!(outside <= 0.0, "{case:?}, {step}: body or arrow leave the view by {outside}");
+            let [before, now] = [*forces.entry(step).or_insert(ui.force()), ui.force()].map(Vector2::from);
+            assert!((now - before).norm() <= 1e-3 * now.norm(), "{case:?}, {step}: {now} {before}");
+        }
+        ui.release(tip);
+    }
+}
+
 /// Beyond the limit the body is at rest, or in an equilibrium of the same direction; one message has the remedy.
 #[test]
 fn beyond_the_limit_the_drawn_body_belongs_to_a_load_of_the_same_direction() {

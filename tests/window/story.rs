@@ -9,10 +9,6 @@ use warpbeam::scene::{ElementKind, registry::DEFAULT};
 /// Time between two frames, s.
 const FRAME: f64 = 0.25;
 
-fn lab(id: &str) -> Lab {
-    lab_of(id, crate::common::scene(id))
-}
-
 fn open(size: [f32; 2], lab: Lab) -> Ui {
     let builder = egui_kittest::Harness::builder().with_size(size);
     // The tests set the clock of the story.
@@ -23,7 +19,7 @@ fn open(size: [f32; 2], lab: Lab) -> Ui {
 
 /// Returns a window of the story at its start.
 fn story() -> Ui {
-    let mut ui = open(SIZE, lab(DEFAULT));
+    let mut ui = open(SIZE, lab_of(DEFAULT, scene(DEFAULT)));
     ui.state_mut().tell_story();
     show(&mut ui, 0.0);
     ui
@@ -83,7 +79,7 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
 
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
 fn is_default(lab: &Lab) {
-    assert_eq!((lab.story(), lab.scene()), (None, &crate::common::scene(DEFAULT)));
+    assert_eq!((lab.story(), lab.scene()), (None, &scene(DEFAULT)));
     assert!(lab.simulation().status().is_success() && !lab.can_undo() && !lab.can_redo());
 }
 
@@ -91,7 +87,7 @@ fn is_default(lab: &Lab) {
 #[test]
 fn the_numbers_of_the_window_tell_the_story() {
     let mut ui = story();
-    let usual = size(&crate::common::scene(DEFAULT));
+    let usual = size(&scene(DEFAULT));
     let mut last = [const { None }; 5];
     let (mut lost, mut errors, mut largest) = (Vec::new(), Vec::new(), 0.0_f64);
     tell(&mut ui, |ui, _, part| {
@@ -188,13 +184,13 @@ fn the_arrow_is_handed_over() {
     ui.move_to(tip + vec2(0.0, 30.0));
     ui.drop_at(tip + vec2(0.0, 30.0));
     ui.step();
-    let usual = size(&crate::common::scene(DEFAULT));
+    let usual = size(&scene(DEFAULT));
     assert!(size(ui.scene()) > 1.1 * usual && ui.state().can_undo(), "{} N", size(ui.scene()));
 }
 
 #[test]
 fn with_reduced_motion_the_story_is_five_stills() {
-    let mut ui = open(SIZE, lab(DEFAULT));
+    let mut ui = open(SIZE, lab_of(DEFAULT, scene(DEFAULT)));
     let mut settings = Settings::default();
     settings.reduced_motion = true;
     let ctx = ui.ctx.clone();
@@ -211,7 +207,7 @@ fn with_reduced_motion_the_story_is_five_stills() {
 /// The story that Learn tells ends on the card it began at. The user's scene stays.
 #[test]
 fn learn_tells_the_story_again() {
-    let mut ui = open([900.0, 600.0], lab("article"));
+    let mut ui = open([900.0, 600.0], lab_of("article", scene("article")));
     let own = ui.scene().clone();
     // Another scene than the default one would be lost.
     ui.state_mut().tell_story();

@@ -23,8 +23,6 @@ pub(crate) struct CameraController {
     whole: Box2,
     /// Box of the body at rest, m.
     rest: Box2,
-    /// Camera that fits the whole body, as passed to the last [`Self::aim`].
-    fitted: Camera,
     shown: Camera,
     /// `true` until the first frame of a body, which is shown without animation.
     is_new: bool,
@@ -34,7 +32,7 @@ impl CameraController {
     /// Creates the camera of a body with the rest box `rest`, m.
     pub(crate) fn new(rest: Box2) -> Self {
         let camera = Camera { center: (rest[0] + rest[1]) * 0.5, scale: 1.0 };
-        Self { own: None, whole: rest, rest, fitted: camera, shown: camera, is_new: true }
+        Self { own: None, whole: rest, rest, shown: camera, is_new: true }
     }
 
     /// Returns the current camera.
@@ -82,7 +80,6 @@ impl CameraController {
     /// Advances the animation by one frame of `dt` s: towards `fitted`, which shows [`Self::whole`], or towards the
     /// camera set by the user. Without `dt` it jumps there. Returns `true` while the animation is in progress.
     pub(crate) fn aim(&mut self, fitted: Camera, dt: Option<f64>) -> bool {
-        self.fitted = fitted;
         let goal = self.own.unwrap_or(fitted);
         let (Some(dt), false) = (dt, self.is_new) else {
             self.shown = goal;
@@ -152,15 +149,6 @@ mod tests {
         };
         let (one, many) = (after(1), after(40));
         assert!((one.scale / many.scale - 1.0).abs() < 1e-9 && (one.center - many.center).norm() < 1e-9);
-    }
-
-    #[test]
-    fn without_animation_the_camera_is_set_at_once() {
-        let mut controller = CameraController::new(REST);
-        controller.aim(fitted(&controller), None);
-        controller.set_whole([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
-        assert!(!controller.aim(fitted(&controller), None));
-        assert_eq!(controller.camera(), fitted(&controller));
     }
 
     #[test]

@@ -96,6 +96,8 @@ pub(crate) struct Grip {
     pub handle: Handle,
     pressed: Pos2,
     last: Pos2,
+    /// `true` once the pointer has left the place of the press; a return to it restores the load.
+    has_moved: bool,
     /// Displacement of the handle, points: smaller than the pointer's in slow mode.
     by: Vec2,
     angle: f64,
@@ -104,26 +106,26 @@ pub(crate) struct Grip {
 impl Grip {
     /// Grabs `handle` with a press at `pressed`.
     pub(crate) fn new(handle: Handle, pressed: Pos2) -> Self {
-        Self { handle, pressed, last: pressed, by: Vec2::ZERO, angle: 0.0 }
+        Self { handle, pressed, last: pressed, has_moved: false, by: Vec2::ZERO, angle: 0.0 }
     }
 
     /// Moves the handle with the pointer, which is now at `at`; by a tenth of the distance if `slow`.
     pub(crate) fn drag_to(&mut self, at: Pos2, slow: bool) {
         const SLOW: f32 = 0.1;
+        /// Movements of less than this, points, do not count as a drag.
+        const STILL: f32 = 2.0;
         let part = if slow { SLOW } else { 1.0 };
         self.by += part * (at - self.last);
         if let Handle::Moment(arrow) = self.handle {
             self.angle += f64::from(part) * arrow.angle_between(self.last, at);
         }
         self.last = at;
+        self.has_moved |= at.distance(self.pressed) >= STILL;
     }
 
     /// Returns the displacement of the handle; `None` if it has not moved.
     pub(crate) fn drag(&self) -> Option<Drag> {
-        /// Movements of less than this, points, do not count as a drag.
-        const STILL: f32 = 2.0;
-        let vector = self.last - self.pressed;
-        (vector.length() >= STILL).then_some(Drag { by: self.by, angle: self.angle })
+        self.has_moved.then_some(Drag { by: self.by, angle: self.angle })
     }
 
     /// Returns the new value of the load, if the handle has been dragged.

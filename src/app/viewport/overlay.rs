@@ -648,10 +648,9 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
         format!("{}{error}{}", tr(word), area.unwrap_or_default())
     };
-    let [own_area, linear_area] = overlay.areas;
     let own = match overlay.scene.analysis {
-        Analysis::Static => values(overlay.scene.solver.method.id(), overlay.errors.own, own_area),
-        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), None, own_area),
+        Analysis::Static => values(overlay.scene.solver.method.id(), overlay.errors.own, overlay.areas[0]),
+        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), None, overlay.areas[0]),
     };
     let mut lines = Vec::new();
     if overlay.magnification != 1.0 {
@@ -666,7 +665,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         ));
     }
     if overlay.ghost.is_some() {
-        let text = values(MethodKind::Linear.id(), overlay.errors.linear, linear_area);
+        let text = values(MethodKind::Linear.id(), overlay.errors.linear, overlay.areas[1]);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {

@@ -168,10 +168,14 @@ impl Pointer {
         self.over_body.zip(self.at)
     }
 
-    /// Returns `true` if a load handle, a base or the body is held; the view must not move then, because the held point would
-    /// move with it.
+    /// Returns `true` if a load handle, a base or the body is held.
     pub(crate) fn holds(&self) -> bool {
         matches!(self.held, Held::Tip(..) | Held::Base(_) | Held::Body(_))
+    }
+
+    /// Returns `true` if the tip of an arrow is dragged: its load depends on the pointer alone, so that the view may move.
+    pub(crate) fn drags_tip(&self) -> bool {
+        matches!(self.held, Held::Tip(grip) if grip.drag().is_some())
     }
 
     /// Returns `true` if the body is grabbed.

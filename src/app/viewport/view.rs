@@ -446,10 +446,11 @@ impl BodyView {
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
-    /// converged are not followed while they change, because they may be anywhere.
+    /// converged are not followed, because they may be anywhere. While an arrow is dragged, it moves away, never nearer.
     pub(crate) fn fit_camera(&mut self, ui: &Ui, content: &Content<'_>) {
+        let drags = self.pointer.drags_tip();
         // Moving the camera would also move the point that the pointer has grabbed.
-        if self.pointer.holds() {
+        if self.pointer.holds() && !drags {
             return;
         }
         let size = self.size();
@@ -457,10 +458,11 @@ impl BodyView {
         let status = session.drawn().status();
         let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
         let is_stepped = !is_motion && (session.is_slow() || !session.is_running());
-        if is_sound || is_stepped && self.is_of_usual_size(content) {
+        if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
             let (mut low, mut high) = content.mesh().bounds();
-            if let (Some([swept_low, swept_high]), true) = (self.swept, is_motion) {
-                (low, high) = (low.inf(&swept_low), high.sup(&swept_high));
+            let before = if drags { Some(self.camera.whole()) } else { self.swept.filter(|_| is_motion) };
+            if let Some([before_low, before_high]) = before {
+                (low, high) = (low.inf(&before_low), high.sup(&before_high));
             }
             let mut include = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
                 for p in points {
@@ -478,19 +480,21 @@ impl BodyView {
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
         let [low, high] = self.camera.whole();
-        let fitted = self.fitted(content, low, high, size);
+        let mut fitted = self.fitted(content, low, high, size);
+        if drags {
+            fitted.scale = fitted.scale.min(self.camera().scale);
+        }
         let dt = f64::from(ui.input(|i| i.stable_dt));
-        if self.camera.aim(fitted, self.eases.then_some(dt)) {
+        if self.camera.aim(fitted, (self.eases && !drags).then_some(dt)) {
             ui.ctx().request_repaint();
         }
     }
 
-    /// Returns `true` if the drawn body is not much larger than at rest, as a diverging iterate may be.
-    fn is_of_usual_size(&self, content: &Content<'_>) -> bool {
-        const LARGEST: f64 = 10.0;
+    /// Returns `true` if the drawn body is at most `times` as large as at rest; a diverging iterate may be larger.
+    fn is_of_usual_size(&self, content: &Content<'_>, times: f64) -> bool {
         let (low, high) = content.mesh().bounds();
         let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
-        (to - from).norm() < LARGEST * (high - low).norm()
+        (to - from).norm() < times * (high - low).norm()
     }
 
     /// Leaves room for a beam that is going to bend, and for its arrow.
