@@ -209,8 +209,8 @@ fn panes_have_the_numbers_of_solve() {
             let (header, area) = header.rsplit_once(" \u{b7} area ").unwrap();
             assert!(header.ends_with(&format!(": error {error}, {time} \u{b7} {iterations}")), "{what}: {header}");
             let area: f64 = area.replace('\u{2212}', "-").trim_end_matches(" %").parse().unwrap();
-            let rest = (area - json["area_change_percent"].as_f64().unwrap()).abs();
-            assert!(rest < 0.006 + 0.05 * area.abs(), "{what}: {header}, {area} %");
+            let change = json["area_change_percent"].as_f64().unwrap();
+            assert!((area - change).abs() < 0.006 + 0.05 * area.abs(), "{what}: {header}, {area} %");
         }
     }
     assert!(diverged > 0);

@@ -3,11 +3,10 @@
 use crate::common::lab::*;
 use crate::common::{ids_of, scene_ids, solve_error, solve_u};
 use crate::ui_interaction::is_solved;
-use warpbeam::Field;
-use warpbeam::format::percent;
 use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, Plane};
 use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
 use warpbeam::study::{Demand, Measurement, Reference, Setting};
+use warpbeam::{Field, format::percent};
 
 fn open(id: &str) -> Ui {
     let mut ui = open_of(id);

@@ -47,10 +47,12 @@ impl Lab {
         self.dialog.is_some() || matches!(self.question, Question::Unsaved(_))
     }
 
-    /// Opens a scene or closes the window, after a question if edits would be lost. In Learn nothing is lost, because
-    /// the user's scene is kept.
+    /// Opens a scene or closes the window, after a question if edits would be lost. Undo restores those of a scene that has
+    /// no file when another one is opened, and in Learn the user's scene is kept.
     pub(super) fn depart(&mut self, ctx: &Context, departure: UnsavedDeparture) {
-        let loses = self.lesson.is_none() && self.unsaved().is_some();
+        let closes = matches!(departure, UnsavedDeparture::Close);
+        let is_lost = |(document, _): (&Document, _)| closes || document.path().is_some();
+        let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
         if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
     }
 

@@ -166,5 +166,5 @@ fn a_lost_device_is_replaced_once() {
     assert!(output.status.success() && out.contains("1 passed"), "{out}\n{err}");
     assert!(err.contains("Unsaved changes are kept"), "{err}");
     let copy = std::fs::read_to_string(folder.path().join("warpbeam/unsaved/0.toml")).unwrap();
-    assert!(copy.contains("-15000.0"), "{copy}");
+    assert!(copy.contains("-750.0"), "{copy}");
 }
