@@ -62,7 +62,7 @@ pub(crate) fn mesh(file: &str) -> Option<&'static str> {
 }
 
 /// Default scene.
-pub const DEFAULT: &str = "cantilever";
+pub const DEFAULT: &str = BUILT_IN[0].id;
 
 /// Returns the built-in scene with this name.
 #[must_use]

@@ -52,6 +52,8 @@ pub struct PaneEnd {
     pub probes: Vec<ProbeResult>,
     /// `true` if an element is turned inside out.
     pub is_inside_out: bool,
+    /// Relative change of the body's area.
+    pub area_change: f64,
 }
 
 #[derive(Debug, Default)]
@@ -360,6 +362,7 @@ impl ComparedSolve {
             iterations: simulation.iterations(),
             probes: probe_results(simulation.problem(), simulation.state()),
             is_inside_out: Quality::default().is_inside_out(simulation),
+            area_change: simulation.area_change(),
         });
     }
 

@@ -589,7 +589,7 @@ impl BodyView {
             reaction.middle = support.middle + (reaction.middle - support.middle) * self.magnification;
         }
         let sections = sections(shown);
-        let exact = self.exact(content);
+        let (ghost, exact) = (self.ghost(content), self.exact(content));
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: fallback.map(|_| simulation.scene()),
@@ -600,10 +600,10 @@ impl BodyView {
             positions: &self.body.nodes,
             magnification: self.magnification,
             apart: content.is_apart(),
-            ghost: self.ghost(content),
+            ghost,
             exact: &exact,
             errors,
-            areas: [Some(shown), session.linear()].map(|body| body.map(Simulation::area_change)),
+            areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
             time: shown.state().time(),
             direction: content.direction,
             opening: OpeningLoads::of(&session.document().opened),

@@ -6,7 +6,8 @@ use std::process::{Child, Command, Stdio};
 use winit::platform::x11::EventLoopBuilderExtX11;
 
 use super::*;
-use crate::scene::{Load, open, registry};
+use crate::app::session::document::built_in;
+use crate::scene::{Load, registry};
 
 /// Environment variable that is set in the process with the window.
 const CHILD: &str = "WARPBEAM_TEST_LOSS";
@@ -70,8 +71,7 @@ impl ApplicationHandler for Losing {
 
 /// Opens the window, loses its device twice, and checks what is kept.
 fn lose() {
-    let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-    let scene = open(&source).unwrap();
+    let (source, scene) = built_in(registry::DEFAULT).unwrap();
     let simulation = Simulation::new(&scene).unwrap();
     let settings = Settings::file().as_deref().map(Settings::load).unwrap();
     let mut app = App::new((source, scene.clone(), Some(simulation)), settings, None, false).unwrap();
@@ -117,8 +117,7 @@ fn only_the_first_start_tells_the_story() {
     }
     let file = Settings::file().unwrap();
     let open = |is_default| {
-        let source = Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-        let scene = open(&source).unwrap();
+        let (source, scene) = built_in(registry::DEFAULT).unwrap();
         let simulation = Simulation::new(&scene).unwrap();
         App::new((source, scene, Some(simulation)), Settings::load(&file), None, is_default).unwrap()
     };

@@ -24,7 +24,7 @@ use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::sentence::Sentence;
-use crate::simulation::{Simulation, Status};
+use crate::simulation::Status;
 use crate::state::largest;
 use crate::study::{Reference, Setting, SolveFromRest};
 
@@ -377,7 +377,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
                 // Images without bars omit the time, which differs from run to run.
                 let time = pane.shown_seconds(input).filter(|_| input.common.view.bars);
                 let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
-                let area = area_text(pane.simulation().map_or(0.0, Simulation::area_change));
+                let area = area_text(end.area_change);
                 (false, format!("{time}{}{stopped}{inverted} · {area}", count(end.iterations, "iteration")))
             }
         },

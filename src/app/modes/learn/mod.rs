@@ -411,7 +411,6 @@ pub fn card_count() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::session::document::built_in;
 
     /// The fonts have all characters of the cards and of the texts around them.
     #[test]
@@ -436,7 +435,7 @@ mod tests {
     #[test]
     fn every_card_sets_up_a_scene_and_has_a_text() {
         for card in CARDS {
-            let (_, mut scene) = built_in("article").unwrap();
+            let (_, mut scene) = crate::app::session::document::built_in("article").unwrap();
             (card.setup.edit)(&mut scene);
             assert!(scene.validate().is_ok(), "{}", card.title);
             let sentences = card.text.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();

@@ -13,7 +13,6 @@ use crate::app::shell::story;
 use crate::image::Picture;
 use crate::progress::{Observer, Progress};
 use crate::render::{Gpu, RenderError};
-use crate::scene::registry;
 use crate::sentence::sentence;
 use crate::simulation::{Simulation, Status};
 
@@ -30,7 +29,7 @@ pub fn record_story(options: &RecordOptions, output: &Path, observe: Observer<'_
         film::clear(output, options.overwrite)?;
     }
     let missing = || AppError::Window("the scene to begin with is missing".to_owned());
-    let (source, scene) = built_in(registry::DEFAULT).ok_or_else(missing)?;
+    let (source, scene) = built_in(crate::scene::registry::DEFAULT).ok_or_else(missing)?;
     let simulation = Simulation::new(&scene)
         .map_err(|error| RecordError::Simulation { scene: source.name.display().to_string(), error })?;
     let gpu = Gpu::headless_on(options.adapter.as_deref())?;
