@@ -189,7 +189,7 @@ pub use simulation::{Moment, Motion};
 // Measure errors and time.
 pub use progress::{Observer, Progress};
 pub use study::{
-    Demand, Effort, ErrorSplit, Extent, Measurement, MovedPoint, ProbeReference, Ranking, Reference, ReferenceSource,
-    Setting, Study, StudyError,
+    Demand, Effort, ErrorSplit, Extent, Measurement, MovedPoint, ProbeReference, Reference, ReferenceSource, Setting,
+    Stepping, Study, StudyError,
 };
 pub use timings::Timings;

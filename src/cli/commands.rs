@@ -21,8 +21,8 @@ use crate::stress::{inversion_warning, strain_warning};
 use crate::study::extremes::{self, Case, Entry, motion, rest};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, MotionStudy, PathSummary, Reference, Study,
-    StudyError, Tuning, moved_points, parallel, path_chart,
+    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError,
+    Tuning, moved_points, parallel, path_chart,
 };
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
@@ -251,26 +251,16 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = validated(source)?;
     let watch = Watch::new();
-    let (result, interrupted) = match scene.analysis {
-        Analysis::Static => {
-            let study = Study::until_cancelled(&scene, extent(out), &|progress| watch.observe(progress));
-            let interrupted = study.as_ref().is_ok_and(|(_, is_partial)| *is_partial);
-            (study.map(|(study, _)| (study.table(), plot::study(&study), study.summary())), interrupted)
-        }
-        Analysis::Dynamic => {
-            let study = MotionStudy::new(&scene, extent(out), &|progress| watch.observe(progress));
-            let interrupted = study.as_ref().is_ok_and(|study| study.is_partial);
-            (study.map(|study| (study.table(), plot::motion_study(&study), study.summary())), interrupted)
-        }
-    };
+    let study = Study::new(&scene, extent(out), &|progress| watch.observe(progress));
     drop(watch);
-    let (table, drawing, summary) = match result {
+    let study = match study {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
-        result => result.map_err(failed(source))?,
+        study => study.map_err(failed(source))?,
     };
-    write_folder(&out.folder, "study", &table, &drawing, Some(&summary))?;
+    let summary = study.summary();
+    write_folder(&out.folder, "study", &study.table(), &plot::study(&study), Some(&summary))?;
     text::print(&summary)?;
-    Ok(ended(interrupted, "the study has only the settings measured until then"))
+    Ok(ended(study.is_partial, "the study has only the settings measured until then"))
 }
 
 /// Returns the exit code of a command that may have been interrupted; prints what is missing if it was.
@@ -305,7 +295,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
         let text = scene::edited(&source.text()?, &tuned(&scene, &tuning, &source, path))?;
         atomic_write::save(path, text.as_bytes()).map_err(export::failed(path))?;
     }
-    if tuning.is_partial {
+    if tuning.study.is_partial {
         return Ok(ended(true, "finer meshes have not been measured"));
     }
     Ok(if tuning.met { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
@@ -313,7 +303,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
 
 /// Returns the scene with the chosen setting, to be written to `path`.
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
-    let mut tuned = tuning.chosen.setting.apply(scene);
+    let mut tuned = tuning.chosen.apply(scene);
     if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
         // The mesh path is relative to the scene file, which changes. The folder of a bare file name is the current
         // one.

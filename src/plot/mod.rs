@@ -11,8 +11,8 @@ pub use atlas::atlas;
 pub use drawing::Drawing;
 pub use figure::figure;
 pub use limits::limits;
+pub use trade::study;
 #[cfg(feature = "app")]
 pub use trade::{LARGEST_ERROR, SMALLEST_ERROR};
-pub use trade::{motion_study, study};
 #[cfg(feature = "app")]
 pub(crate) use {axes::ScaledAxis, limits::rating_color};

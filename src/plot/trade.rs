@@ -6,8 +6,8 @@ use crate::dynamics::INTEGRATORS;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::color;
-use crate::study::motion::{MotionStudy, REAL_TIME};
-use crate::study::{Measurement, Ranked, Ranking, Study};
+use crate::study::motion::REAL_TIME;
+use crate::study::{Study, StudyReference};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
 pub const SMALLEST_ERROR: f64 = 1e-3;
@@ -16,53 +16,39 @@ pub const LARGEST_ERROR: f64 = 1e3;
 /// Width of a line.
 const WIDTH: f64 = 1.5;
 
-/// The error at which a measurement is drawn, percent.
-fn drawn_error<M: Ranked>(ranking: Ranking<'_, M>, m: &M) -> f64 {
-    ranking.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR)
-}
-
 /// Draws the study.
 pub fn study(study: &Study) -> Drawing {
-    let point = |m: &Measurement| Point {
-        time: m.milliseconds(),
-        error: drawn_error(study.ranking(), m),
-        element: m.setting.element,
-        color: color(m.setting.method.id(), false),
-        faint: !m.converged,
-        front: m.pareto,
-        title: m.setting.to_string(),
-    };
-    let chart = Chart {
-        title: format!("{}: error against time", study.scene),
-        time_label: "time of a solve, ms",
-        error_label: "error bound, % of the reference displacement",
-        points: study.measurements.iter().map(point).collect(),
-        legend: METHODS.iter().map(|m| (m.id, color(m.id, false))).collect(),
-        faint_label: None,
-        mark: None,
-    };
-    chart.draw()
-}
-
-/// Draws the study of a motion.
-pub fn motion_study(study: &MotionStudy) -> Drawing {
+    let moves = matches!(study.reference, StudyReference::Motion(_));
     let points = study.measurements.iter().filter(|m| m.error.is_some()).map(|m| Point {
         time: m.milliseconds,
-        error: drawn_error(study.ranking(), m),
+        error: study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR),
         element: m.setting.element,
-        color: color(m.setting.integrator.id(), false),
-        faint: m.setting.method == MethodKind::Linear,
+        color: color(m.setting.stepping.map_or(m.setting.method.id(), |stepping| stepping.integrator.id()), false),
+        faint: if moves { m.setting.method == MethodKind::Linear } else { !m.converged },
         front: m.pareto,
         title: m.setting.to_string(),
     });
-    let chart = Chart {
-        title: format!("{}: error of its path against time", study.scene),
-        time_label: "computing time per simulated second, ms",
-        error_label: "error bound of the path, % of its largest displacement",
-        points: points.collect(),
-        legend: INTEGRATORS.iter().map(|i| (i.id, color(i.id, false))).collect(),
-        faint_label: Some("linear theory"),
-        mark: Some(TradeMark { time: REAL_TIME, label: "real time" }),
+    let points = points.collect();
+    let chart = if moves {
+        Chart {
+            title: format!("{}: error of its path against time", study.scene),
+            time_label: "computing time per simulated second, ms",
+            error_label: "error bound of the path, % of its largest displacement",
+            points,
+            legend: INTEGRATORS.iter().map(|i| (i.id, color(i.id, false))).collect(),
+            faint_label: Some("linear theory"),
+            mark: Some(TradeMark { time: REAL_TIME, label: "real time" }),
+        }
+    } else {
+        Chart {
+            title: format!("{}: error against time", study.scene),
+            time_label: "time of a solve, ms",
+            error_label: "error bound, % of the reference displacement",
+            points,
+            legend: METHODS.iter().map(|m| (m.id, color(m.id, false))).collect(),
+            faint_label: None,
+            mark: None,
+        }
     };
     chart.draw()
 }

@@ -2,9 +2,9 @@
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
 use super::load_path::{CriticalLoad, Elsewhere, LoadPath, PathEnd, PathSummary};
-use super::ranking::{Demand, Ranked, Ranking};
+use super::ranking::Demand;
 use super::reference::{ProbeReference, Reference};
-use super::trade::Measurement;
+use super::trade::{Measurement, Study};
 use super::tune::Tuning;
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
@@ -371,15 +371,15 @@ impl Claim {
 
     /// Returns the claim about the fastest setting of a study with an error of at most a limit, percent.
     #[must_use]
-    pub fn of_ranking<M: Ranked>(ranking: Ranking<'_, M>, percent: f64) -> Self {
-        let own_percent = ranking.own_error_percent;
+    pub fn of_study(study: &Study, percent: f64) -> Self {
+        let own_percent = study.own_error_percent;
         if own_percent >= percent {
             return Self::NotKnown { percent, own_percent };
         }
-        ranking.within(percent).first().map_or(Self::NotReached(percent), |m| Self::Best {
+        study.within(percent).first().map_or(Self::NotReached(percent), |m| Self::Best {
             percent,
             time: m.time_text(),
-            setting: m.setting_text(),
+            setting: (&m.setting).into(),
         })
     }
 
@@ -393,9 +393,9 @@ impl Claim {
             (false, _, true) => "the most accurate within the time",
             (false, _, false) => "the fastest of all",
         };
-        let own = study.against.own_error_percent;
         let is_as_accurate = |m: &&Measurement| {
-            m.converged && demand.time_is_met(*m) && (m.error.bound() - chosen.error.bound()).abs() < own
+            let apart = (m.error_percent() - chosen.error_percent()).abs();
+            m.converged && demand.time_is_met(m) && apart < study.own_error_percent
         };
         // The setting itself is one of them. The fastest is chosen by its time, which is decided.
         let as_accurate = match reason.starts_with("the most accurate") {

@@ -12,7 +12,9 @@ pub mod limits;
 mod live;
 mod load_curve;
 mod load_path;
+mod measure;
 pub mod motion;
+mod motion_report;
 pub(crate) mod parallel;
 pub mod path_chart;
 mod progress;
@@ -20,6 +22,7 @@ mod ranking;
 mod reference;
 mod report;
 pub mod section_chart;
+mod setting;
 mod timing;
 mod trade;
 mod tune;
@@ -36,14 +39,15 @@ pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
 pub use load_path::{
     CriticalLoad, Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text,
 };
-pub use motion::{MotionStudy, time_of_motion};
+pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};
-pub use ranking::{Demand, Ranked, Ranking};
+pub use ranking::Demand;
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
 pub(crate) use reference::{FOLDS, is_known_unstable};
 pub use reference::{ProbeReference, Reference, ReferenceSource};
+pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
-pub use trade::{ErrorSplit, Measurement, Setting, Study};
+pub use trade::{Ending, EnergyBehaviour, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
 pub use tune::Tuning;

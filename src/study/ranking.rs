@@ -1,20 +1,20 @@
 //! Ranks of measured settings by time and error. Errors are measured against a reference solution with an error of its
 //! own.
 
-use crate::sentence::Sentence;
+use super::trade::{Measurement, Study, StudyReference};
 
 /// Requirements for a solve; `None` for no requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Largest error, percent of the exact displacement.
     pub max_error_percent: Option<f64>,
-    /// Largest computing time, ms.
+    /// Largest computing time of a solve, or of a simulated second, ms.
     pub max_time_ms: Option<f64>,
 }
 
 impl Demand {
-    pub(super) fn time_is_met(self, measurement: &impl Ranked) -> bool {
-        self.max_time_ms.is_none_or(|most| measurement.time_ms() <= most)
+    pub(super) fn time_is_met(self, measurement: &Measurement) -> bool {
+        self.max_time_ms.is_none_or(|most| measurement.milliseconds <= most)
     }
 }
 
@@ -29,97 +29,74 @@ impl std::fmt::Display for Demand {
     }
 }
 
-/// Measured setting of a study.
-pub trait Ranked: Copy {
-    /// Describes the setting.
-    fn setting_text(&self) -> Sentence;
-
-    /// Returns the computing time of a solve, or of a simulated second, ms.
-    fn time_ms(&self) -> f64;
-
-    /// Formats the computing time.
-    fn time_text(&self) -> String;
-
-    /// Returns the sum of the error's parts, percent; infinite for a motion that did not finish.
-    fn error_percent(&self) -> f64;
-
-    /// Returns `true` if no other measurement is both faster and more accurate.
-    fn is_pareto(&self) -> bool;
-}
-
-/// Measurements of a study, ranked by time and error.
-#[derive(Clone, Copy, Debug)]
-pub struct Ranking<'a, M> {
-    /// Measurements.
-    pub measurements: &'a [M],
-    /// Bound of the reference's own error, percent.
-    pub own_error_percent: f64,
-}
-
-impl<'a, M: Ranked> Ranking<'a, M> {
+impl Study {
     /// Returns the bound of the error of a measurement, percent: its parts, and the error of the reference; infinite
     /// for a motion that did not finish.
     #[must_use]
-    pub fn error_bound(self, measurement: &M) -> f64 {
+    pub fn error_bound(&self, measurement: &Measurement) -> f64 {
         measurement.error_percent() + self.own_error_percent
     }
 
     /// Returns the Pareto-optimal measurements, fastest first.
     #[must_use]
-    pub fn front(self) -> Vec<&'a M> {
-        self.sorted(M::is_pareto)
+    pub fn front(&self) -> Vec<&Measurement> {
+        self.sorted(|m| m.pareto)
     }
 
     /// Returns `false` if the reference's own error is at least the demanded one, so that it cannot be decided which
     /// settings meet the demand.
     #[must_use]
-    pub fn can_decide(self, demand: Demand) -> bool {
+    pub fn can_decide(&self, demand: Demand) -> bool {
         demand.max_error_percent.is_none_or(|most| self.own_error_percent < most)
     }
 
     /// Returns `true` if a measurement meets a demand; the reference's own error is added to that of the measurement.
     #[must_use]
-    pub fn meets(self, measurement: &M, demand: Demand) -> bool {
+    pub fn meets(&self, measurement: &Measurement, demand: Demand) -> bool {
         let error = self.error_bound(measurement);
         demand.max_error_percent.is_none_or(|most| error <= most) && demand.time_is_met(measurement)
     }
 
     /// Returns the measurements that meet a demand, fastest first.
     #[must_use]
-    pub fn meeting(self, demand: Demand) -> Vec<&'a M> {
+    pub fn meeting(&self, demand: Demand) -> Vec<&Measurement> {
         self.sorted(|m| self.meets(m, demand))
     }
 
     /// Returns the measurements whose error bound is at most `percent`, fastest first.
     #[must_use]
-    pub fn within(self, percent: f64) -> Vec<&'a M> {
+    pub fn within(&self, percent: f64) -> Vec<&Measurement> {
         self.meeting(Demand { max_error_percent: Some(percent), max_time_ms: None })
     }
 
-    fn sorted(self, which: impl Fn(&M) -> bool) -> Vec<&'a M> {
-        let mut sorted: Vec<&M> = self.measurements.iter().filter(|m| which(m)).collect();
-        sorted.sort_by(|a, b| a.time_ms().total_cmp(&b.time_ms()));
+    fn sorted(&self, which: impl Fn(&Measurement) -> bool) -> Vec<&Measurement> {
+        let mut sorted: Vec<&Measurement> = self.measurements.iter().filter(|m| which(m)).collect();
+        sorted.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
         sorted
     }
 
     /// Returns for every measurement `true` if its rank is undecided: its error and the smallest one of faster settings
     /// differ by less than the reference's own error.
     #[must_use]
-    pub fn undecided(self) -> Vec<bool> {
+    pub fn undecided(&self) -> Vec<bool> {
         undecided(&self.times_and_errors(), self.own_error_percent)
     }
 
-    /// Returns for every measurement `true` if no other one is both faster and more accurate; errors below
-    /// `resolution`, percent, count as equal.
-    pub(super) fn pareto(self, resolution: f64) -> Vec<bool> {
+    /// Marks the measurements that no other one beats in time and error; errors of paths below that of the reference
+    /// count as equal.
+    pub(super) fn mark_pareto(&mut self) {
+        let resolution = match self.reference {
+            StudyReference::Rest(_) => 0.0,
+            StudyReference::Motion(_) => self.own_error_percent,
+        };
         // `f64::max` would turn NaN into `resolution`.
         let resolved = |error: f64| if error < resolution { resolution } else { error };
         let pairs: Vec<_> = self.times_and_errors().into_iter().map(|(time, error)| (time, resolved(error))).collect();
-        front(&pairs)
+        self.measurements.iter_mut().zip(front(&pairs)).for_each(|(m, front)| m.pareto = front);
     }
 
-    fn times_and_errors(self) -> Vec<(f64, f64)> {
-        self.measurements.iter().map(|m| (m.time_ms(), m.error_percent())).collect()
+    fn times_and_errors(&self) -> Vec<(f64, f64)> {
+        self.measurements.iter().map(|m| (m.milliseconds, m.error_percent())).collect()
     }
 }
 

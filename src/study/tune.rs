@@ -1,8 +1,9 @@
 //! Tuning: choice of the cheapest element, mesh and method for a required accuracy and time.
 
+use super::measure::{MeshChoice, MeshEnds, begin, measure, meshes};
 use super::progress::{Extent, StudyError};
 use super::ranking::Demand;
-use super::trade::{Measurement, MeshChoice, MeshEnds, Study, meshes};
+use super::trade::{Measurement, Study};
 use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::sentence::sentence;
@@ -17,13 +18,11 @@ pub struct Tuning {
     pub demand: Demand,
     /// `true` if the demand is met.
     pub met: bool,
-    /// `true` if the search was cancelled before all meshes were measured.
-    pub is_partial: bool,
     /// Number of measured settings that converge.
     pub measured: usize,
     /// Number of these settings that meet the demand.
     pub meeting: usize,
-    /// All measurements.
+    /// All measurements; partial if the search was cancelled before all meshes were measured.
     pub study: Study,
 }
 
@@ -44,11 +43,12 @@ impl Tuning {
         let mut meshes = meshes(scene, Extent::Full);
         meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));
         let all: f64 = meshes.iter().map(|m| m.weight).sum();
-        let mut study = Study::begin(scene, observe)?;
-        if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.ranking().can_decide(demand)) {
-            return Err(StudyError::NotKnown { own_percent: study.against.own_error_percent, asked_percent });
+        let (mut study, against) = begin(scene, observe)?;
+        if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_decide(demand)) {
+            return Err(StudyError::NotKnown { own_percent: study.own_error_percent, asked_percent });
         }
-        let (mut enough, mut done, mut is_partial) = (f64::INFINITY, 0.0, false);
+        let (mut enough, mut done) = (f64::INFINITY, 0.0);
+        study.is_partial = false;
         for mesh in &meshes {
             if mesh.weight > enough {
                 break;
@@ -59,38 +59,39 @@ impl Tuning {
                 observe(Progress { fraction: done / all, now: Some(&sentence!("end state of every method")) })
             };
             let measured = MeshEnds::find(scene, mesh, ends).and_then(|ends| {
-                study.measure(scene, mesh, &ends, &|part| {
+                measure(&mut study, against, scene, mesh, &ends, &|part| {
                     observe(Progress { fraction: (done + part.fraction * weight) / all, ..part })
                 })
             });
-            is_partial = measured == Err(StudyError::Cancelled);
-            if is_partial {
+            study.is_partial = measured == Err(StudyError::Cancelled);
+            if study.is_partial {
                 break;
             }
             measured?;
+            study.mark_pareto();
             done += weight;
             let added = &study.measurements[before..];
-            let met = demand.max_error_percent.is_some()
-                && added.iter().any(|m| m.converged && study.ranking().meets(m, demand));
-            let fastest = added.iter().map(Measurement::milliseconds).fold(f64::INFINITY, f64::min);
+            let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
+            let fastest = added.iter().map(|m| m.milliseconds).fold(f64::INFINITY, f64::min);
             let slow = demand.max_time_ms.is_some_and(|most| fastest > TOO_SLOW * most);
             if met || slow {
                 enough = enough.min(TOO_FINE * weight);
             }
         }
         let ended: Vec<&Measurement> = study.measurements.iter().filter(|m| m.converged).collect();
-        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.ranking().meets(m, demand)).collect();
-        let fastest = |of: &[&Measurement]| of.iter().copied().min_by_key(|m| m.time.total()).copied();
+        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.meets(m, demand)).collect();
+        let fastest =
+            |of: &[&Measurement]| of.iter().copied().min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds)).copied();
         let closest = |of: &[&Measurement]| {
-            of.iter().copied().min_by(|a, b| a.error.bound().total_cmp(&b.error.bound())).copied()
+            of.iter().copied().min_by(|a, b| a.error_percent().total_cmp(&b.error_percent())).copied()
         };
-        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(*m)).collect();
+        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
         let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
-        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match is_partial {
+        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match study.is_partial {
             true => StudyError::Cancelled,
             false => StudyError::NoReference,
         })?;
         let (measured, meeting) = (ended.len(), meeting.len());
-        Ok(Self { chosen, demand, met: best.is_some(), is_partial, measured, meeting, study })
+        Ok(Self { chosen, demand, met: best.is_some(), measured, meeting, study })
     }
 }

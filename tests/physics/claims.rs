@@ -327,7 +327,7 @@ fn claims_of_a_study_are_those_of_its_table() {
     for percent in [50.0, 10.0, 3.0, 1.0, 0.3, 1e-3, 1e-9] {
         let within = rows.iter().filter(|row| of(row, "at_most_percent") <= percent);
         let fastest = within.map(|row| of(row, "time_us")).fold(f64::INFINITY, f64::min);
-        let claim = Claim::of_ranking(study.ranking(), percent);
+        let claim = Claim::of_study(&study, percent);
         kinds.push(claim.id());
         match claim {
             Claim::Best { time, .. } => {
@@ -339,7 +339,7 @@ fn claims_of_a_study_are_those_of_its_table() {
             other => panic!("{other:?}"),
         }
         let demand = Demand { max_error_percent: Some(percent), max_time_ms: None };
-        assert_eq!(study.ranking().meeting(demand).is_empty(), fastest.is_infinite(), "{percent} %");
+        assert_eq!(study.meeting(demand).is_empty(), fastest.is_infinite(), "{percent} %");
     }
     assert!(["best", "not_known"].iter().all(|kind| kinds.contains(kind)), "{kinds:?}");
 }

@@ -10,8 +10,10 @@ use crate::dynamics::swing_truth;
 use warpbeam::element::ELEMENTS;
 use warpbeam::method::METHODS;
 use warpbeam::scene::Scene;
-use warpbeam::study::motion::{Ending, EnergyBehaviour, MotionMeasurement, MotionReference};
-use warpbeam::study::{Demand, Extent, Measurement, MotionStudy, Study, StudyError, Tuning};
+use warpbeam::study::motion::MotionReference;
+use warpbeam::study::{
+    Demand, Ending, EnergyBehaviour, Extent, Measurement, Study, StudyError, StudyReference, Tuning,
+};
 use warpbeam::{ElementKind, IntegratorKind, MethodKind, Simulation};
 
 fn go_on(_: warpbeam::Progress<'_>) -> ControlFlow<()> {
@@ -24,18 +26,16 @@ fn single_rows_of_bending_elements_are_studied() {
     for id in ["cantilever", "elastica"] {
         let study = Study::new(&scene(id), Extent::Quick, &go_on).unwrap();
         let fewest = |element| {
-            let close = study.measurements.iter().filter(|m| m.setting.element == element && m.error.bound() <= 1.0);
+            let close = study.measurements.iter().filter(|m| m.setting.element == element && m.error_percent() <= 1.0);
             close.min_by_key(|m| m.dofs).unwrap()
         };
         let [q4, t6] = [ElementKind::Q4, ElementKind::T6].map(fewest);
         assert!(2 * q4.dofs <= t6.dofs, "{id}: {} unknowns {}, {} {}", q4.dofs, q4.setting, t6.dofs, t6.setting);
         for method in METHODS.iter().map(|m| m.kind) {
             for cells in [5, 10, 20, 40].map(|along| [along, 1]) {
-                let measured = |m: &Measurement| {
-                    let s = m.setting;
-                    (s.element, s.cells, s.method) == (ElementKind::Q4, Some(cells), method)
-                };
-                assert!(study.measurements.iter().any(measured), "{id}: {} {cells:?}", method.id());
+                let own = (ElementKind::Q4, Some(cells), method);
+                let mut settings = study.measurements.iter().map(|m| m.setting);
+                assert!(settings.any(|s| (s.element, s.cells, s.method) == own), "{id}: {} {cells:?}", method.id());
             }
         }
     }
@@ -62,31 +62,30 @@ fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
     assert_eq!(elements[0], [ElementKind::T6]);
     let all: Vec<ElementKind> = scene("cantilever").elements().collect();
     assert_eq!(elements.last(), Some(&all));
-    let unknowns = |element| {
-        let own = study.measurements.iter().filter(|m| m.setting.element == element);
-        own.map(|m| (m.setting.cells.unwrap()[0], m.setting.cells.unwrap()[1])).collect::<Vec<_>>()
-    };
+    let settings = || study.measurements.iter().map(|m| m.setting);
+    let unknowns = |element| settings().filter(move |s| s.element == element).map(|s| s.cells);
     assert!(all.into_iter().all(|element| unknowns(element).is_sorted()), "coarse to fine");
 }
 
 /// Errors follow the orders of the integrators, energies their promises, and no setting on the front is dominated.
 #[test]
 fn a_swing_is_studied() {
-    let study = MotionStudy::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &go_on).unwrap();
-    let own = study.reference.error_percent;
+    let study = Study::new(&scene_with("swing", &["dynamics.duration=1"]), Extent::Quick, &go_on).unwrap();
+    let own = study.own_error_percent;
     assert!(own > 0.0 && own < 0.5, "{own}");
-    assert!((study.duration - 1.0).abs() < 1e-9 && study.scene_duration == 1.0);
-    let at = |kind, rate: f64, iterations| -> &MotionMeasurement {
+    let StudyReference::Motion(reference) = &study.reference else { panic!("a motion") };
+    assert!((reference.duration() - 1.0).abs() < 1e-9 && reference.scene_duration == 1.0);
+    let at = |kind, rate: f64, iterations| -> &Measurement {
         let found = study.measurements.iter().find(|m| {
             let s = &m.setting;
             (s.element, s.cells, s.method) == (ElementKind::T6, Some([20, 1]), MethodKind::Newton)
-                && (s.integrator, s.iterations) == (kind, iterations)
-                && (s.time_step * rate - 1.0).abs() < 1e-9
+                && s.iterations == iterations
+                && s.stepping.is_some_and(|t| t.integrator == kind && (t.time_step * rate - 1.0).abs() < 1e-9)
         });
         found.unwrap()
     };
     let steps = |kind, iterations| {
-        [60.0, 120.0, 240.0].map(|rate| at(kind, rate, iterations)).map(|m| m.error.unwrap().integration)
+        [60.0, 120.0, 240.0].map(|rate| at(kind, rate, iterations)).map(|m| m.error.unwrap().iteration)
     };
     for (kind, iterations, overall, last) in [
         (IntegratorKind::TrBdf2, 1, 8.0..11.0, 3.0..4.5),
@@ -100,39 +99,41 @@ fn a_swing_is_studied() {
     }
     for m in &study.measurements {
         let setting = m.setting;
-        assert_eq!(m.ending, Ending::Finished, "{setting}");
-        let e = m.error.unwrap();
-        let parts = [e.total, e.rms, e.discretization, e.integration, e.model, m.drift_percent, m.milliseconds];
-        assert!(parts.iter().all(|v| v.is_finite()) && m.milliseconds > 0.0 && m.counts.halvings == 0, "{m:?}");
+        let motion = m.motion.unwrap();
+        assert!(motion.ending == Ending::Finished && m.converged, "{setting}");
+        let (e, rms, drift) = (m.error.unwrap(), motion.rms_percent, motion.drift_percent);
+        let parts = [e.total, rms, e.discretization, e.iteration, e.model, drift, m.milliseconds];
+        assert!(parts.iter().all(|v| v.is_finite()) && m.milliseconds > 0.0 && motion.counts.halvings == 0, "{m:?}");
         // The parts are distances along a chain from the path to the reference's path.
-        assert!(e.total <= e.bound() * (1.0 + 1e-9) && e.rms <= e.total, "{setting}: {e:?}");
+        assert!(e.total <= e.bound() * (1.0 + 1e-9) && rms <= e.total, "{setting}: {e:?}");
         assert_eq!(e.model == 0.0, setting.method != MethodKind::Linear, "{setting}");
-        match setting.integrator {
-            IntegratorKind::EnergyMomentum => assert!(m.drift_percent.abs() < 1e-3, "{setting}: {}", m.drift_percent),
-            IntegratorKind::ImplicitEuler => assert_eq!(m.energy(), EnergyBehaviour::Lost, "{setting}"),
+        match setting.stepping.unwrap().integrator {
+            IntegratorKind::EnergyMomentum => assert!(drift.abs() < 1e-3, "{setting}: {drift}"),
+            IntegratorKind::ImplicitEuler => assert_eq!(motion.energy(), EnergyBehaviour::Lost, "{setting}"),
             _ => {}
         }
     }
     // Explicit steps are 0.9 of the critical step, rounded to integer parts of 1/60 s, so that they
     // end with those of the others.
-    for m in study.measurements.iter().filter(|m| m.setting.integrator == IntegratorKind::SymplecticEuler) {
-        let parts = 1.0 / 60.0 / m.setting.time_step;
-        assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{}", m.setting);
+    let stepping = study.measurements.iter().filter_map(|m| m.setting.stepping);
+    for explicit in stepping.filter(|s| s.integrator == IntegratorKind::SymplecticEuler) {
+        let parts = 1.0 / 60.0 / explicit.time_step;
+        assert!(parts > 2.0 && (parts - parts.round()).abs() < 1e-6, "{explicit:?}");
     }
     // No setting is better than the front, every other setting is worse, and the front is sorted by time and by error.
-    let pair = |m: &MotionMeasurement| (m.milliseconds, m.error.unwrap().bound().max(own));
+    let pair = |m: &Measurement| (m.milliseconds, m.error.unwrap().bound().max(own));
     for m in &study.measurements {
         let (time, error) = pair(m);
         let beaten =
             study.measurements.iter().map(pair).any(|(t, e)| t <= time && e <= error && (t, e) != (time, error));
         assert_eq!(m.pareto, !beaten, "{}", m.setting);
     }
-    let front: Vec<_> = study.ranking().front().into_iter().map(pair).collect();
+    let front: Vec<_> = study.front().into_iter().map(pair).collect();
     assert!(front.len() > 2 && front.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 > w[1].1), "{front:?}");
     // The error of the chosen setting and the reference's own error are together within the requested error.
-    let chosen = study.ranking().within(10.0)[0];
+    let chosen = study.within(10.0)[0];
     assert!(chosen.error.unwrap().bound() + own <= 10.0);
-    assert!(study.ranking().within(0.5 * own).is_empty());
+    assert!(study.within(0.5 * own).is_empty());
 }
 
 /// A study that is cancelled during timed or untimed runs keeps its measurements too.
@@ -155,8 +156,8 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
             }
             if is_enough(meshes.len(), *timed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let study = MotionStudy::new(&scene, Extent::Quick, &observe).unwrap();
-        assert!(!study.ranking().front().is_empty() && !study.summary().contains("NaN"));
+        let study = Study::new(&scene, Extent::Quick, &observe).unwrap();
+        assert!(!study.front().is_empty() && !study.summary().contains("NaN"));
         let mut meshes: Vec<_> = study.measurements.iter().map(|m| (m.setting.element, m.setting.cells)).collect();
         meshes.dedup();
         (study.is_partial, meshes.len(), study.measurements.len())
@@ -195,12 +196,12 @@ fn the_reference_equals_an_independent_trajectory() {
 
 #[test]
 fn scenes_that_cannot_be_studied_are_refused() {
-    let refused = |scene: &Scene| MotionStudy::new(scene, Extent::Quick, &go_on).unwrap_err();
-    assert_eq!(refused(&scene("cantilever")), StudyError::AtRest);
+    let refused = |scene: &Scene| Study::new(scene, Extent::Quick, &go_on).unwrap_err();
+    let at_rest = MotionReference::new(&scene("cantilever"), Extent::Quick, &go_on);
+    assert_eq!(at_rest.unwrap_err(), StudyError::AtRest);
     assert_eq!(refused(&scene_with("swing", &["probe=[]"])), StudyError::NoProbe);
     assert_eq!(refused(&scene_with("swing", &["load=[]", "beam.cells=[2,1]"])), StudyError::NoProbe);
     let moving = scene("swing");
-    assert_eq!(Study::new(&moving, Extent::Quick, &go_on), Err(StudyError::InMotion));
     assert_eq!(Tuning::of(&moving, Demand::default(), &go_on).unwrap_err(), StudyError::InMotion);
     for after in [0, 3] {
         let heard = AtomicU32::new(0);
@@ -209,7 +210,7 @@ fn scenes_that_cannot_be_studied_are_refused() {
             let is_enough = heard.fetch_add(1, Ordering::Relaxed) >= after;
             if is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        assert_eq!(MotionStudy::new(&moving, Extent::Quick, &observe).unwrap_err(), StudyError::Cancelled);
+        assert_eq!(Study::new(&moving, Extent::Quick, &observe).unwrap_err(), StudyError::Cancelled);
     }
 }
 
@@ -239,7 +240,7 @@ fn a_cancelled_tuning_chooses_from_what_was_measured() {
     let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
     let demand = Demand { max_error_percent: Some(own * 1.001), max_time_ms: None };
     let tuning = Tuning::of(&scene, demand, &observe).unwrap();
-    assert!(tuning.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
+    assert!(tuning.study.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
     assert!(tuning.study.measurements.len() < 60);
 }
 
@@ -296,17 +297,18 @@ fn slow_motions_are_studied_over_their_periods() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };
-        let partial = &mut |study: &MotionStudy| {
+        let partial = &mut |study: &Study| {
             let linear = study.measurements.iter().filter(|m| m.setting.method == MethodKind::Linear);
             let model = linear.filter_map(|m| Some(m.error?.model)).fold(0.0, f64::max);
             is_seen.store(model > 1.0, Ordering::Relaxed);
         };
-        let study = MotionStudy::with_partial(&slow, Extent::Quick, &observe, partial).unwrap();
-        assert!(duration.contains(&study.duration), "{name}: {} s", study.duration);
+        let study = Study::with_partial(&slow, Extent::Quick, &observe, partial).unwrap();
+        let StudyReference::Motion(reference) = &study.reference else { panic!("a motion") };
+        assert!(duration.contains(&reference.duration()), "{name}: {} s", reference.duration());
         assert!(is_seen.into_inner(), "{name}: linear theory is not wrong");
         // The body moves through the whole of its vibration.
-        let highest = study.reference.path.iter().map(|u| u.y).fold(f64::NEG_INFINITY, f64::max);
-        let lowest = study.reference.path.iter().map(|u| u.y).fold(f64::INFINITY, f64::min);
+        let highest = reference.path.iter().map(|u| u.y).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = reference.path.iter().map(|u| u.y).fold(f64::INFINITY, f64::min);
         assert!(highest > 0.5 * lowest && lowest < 0.0, "{name}: from {lowest} to {highest} m");
     }
     for (id, set) in [("chime", "dynamics.duration=0.01"), ("spin", "dynamics.duration=0.2")] {
@@ -321,27 +323,27 @@ fn slow_motions_are_studied_over_their_periods() {
 #[test]
 fn bounds_of_a_study_include_the_error_of_the_reference() {
     let study = Study::new(&scene("shear"), Extent::Quick, &go_on).unwrap();
-    let own = study.against.own_error_percent;
+    let own = study.own_error_percent;
     assert!(own > 0.0);
     let (csv, summary) = (study.table(), study.summary());
     let (header, rows) = table(&csv);
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
-    let undecided = study.ranking().undecided();
+    let undecided = study.undecided();
     for ((row, m), undecided) in rows.iter().zip(&study.measurements).zip(&undecided) {
         let at_most: f64 = row[column("at_most_percent")].parse().unwrap();
-        assert!((at_most - m.error.bound() - own).abs() < 1e-9 * at_most, "{row:?}");
-        assert!((study.ranking().error_bound(m) - at_most).abs() < 1e-9 * at_most);
+        assert!((at_most - m.error_percent() - own).abs() < 1e-9 * at_most, "{row:?}");
+        assert!((study.error_bound(m) - at_most).abs() < 1e-9 * at_most);
         assert_eq!(row[column("undecided")], undecided.to_string());
-        let faster = study.measurements.iter().filter(|o| *o != m && o.milliseconds() <= m.milliseconds());
-        let best = faster.map(|o| o.error.bound()).fold(f64::INFINITY, f64::min);
-        assert_eq!(*undecided, (best - m.error.bound()).abs() < own, "{}", m.setting);
+        let faster = study.measurements.iter().filter(|o| *o != m && o.milliseconds <= m.milliseconds);
+        let best = faster.map(|o| o.error_percent()).fold(f64::INFINITY, f64::min);
+        assert_eq!(*undecided, (best - m.error_percent()).abs() < own, "{}", m.setting);
     }
     assert!(undecided.contains(&true) && undecided.contains(&false));
     let front = summary.lines().skip_while(|line| !line.contains("at most, %")).skip(1);
     let mut marked = false;
-    for (line, m) in front.zip(study.ranking().front()) {
+    for (line, m) in front.zip(study.front()) {
         let stated: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
-        assert!(stated >= own && (stated - study.ranking().error_bound(m)).abs() < 1e-4, "{line}");
+        assert!(stated >= own && (stated - study.error_bound(m)).abs() < 1e-4, "{line}");
         let index = study.measurements.iter().position(|o| o == m).unwrap();
         assert_eq!(line.ends_with("(rank undecided)"), undecided[index], "{line}");
         marked |= undecided[index];
@@ -352,14 +354,14 @@ fn bounds_of_a_study_include_the_error_of_the_reference() {
     assert_eq!(summary.contains("rank undecided: a faster setting"), marked, "{summary}");
     let demand = Demand { max_error_percent: Some(5.0), max_time_ms: None };
     let tuning = Tuning::of(&scene("shear"), demand, &go_on).unwrap();
-    let bound = format!("error at most {:.4} %", tuning.study.ranking().error_bound(&tuning.chosen));
+    let bound = format!("error at most {:.4} %", tuning.study.error_bound(&tuning.chosen));
     assert!(tuning.to_string().contains(&bound), "{tuning}");
-    let moving = MotionStudy::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &go_on).unwrap();
-    let own = moving.reference.error_percent;
-    for m in moving.ranking().front() {
-        let bound = moving.ranking().error_bound(m);
+    let moving = Study::new(&scene_with("swing", &["dynamics.duration=.1"]), Extent::Quick, &go_on).unwrap();
+    let own = moving.own_error_percent;
+    for m in moving.front() {
+        let bound = moving.error_bound(m);
         assert!((bound - m.error.unwrap().bound() - own).abs() < 1e-12);
-        assert!([bound, bound.next_down()].map(|most| moving.ranking().within(most).contains(&m)) == [true, false]);
+        assert!([bound, bound.next_down()].map(|most| moving.within(most).contains(&m)) == [true, false]);
         assert!(moving.summary().contains(&format!(" {bound:.4} ")), "{}", moving.summary());
     }
 }

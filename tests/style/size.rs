@@ -11,17 +11,17 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_500),
-    ("study", &["src/study"], 7_871),
+    ("study", &["src/study"], 7_760),
     ("model", &["src/model", "src/scene"], 3_586),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
     ("simulation", &["src/simulation"], 2_848),
     ("assembly", &["src/assembly"], 3_040),
-    ("cli", &["src/cli"], 2_810),
+    ("cli", &["src/cli"], 2_800),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_843),
-    ("plot", &["src/plot"], 894),
+    ("plot", &["src/plot"], 880),
     ("the rest of src", &["src"], 5_222),
     ("tests", &["tests"], 21_498),
 ];

@@ -293,7 +293,7 @@ fn settings_have_the_errors_of_study() {
     assert_eq!(written.len(), study.measurements.len());
     let texts = written.iter().map(|(row, m)| {
         assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));
-        let time = engineering(two_digits(1e-3 * m.milliseconds()), "s");
+        let time = engineering(two_digits(1e-3 * m.milliseconds), "s");
         let bound: f64 = row[column("at_most_percent")].parse().unwrap();
         let at_most = format!("\u{2264}{}", bound_percent(bound));
         (format!("{time:>7}  {at_most:>8}  {}", m.setting), bound)

@@ -4,7 +4,6 @@ use crate::common::lab::*;
 use crate::common::{ids_of, scene_ids, solve_error, solve_u};
 use crate::ui_interaction::is_solved;
 use warpbeam::scene::{Analysis, ElementKind, IntegratorKind, Load, Plane};
-use warpbeam::study::motion::{MotionMeasurement, MotionSetting};
 use warpbeam::study::{Demand, Measurement, Reference, Setting};
 use warpbeam::{Field, format::percent};
 
@@ -566,7 +565,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     ui.step();
     assert_ne!(ui.force(), before);
     assert!(ui.state().study().1, "the study stopped");
-    wait(&mut ui, "six-node meshes", |lab| measurements(lab).iter().any(|m| m.error.bound() < 5.0) || !lab.study().1);
+    wait(&mut ui, "six-node meshes", |lab| measurements(lab).iter().any(|m| m.error_percent() < 5.0) || !lab.study().1);
     ui.get_by_label("Cancel").click();
     wait(&mut ui, "the cancelled study to end", |lab| !lab.study().1);
     ui.run();
@@ -589,7 +588,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     assert_eq!(ui.force(), before);
     assert!(!ui.says(CHANGED) && is_offered_in_compare(&mut ui));
 
-    let meeting = study.ranking().meeting(Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) });
+    let meeting = study.meeting(Demand { max_error_percent: Some(5.0), max_time_ms: Some(1e5) });
     assert!(!meeting.is_empty() && meeting.len() < study.measurements.len());
     ui.expect(&[&format!("{} of {} settings meet both", meeting.len(), study.measurements.len())]);
     ui.click("Apply the fastest");
@@ -597,11 +596,11 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     let converging: Vec<_> = study.measurements.iter().filter(|m| m.converged).map(of).collect();
     let fastest = meeting.iter().find(|m| converging.contains(&of(m))).unwrap();
     let (best, scene) = (fastest.setting, ui.scene());
-    assert_eq!(Setting::of(scene, best.iterations), best);
+    assert_eq!(Setting { iterations: best.iterations, ..Setting::of(scene) }, best);
     // The scene stops after as many iterations as the measurement, and so does a copy of it.
     assert_eq!(scene.solver.accept_after, if fastest.converged { 0 } else { best.iterations });
     assert!(ui.simulation().iterations() <= best.iterations, "{best}: {} iterations", ui.simulation().iterations());
-    assert!(meeting.iter().all(|m| m.time.total() >= meeting[0].time.total()));
+    assert!(meeting.iter().all(|m| m.milliseconds >= meeting[0].milliseconds));
 
     // The list scrolls to a setting that is applied elsewhere.
     ui.type_into("Error ≤", "1000");
@@ -778,22 +777,22 @@ fn a_motions_settings_are_measured_and_applied() {
     ui.run_steps(4);
     ui.click_for("Measure", 2);
     wait(&mut ui, "the study of the motion", |lab| !lab.study().1);
-    let study = ui.state().motion_study().unwrap().clone();
+    let study = ui.state().study().0.unwrap().clone();
     assert!(!study.is_partial && study.measurements.len() > 20);
     ui.type_all(&[("Error ≤", "20"), ("Time ≤", "100")]);
     ui.run_steps(4);
-    let is_met = |m: &&MotionMeasurement| study.ranking().error_bound(m) <= 20.0 && m.milliseconds / 60.0 <= 100.0;
+    let is_met = |m: &&Measurement| study.error_bound(m) <= 20.0 && m.milliseconds / 60.0 <= 100.0;
     let meeting: Vec<_> = study.measurements.iter().filter(is_met).collect();
     let all = study.measurements.iter().filter(|m| m.error.is_some()).count();
     ui.get_by_label(&format!("{} of {all} settings meet both", meeting.len()));
     let best = meeting.iter().min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds)).unwrap().setting;
     ui.click_for("Apply the fastest", 1);
-    assert_eq!((MotionSetting::of(ui.scene()), ui.scene().analysis), (best, Analysis::Dynamic));
+    assert_eq!((Setting::of(ui.scene()), ui.scene().analysis), (best, Analysis::Dynamic));
     // A cancelled study keeps the measurements that it has, or none.
     ui.click_for("Measure", 2);
     ui.click_for("Cancel", 1);
     wait(&mut ui, "the end of a cancelled study", |lab| !lab.study().1);
-    assert!(ui.state().motion_study().is_none_or(|study| study.is_partial));
+    assert!(ui.state().study().0.is_none_or(|study| study.is_partial));
 }
 
 /// The panes of integrators have one clock, and each its energy drift. With another element all motions restart.

@@ -70,7 +70,7 @@ fn the_sentences_of_the_library_are_translated() {
     texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| both(&units::parse(text, "N").unwrap_err())));
     for id in ["article", "cantilever", "cook", "bracket"] {
         texts.push(both(&Reference::of(&open(id)).unwrap()));
-        texts.push(both(&Setting::of(&open(id), 4)));
+        texts.push(both(&Setting { iterations: 4, ..Setting::of(&open(id)) }));
     }
     let names = RefCell::new(Vec::new());
     let render = |name: &Sentence| {

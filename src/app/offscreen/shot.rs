@@ -114,8 +114,8 @@ pub fn shot(
     }
     let mut study_error = None;
     if options.study {
-        match Study::until_cancelled(lab.scene(), Extent::Full, observe) {
-            Ok((study, _)) => lab.show_study(study),
+        match Study::new(lab.scene(), Extent::Full, observe) {
+            Ok(study) => lab.show_study(study),
             Err(error) => study_error = Some(error),
         }
     }

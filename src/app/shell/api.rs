@@ -19,7 +19,7 @@ use crate::render::{Camera, Frame, View};
 use crate::scene::{IntegratorKind, Scene, Source};
 use crate::simulation::{Field, Simulation, SimulationError};
 use crate::state::State;
-use crate::study::{MotionStudy, Study};
+use crate::study::Study;
 
 use crate::app::shell::lab::{Desk, Lab};
 
@@ -110,12 +110,6 @@ impl Lab {
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
         (self.desk.budget.study(), self.desk.budget.runs())
-    }
-
-    /// Returns the study of the scene's motion.
-    #[must_use]
-    pub fn motion_study(&self) -> Option<&MotionStudy> {
-        self.desk.budget.motion_study()
     }
 
     /// Sets the time of iterations after which a displayed frame makes no more.

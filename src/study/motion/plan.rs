@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use super::MotionSetting;
 use crate::assembly::{Mass, Problem};
 use crate::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
 use crate::method::METHODS;
@@ -11,6 +10,7 @@ use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::simulation::SimulationError;
 use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
+use crate::study::setting::{Setting, Stepping};
 
 /// Size of a study.
 pub(super) struct Plan {
@@ -178,7 +178,7 @@ pub(super) struct Job {
 
 impl Job {
     /// Returns the setting on a mesh with a known critical step, and its number of steps between samples.
-    pub fn setting(self, mesh: &MeshPlan, critical: Option<f64>, samples: Samples) -> (MotionSetting, u32) {
+    pub fn setting(self, mesh: &MeshPlan, critical: Option<f64>, samples: Samples) -> (Setting, u32) {
         let Self { integrator, method, iterations, .. } = self;
         let MeshPlan { element, cells, .. } = *mesh;
         let stable = || {
@@ -187,7 +187,8 @@ impl Job {
         };
         let steps = self.steps.unwrap_or_else(stable);
         let time_step = samples.interval / f64::from(steps);
-        (MotionSetting { element, cells, integrator: integrator.kind, method, time_step, iterations }, steps)
+        let stepping = Some(Stepping { integrator: integrator.kind, time_step });
+        (Setting { element, cells, method, iterations, stepping }, steps)
     }
 }
 

@@ -5,19 +5,18 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::plan::{Plan, Samples, cells, nodes_of_shape, slenderness};
-use super::{MotionSetting, path, step_text};
 use crate::assembly::System;
 use crate::format::percent;
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
-use crate::sentence::sentence;
+use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::fine::finest_element;
 use crate::study::parallel;
-use crate::study::progress::{Extent, StudyError, all_done};
-use crate::study::reference::system_of;
-use crate::study::trade::mesh_text;
+use crate::study::progress::{Extent, StudyError, all_done, check};
+use crate::study::reference::{first_probe, system_of};
+use crate::study::setting::{Setting, Stepping, mesh_text, step_text};
 
 /// Reference path of the first probe.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -39,20 +38,25 @@ pub struct MotionReference {
     pub element: ElementKind,
     /// Cells of the mesh; `None` for the refined mesh of a file.
     pub cells: Option<[u32; 2]>,
+    /// Duration of the scene, s.
+    pub scene_duration: f64,
+    /// Cells of the studied mesh that is closest to the scene's own; integrators are compared on it.
+    pub own_mesh: Option<[u32; 2]>,
 }
 
-impl std::fmt::Display for MotionReference {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mesh = match self.cells {
-            Some(_) => mesh_text(self.element, self.cells),
-            None => format!("{} on the refined mesh", self.element.id()).into(),
-        };
-        write!(
-            f,
-            "{} with steps of {} on {mesh} (its own error about {})",
-            IntegratorKind::EnergyMomentum.id(),
-            step_text(self.time_step),
-            percent(self.error_percent)
+displayed!(MotionReference);
+
+impl From<&MotionReference> for Sentence {
+    fn from(reference: &MotionReference) -> Self {
+        sentence!(
+            "%{integrator} with steps of %{step} on %{mesh} (its own error about %{own})",
+            integrator = IntegratorKind::EnergyMomentum.id(),
+            step = step_text(reference.time_step),
+            mesh = match reference.cells {
+                Some(_) => mesh_text(reference.element, reference.cells),
+                None => sentence!("%{element} on the refined mesh", element = reference.element.id()),
+            },
+            own = percent(reference.error_percent)
         )
     }
 }
@@ -71,8 +75,14 @@ impl MotionReference {
         Self::of(scene, plan, Samples::of(scene, plan)?, observe)
     }
 
+    /// Returns the studied time, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.interval * self.path.len() as f64
+    }
+
     /// Refuses a scene without a motion.
-    pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
+    fn check(scene: &Scene) -> Result<(), StudyError> {
         scene.validate().map_err(SimulationError::from)?;
         if scene.analysis != Analysis::Dynamic {
             return Err(StudyError::AtRest);
@@ -110,6 +120,8 @@ impl MotionReference {
             time_step: samples.interval / f64::from(steps),
             element: fine.scene.element(),
             cells: fine.cells,
+            scene_duration: scene.dynamics.duration,
+            own_mesh: cells(scene, finest_element(scene), 1.0),
         };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
@@ -184,14 +196,8 @@ fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> 
     let element = finest_element(scene);
     let fine = reference_cells(scene, element, plan.reference_mesh);
     let with = |cells: Option<[u32; 2]>| {
-        let setting = MotionSetting {
-            element,
-            cells,
-            integrator: IntegratorKind::EnergyMomentum,
-            method: MethodKind::Newton,
-            time_step: scene.dynamics.time_step,
-            iterations: 0,
-        };
+        let stepping = Stepping { integrator: IntegratorKind::EnergyMomentum, time_step: scene.dynamics.time_step };
+        let setting = Setting { element, cells, method: MethodKind::Newton, iterations: 0, stepping: Some(stepping) };
         let scene = setting.apply(scene);
         Ok::<_, StudyError>(ReferenceMesh { system: system_of(&scene)?, scene, cells: setting.cells })
     };
@@ -206,4 +212,35 @@ fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> 
         fine.system = Arc::new(refined);
     }
     Ok([coarse, fine])
+}
+
+/// Computes up to `steps` steps, until the motion stops.
+pub(super) fn run(simulation: &mut Simulation, steps: u32) {
+    for _ in 0..steps {
+        if matches!(simulation.step(), Status::Stopped(_)) {
+            break;
+        }
+    }
+}
+
+/// Returns the displacements of the first probe at the samples, m, from the start of a motion until it stops. `each`
+/// receives the motion at every sample.
+pub(super) fn path(
+    simulation: &mut Simulation,
+    samples: Samples,
+    steps: u32,
+    observe: Observer<'_>,
+    each: &mut dyn FnMut(&Simulation),
+) -> Result<Vec<Vector2<f64>>, StudyError> {
+    let mut path = Vec::with_capacity(samples.count as usize);
+    for _ in 0..samples.count {
+        check(observe(Progress::at(0.0)))?;
+        run(simulation, steps);
+        if matches!(simulation.status(), Status::Stopped(_)) {
+            break;
+        }
+        path.push(first_probe(simulation)?);
+        each(simulation);
+    }
+    Ok(path)
 }

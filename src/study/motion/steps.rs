@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::path;
 use super::plan::Samples;
-use super::reference::{MotionReference, fine_path};
+use super::reference::{MotionReference, fine_path, path};
 use crate::assembly::System;
 use crate::progress::Observer;
 use crate::scene::{IntegratorKind, MethodKind, Scene};
@@ -35,7 +34,7 @@ pub(in crate::study) struct StepStudy {
 pub(in crate::study) struct StepResult {
     /// Displacement of the first probe at the end, m.
     pub displacement: Vector2<f64>,
-    /// Sum of the errors of the mesh and of the time steps, as in [`PathError::bound`](super::PathError::bound), percent
+    /// Sum of the errors of the mesh and of the time steps, as in [`ErrorSplit::bound`](crate::study::ErrorSplit::bound), percent
     /// of the size of the reference's path, the reference's own error included.
     pub error_percent: f64,
     /// Largest strain at the samples.

@@ -13,7 +13,9 @@ use egui_plot::{
 
 use crate::app::action::Action;
 use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
-use crate::app::modes::budget::measured::{Choice, Group, Measured};
+use crate::app::modes::budget::measured::{
+    Group, choices, drawn_error, fastest, frame_ms, group, group_color, group_name, meeting, nearest, parts,
+};
 use crate::app::modes::budget::study_task::{BackgroundStudy, StudyState};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
@@ -25,7 +27,7 @@ use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::Sentence;
-use crate::study::{Demand, Extent, MotionStudy, Setting, Study};
+use crate::study::{Demand, Extent, Measurement, Setting, Study, StudyReference};
 
 /// State of Budget: the study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug, Default)]
@@ -33,9 +35,7 @@ pub(crate) struct Budget {
     background: Option<BackgroundStudy>,
     /// Study that starts once the one in progress has ended: two at a time would slow each other down.
     next: Option<(Scene, Extent)>,
-    /// `true` if the last study was cancelled.
-    is_partial: bool,
-    study: Option<Measured>,
+    study: Option<Study>,
     /// Measured scene.
     of: Option<Scene>,
     /// Budget of a scene that was open before, with its study.
@@ -75,7 +75,7 @@ impl Budget {
             self.next = Some((scene.clone(), extent));
             return;
         }
-        let is_setting = |study: &Measured| study.choices().iter().any(|choice| choice.is_applied_to(scene));
+        let is_setting = |study: &Study| study.measurements.iter().any(|m| m.is_applied_to(scene));
         let is_measured = self.is_of(scene) && self.study.as_ref().is_some_and(is_setting);
         let base = self.of.take().filter(|_| is_measured).unwrap_or_else(|| scene.clone());
         *self = Self { of: Some(base.clone()), limits: self.limits, ..Self::default() };
@@ -87,10 +87,10 @@ impl Budget {
 
     /// Shows the last study of another scene than before, if it is of that scene; it is kept until there is another one.
     pub(crate) fn open(&mut self, scene: &Scene) {
-        let Self { limits, is_partial, .. } = *self;
+        let limits = self.limits;
         let kept = if self.study.is_some() && !self.runs() {
             let (study, of) = (self.study.take(), self.of.take());
-            Some(Box::new(Self { study, of, is_partial, ..Self::default() }))
+            Some(Box::new(Self { study, of, ..Self::default() }))
         } else {
             self.kept.take()
         };
@@ -105,7 +105,7 @@ impl Budget {
     pub(crate) fn cancel(&mut self) {
         if let Some(background) = &self.background {
             background.cancel();
-            (self.is_partial, self.next) = (true, None);
+            self.next = None;
         }
     }
 
@@ -114,29 +114,15 @@ impl Budget {
         self.background.is_some()
     }
 
-    /// Returns the study of a body at rest.
     pub(crate) fn study(&self) -> Option<&Study> {
-        match &self.study {
-            Some(Measured::Rest(study)) => Some(study),
-            _ => None,
-        }
-    }
-
-    /// Returns the study of a motion.
-    pub(crate) fn motion_study(&self) -> Option<&MotionStudy> {
-        match &self.study {
-            Some(Measured::Motion(study)) => Some(study),
-            _ => None,
-        }
+        self.study.as_ref()
     }
 
     /// Returns the fastest setting that was measured of a scene at rest, meets the limits, and whose iteration converges.
     pub(crate) fn chosen(&self, scene: &Scene) -> Option<Setting> {
         let study = self.study.as_ref().filter(|_| self.is_of(scene))?;
-        match study.fastest(&study.meeting(self.limits.into()))? {
-            Choice::Rest(m) => Some(m.setting),
-            Choice::Motion(_) => None,
-        }
+        let setting = fastest(study, &meeting(study, self.limits.into()))?.setting;
+        setting.stepping.is_none().then_some(setting)
     }
 
     /// Returns `true` if the study is of a scene, whatever its settings.
@@ -146,12 +132,7 @@ impl Budget {
 
     /// Sets a study made elsewhere.
     pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
-        *self = Self {
-            of: Some(scene.clone()),
-            study: Some(Measured::Rest(study)),
-            limits: self.limits,
-            ..Self::default()
-        };
+        *self = Self { of: Some(scene.clone()), study: Some(study), limits: self.limits, ..Self::default() };
     }
 
     /// Polls the study in progress.
@@ -175,17 +156,16 @@ impl Budget {
         let demand = Demand::from(self.limits);
         let moves = scene.analysis == Analysis::Dynamic;
         let study = self.study.as_ref();
-        let meeting = study.map(|study| study.meeting(demand)).unwrap_or_default();
+        let meeting = study.map(|study| meeting(study, demand)).unwrap_or_default();
         let budget = BudgetView {
             scene,
             study,
-            choices: study.map(Measured::choices).unwrap_or_default(),
+            choices: study.map(choices).unwrap_or_default(),
             demand,
-            best: study.and_then(|study| study.fastest(&meeting)),
-            nearest: study.filter(|_| meeting.is_empty()).map(|study| study.nearest(demand)).unwrap_or_default(),
+            best: study.and_then(|study| fastest(study, &meeting)),
+            nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, demand)).unwrap_or_default(),
             meeting,
             current: self.is_of(scene),
-            is_partial: self.is_partial,
             progress: self.background.as_ref().map(BackgroundStudy::progress),
             error: self.error.as_ref(),
         };
@@ -210,20 +190,18 @@ impl Budget {
 /// Content of the mode.
 struct BudgetView<'a> {
     scene: &'a Scene,
-    study: Option<&'a Measured>,
+    study: Option<&'a Study>,
     /// All measured settings.
-    choices: Vec<Choice>,
+    choices: Vec<Measurement>,
     demand: Demand,
     /// Settings that meet the demand, fastest first.
-    meeting: Vec<Choice>,
+    meeting: Vec<Measurement>,
     /// Fastest of them whose iteration converges when it runs on.
-    best: Option<Choice>,
-    /// Settings listed if none meets the demand: see [`Measured::nearest`].
-    nearest: Vec<Choice>,
+    best: Option<Measurement>,
+    /// Settings listed if none meets the demand: see [`nearest`].
+    nearest: Vec<Measurement>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
-    /// `true` if the study was cancelled.
-    is_partial: bool,
     /// Fraction done and current measurement, while a study is in progress.
     progress: Option<(f32, &'a Sentence)>,
     /// Reason for which there is no study.
@@ -269,15 +247,15 @@ fn settings(
                     let color = ui.visuals().warn_fg_color;
                     RichText::new(tr("The body or its load has changed since.")).small().color(color)
                 }
-                (None, Some(_)) if budget.is_partial => {
+                (None, Some(study)) if study.is_partial => {
                     let color = ui.visuals().warn_fg_color;
                     RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
                 }
                 (None, Some(study)) => {
-                    let against = fill!("Error against %{reference}.", reference = study.reference_text());
-                    let extent = match study {
-                        Measured::Rest(_) => None,
-                        Measured::Motion(_) => {
+                    let against = fill!("Error against %{reference}.", reference = said(&study.reference));
+                    let extent = match study.reference {
+                        StudyReference::Rest(_) => None,
+                        StudyReference::Motion(_) => {
                             Some(tr("Coarse meshes only: `warpbeam study` measures all.").to_owned())
                         }
                     };
@@ -323,11 +301,14 @@ fn settings(
                 (Some(_), false) => "The body or its load has changed since.",
             }));
         if let (true, Some(best)) = (apply.clicked(), budget.best) {
-            actions.push(best.action(budget.scene));
+            actions.push(apply_action(&best, budget.scene));
         }
         let measured = budget.choices.len();
-        let count = match budget.study.and_then(|study| study.too_coarse_for(budget.demand)) {
-            Some(own) => fill!("Not known: the reference's own error may be %{own}", own = percent(own)),
+        let count = match budget.study.filter(|study| !study.can_decide(budget.demand)) {
+            Some(study) => {
+                let own = percent(study.own_error_percent);
+                fill!("Not known: the reference's own error may be %{own}", own = own)
+            }
             // The row of Measure says that nothing has been measured.
             None if measured == 0 => String::new(),
             None if meeting.is_empty() => {
@@ -350,7 +331,7 @@ fn settings(
 /// a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let listed = if budget.meeting.is_empty() { &budget.nearest } else { &budget.meeting };
-    let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
+    let error = |m: &Measurement| budget.study.map_or(f64::INFINITY, |study| study.error_bound(m));
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]);
     let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
@@ -371,23 +352,29 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         for m in listed.get(rows).unwrap_or_default() {
             let mark = if budget.study.is_none_or(|study| study.converges(m)) { ' ' } else { '*' };
             let bound = format!("\u{2264}{}", bound_percent(error(m)));
-            let text = format!("{:>7}  {bound:>8}{mark} {}", milliseconds(m), m.text());
+            let name = said(&m.setting);
+            let text = format!("{:>7}  {bound:>8}{mark} {name}", milliseconds(m));
             let label = ui.add_enabled(
                 budget.current,
                 Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
                     .truncate(),
             );
-            let parts = budget.study.map(|study| study.parts(m)).unwrap_or_default();
-            if label.on_hover_text(format!("{}\n{parts}", m.text())).clicked() {
-                actions.push(m.action(budget.scene));
+            let parts = budget.study.map(|study| parts(study, m)).unwrap_or_default();
+            if label.on_hover_text(format!("{name}\n{parts}")).clicked() {
+                actions.push(apply_action(m, budget.scene));
             }
         }
     });
 }
 
+/// Returns the action that applies a measured setting to a scene.
+fn apply_action(m: &Measurement, scene: &Scene) -> Action {
+    Action::Apply(Box::new(m.apply(scene)))
+}
+
 /// Formats the time of a solve or of a frame.
-fn milliseconds(m: &Choice) -> String {
-    engineering(two_digits(1e-3 * m.milliseconds()), "s")
+fn milliseconds(m: &Measurement) -> String {
+    engineering(two_digits(1e-3 * frame_ms(m)), "s")
 }
 
 /// Returns a tick at every `step`th power of ten.
@@ -402,8 +389,8 @@ fn decade_text(mark: GridMark) -> String {
 }
 
 /// Returns the position of a setting in the plot: the logarithms of time and error.
-fn place(study: &Measured, m: &Choice) -> [f64; 2] {
-    [m.milliseconds().max(f64::MIN_POSITIVE).log10(), study.drawn_error(m).max(f64::MIN_POSITIVE).log10()]
+fn place(study: &Study, m: &Measurement) -> [f64; 2] {
+    [frame_ms(m).max(f64::MIN_POSITIVE).log10(), drawn_error(study, m).log10()]
 }
 
 /// Shows the key of colours and shapes above the plot, which has no room for a legend; that of the shapes where it is not
@@ -445,10 +432,10 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     const NEAR: f32 = 12.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
-    let error = |m: &Choice| budget.study.map_or(f64::INFINITY, |study| study.error_percent(m));
-    let place = |choice: &Choice| budget.study.map_or([0.0; 2], |study| place(study, choice));
+    let error = |m: &Measurement| budget.study.map_or(f64::INFINITY, |study| study.error_bound(m));
+    let place = |m: &Measurement| budget.study.map_or([0.0; 2], |study| place(study, m));
     let nearest = |x: f64, y: f64| {
-        let distance = |m: &Choice| (place(m)[0] - x).hypot(place(m)[1] - y);
+        let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
         budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
     let [x, y] = [(0, [-2.5, 2.5]), (1, [SMALLEST_ERROR.log10(), 2.0])].map(|(axis, usual)| {
@@ -481,7 +468,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", m.text(), milliseconds(m), bound_percent(error(m)))),
+                .map(|m| format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(error(m)))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
         .grid_color(palette.line)
@@ -496,25 +483,25 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         .allow_boxed_zoom(false)
         .show(ui, |plot| {
             let mut groups: Vec<Group> = Vec::new();
-            for group in budget.choices.iter().map(Choice::group) {
+            for group in budget.choices.iter().map(group) {
                 if !groups.contains(&group) {
                     groups.push(group);
                 }
             }
-            if let Some(own) = budget.study.map(Measured::own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
+            if let Some(own) = budget.study.map(|study| study.own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
                 own_error_zone(plot, &palette, x, [y[0], own.log10()]);
             }
             // Larger errors are drawn at the edge, as outlines.
-            let is_off = |m: &Choice| error(m) > LARGEST_ERROR;
-            for group in groups {
+            let is_off = |m: &Measurement| error(m) > LARGEST_ERROR;
+            for of in groups {
                 for off in [false, true] {
-                    let own = budget.choices.iter().filter(|m| m.group() == group && is_off(m) == off);
-                    let (shape, _) = marker(group.element());
-                    let points = Points::new(group.name(), own.map(place).collect::<Vec<_>>());
-                    plot.points(points.color(group.color(&palette)).shape(shape).radius(3.5).filled(!off));
+                    let own = budget.choices.iter().filter(|m| group(m) == of && is_off(m) == off);
+                    let (shape, _) = marker(of.2);
+                    let points = Points::new(group_name(of), own.map(place).collect::<Vec<_>>());
+                    plot.points(points.color(group_color(of, &palette)).shape(shape).radius(3.5).filled(!off));
                 }
             }
-            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(|m| place(&m)).collect();
+            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
             for piece in segments(&front) {
                 plot.line(Line::new(tr("Pareto front"), PlotPoints::from(piece)).color(text).width(1.5));
             }
@@ -526,7 +513,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             if let Some(error) = budget.demand.max_error_percent {
                 plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
             }
-            if let Some(own) = budget.choices.iter().find(|choice| choice.is_applied_to(budget.scene)) {
+            if let Some(own) = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)) {
                 let cross = Points::new(tr("current"), vec![place(own)]).shape(MarkerShape::Plus);
                 plot.points(cross.color(text).radius(9.0));
             }
@@ -542,10 +529,10 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         let is_near = shown.transform.position_from_point(&PlotPoint::new(x, y)).distance(pointer) <= NEAR;
         (is_near && budget.current).then_some(found)
     });
-    if let Some(choice) = under {
+    if let Some(m) = under {
         ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         if shown.response.clicked() {
-            actions.push(choice.action(budget.scene));
+            actions.push(apply_action(m, budget.scene));
         }
     }
 }
@@ -575,7 +562,7 @@ mod tests {
         let (ctx, mut budget) = (Context::default(), Budget::default());
         budget.measure(&first, Extent::Full);
         budget.cancel();
-        assert!(budget.runs() && budget.is_partial, "a cancelled study is awaited");
+        assert!(budget.runs(), "a cancelled study is awaited");
         budget.measure(&second, Extent::Quick);
         assert_eq!(budget.of.as_ref(), Some(&first));
         while budget.runs() {
@@ -584,13 +571,10 @@ mod tests {
             std::thread::yield_now();
         }
         assert_eq!(budget.of.as_ref(), Some(&second));
-        assert!(budget.error.is_none() && !budget.is_partial && budget.study().is_some());
+        assert!(budget.error.is_none() && budget.study().is_some_and(|study| !study.is_partial));
         // A measured setting that was applied is measured among the same settings again, another one around itself.
-        let choices = budget.study.as_ref().unwrap().choices();
-        let Some(Choice::Rest(applied)) = choices.iter().find(|choice| !choice.is_applied_to(&second)) else {
-            panic!("a body at rest")
-        };
-        let applied = applied.apply(&second);
+        let all = choices(budget.study.as_ref().unwrap());
+        let applied = all.iter().find(|m| !m.is_applied_to(&second)).unwrap().apply(&second);
         let mut other = second.clone();
         other.beam.as_mut().unwrap().cells = [17, 3];
         for (scene, base) in [(&other, &other), (&applied, &second)] {
@@ -602,13 +586,12 @@ mod tests {
         }
         // Where no setting meets a demand, the nearest ones each meet one of its halves.
         let measured = budget.study.unwrap();
-        let all = measured.choices();
-        let least = |of: &dyn Fn(&Choice) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
-        let [time, error] = [least(&Choice::milliseconds), least(&|m| measured.error_percent(m))].map(|v| 1.01 * v);
+        let least = |of: &dyn Fn(&Measurement) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+        let [time, error] = [least(&frame_ms), least(&|m| measured.error_bound(m))].map(|v| 1.01 * v);
         let demand = Demand { max_error_percent: Some(error), max_time_ms: Some(time) };
-        assert!(measured.meeting(demand).is_empty());
-        let nearest = measured.nearest(demand);
+        assert!(meeting(&measured, demand).is_empty());
+        let nearest = nearest(&measured, demand);
         assert_eq!(nearest.len(), 2);
-        assert!(nearest[0].milliseconds() <= time && measured.error_percent(&nearest[1]) <= error);
+        assert!(frame_ms(&nearest[0]) <= time && measured.error_bound(&nearest[1]) <= error);
     }
 }

@@ -2,24 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::modes::budget::measured::Measured;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Reporter, Task, Update, Work};
 use crate::progress::Progress;
-use crate::scene::{Analysis, Scene};
+use crate::scene::Scene;
 use crate::sentence::{Sentence, sentence};
-use crate::study::{Extent, MotionStudy, Study, StudyError};
+use crate::study::{Extent, Study, StudyError};
 
 /// Progress report of a study.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum StudyProgress {
     /// Fraction done, and the current measurement, if it is another one.
     Now(f32, Option<Sentence>),
-    SoFar(Box<Measured>),
+    SoFar(Box<Study>),
 }
 
 /// Measurements, or the reason why there are none; `None` for a cancelled study.
-type Done = Result<Measured, Option<Sentence>>;
+type Done = Result<Study, Option<Sentence>>;
 
 /// Request for a study.
 #[derive(Debug, Serialize, Deserialize)]
@@ -31,7 +30,13 @@ impl Work for StudyWork {
     type Output = Done;
 
     fn run(self, reporter: &Reporter<StudyProgress, Done>) -> Done {
-        study(&self.0.0, self.1, reporter).map_err(|error| (error != StudyError::Cancelled).then(|| (&error).into()))
+        let observe = &|progress: Progress<'_>| {
+            reporter.report(StudyProgress::Now(progress.fraction as f32, progress.now.cloned()))
+        };
+        // A cancellation is seen by the next report of progress.
+        let partial = &mut |study: &Study| _ = reporter.report(StudyProgress::SoFar(Box::new(study.clone())));
+        Study::with_partial(&self.0.0, self.1, observe, partial)
+            .map_err(|error| (error != StudyError::Cancelled).then(|| (&error).into()))
     }
 }
 
@@ -76,7 +81,7 @@ impl BackgroundStudy {
     }
 
     /// Processes the updates since the last call; measurements are stored in `study`.
-    pub(crate) fn poll(&mut self, study: &mut Option<Measured>) -> StudyState {
+    pub(crate) fn poll(&mut self, study: &mut Option<Study>) -> StudyState {
         loop {
             match self.task.poll() {
                 Update::Progress(StudyProgress::Now(fraction, now)) => {
@@ -96,25 +101,6 @@ impl BackgroundStudy {
                     return StudyState::Ended(Err(sentence!("the study ended unexpectedly: measure again")));
                 }
             }
-        }
-    }
-}
-
-fn study(scene: &Scene, extent: Extent, reporter: &Reporter<StudyProgress, Done>) -> Result<Measured, StudyError> {
-    let observe =
-        &|progress: Progress<'_>| reporter.report(StudyProgress::Now(progress.fraction as f32, progress.now.cloned()));
-    // A cancellation is seen by the next report of progress.
-    let partial = |measured| {
-        let _ = reporter.report(StudyProgress::SoFar(Box::new(measured)));
-    };
-    match scene.analysis {
-        Analysis::Static => {
-            let partial = &mut |study: &Study| partial(Measured::Rest(study.clone()));
-            Study::with_partial(scene, extent, observe, partial).map(Measured::Rest)
-        }
-        Analysis::Dynamic => {
-            let partial = &mut |study: &MotionStudy| partial(Measured::Motion(study.clone()));
-            MotionStudy::with_partial(scene, extent, observe, partial).map(Measured::Motion)
         }
     }
 }

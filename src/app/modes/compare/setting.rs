@@ -93,6 +93,7 @@ impl PaneSetting {
             element: self.element.unwrap_or(scene.element()),
             cells: self.cells,
             iterations: 0,
+            stepping: None,
         }
         .apply(scene);
         // The pane counts its own iterations.

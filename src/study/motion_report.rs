@@ -1,31 +1,40 @@
-//! Report of the study of motions: table and summary.
+//! Report of the study of a motion: table and summary.
 
 use std::fmt::Write as _;
 
-use super::{Ending, EnergyBehaviour, MotionMeasurement, MotionSetting, MotionStudy, PathError, REAL_TIME, step_text};
+use super::claim::Claim;
+use super::motion::{MotionReference, REAL_TIME};
+use super::setting::{Setting, Stepping, mesh_text, step_text};
+use super::trade::{Ending, EnergyBehaviour, ErrorSplit, Measurement, MotionFigures, Study};
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
-use crate::study::claim::Claim;
-use crate::study::ranking::Ranked;
-use crate::study::trade::mesh_text;
 
-impl MotionStudy {
+/// Study of a motion with its reference.
+pub(super) struct MotionReport<'a> {
+    pub study: &'a Study,
+    pub reference: &'a MotionReference,
+}
+
+impl MotionReport<'_> {
+    /// Returns each measurement with its time stepping and figures.
+    fn rows(&self) -> impl Iterator<Item = (&Measurement, Stepping, &MotionFigures)> {
+        self.study.measurements.iter().filter_map(|m| Some((m, m.setting.stepping?, m.motion.as_ref()?)))
+    }
+
     /// Formats the study as CSV. `solves` is the number per step or stage, 0 to iterate to the tolerance; `resolved` is
     /// `true` if the sum of the error's parts, `error_bound_percent`, is above the reference's own error;
     /// `at_most_percent` includes it. Motions that did not finish have no error.
-    #[must_use]
     pub fn table(&self) -> String {
         let mut text = String::from(
             "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided\n",
         );
-        let ranking = self.ranking();
-        for (m, undecided) in self.measurements.iter().zip(ranking.undecided()) {
+        for ((m, stepping, motion), undecided) in self.rows().zip(self.study.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let error = m.error.map_or_else(
                 || ",,,,,,".to_owned(),
                 |e| {
-                    let parts = [e.total, e.rms, e.discretization, e.integration, e.model, e.bound()];
+                    let parts = [e.total, motion.rms_percent, e.discretization, e.iteration, e.model, e.bound()];
                     let resolved = e.bound() > self.reference.error_percent;
                     format!("{},{resolved}", parts.map(|v| format!("{v:e}")).join(","))
                 },
@@ -35,37 +44,38 @@ impl MotionStudy {
                 "{},{along},{across},{},{},{},{:e},{},{},{:.4},{error},{:e},{},{},{},{},{},{},{undecided}",
                 m.setting.element.id(),
                 m.dofs,
-                m.setting.integrator.id(),
+                stepping.integrator.id(),
                 m.setting.method.id(),
-                m.setting.time_step,
+                stepping.time_step,
                 m.setting.iterations,
-                m.ending.id(),
+                motion.ending.id(),
                 m.milliseconds,
-                m.drift_percent,
-                m.energy().id(),
-                m.counts.steps,
-                m.counts.solves,
-                m.counts.factorizations,
+                motion.drift_percent,
+                motion.energy().id(),
+                motion.counts.steps,
+                motion.counts.solves,
+                motion.counts.factorizations,
                 m.pareto,
-                m.error.map_or_else(String::new, |_| format!("{:e}", ranking.error_bound(m)))
+                m.error.map_or_else(String::new, |_| format!("{:e}", self.study.error_bound(m)))
             );
         }
         text
     }
 
     /// Formats a summary for display: reference, Pareto front, results in real time, and energy behaviour.
-    #[must_use]
     pub fn summary(&self) -> String {
+        let Self { study, reference } = self;
         let mut text = format!(
             "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
              {:.4} m,\nagainst {}\n",
-            self.scene,
-            number(round(self.duration)),
-            self.reference.size,
-            self.reference
+            study.scene,
+            number(round(reference.duration())),
+            reference.size,
+            reference
         );
-        if self.duration < self.scene_duration * (1.0 - 1e-6) {
-            let _ = writeln!(text, "(the scene lasts {} s; the rest is not measured)", number(self.scene_duration));
+        if reference.duration() < reference.scene_duration * (1.0 - 1e-6) {
+            let lasts = number(reference.scene_duration);
+            let _ = writeln!(text, "(the scene lasts {lasts} s; the rest is not measured)");
         }
         text.push_str(
             "\nPareto front: no measured setting is both faster and more accurate (time: per simulated \
@@ -74,14 +84,11 @@ impl MotionStudy {
         text.push_str(
             "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
         );
-        let ranking = self.ranking();
-        ranking.add_front(&mut text, |m| {
-            let bound = ranking.error_bound(m);
-            let parts = m.error.map_or_else(String::new, |e| {
-                let PathError { total, rms, discretization, integration, model } = e;
-                format!("{total:11.4} {rms:11.4} {discretization:12.4} {integration:11.4} {model:14.4}")
-            });
-            format!("{:12.3} {bound:12.4} {parts} {:11.4}", m.milliseconds, m.drift_percent)
+        study.add_front(&mut text, |m, ErrorSplit { total, discretization, iteration, model }| {
+            let bound = study.error_bound(m);
+            let [rms, drift] = m.motion.map_or([0.0; 2], |motion| [motion.rms_percent, motion.drift_percent]);
+            let parts = format!("{total:11.4} {rms:11.4} {discretization:12.4} {iteration:11.4} {model:14.4}");
+            format!("{:12.3} {bound:12.4} {parts} {drift:11.4}", m.milliseconds)
         });
         self.costs(&mut text);
         self.steps(&mut text);
@@ -92,20 +99,21 @@ impl MotionStudy {
 
     /// Adds the cost of given errors with every integrator.
     fn costs(&self, text: &mut String) {
-        let ranking = self.ranking();
-        ranking.add_costs(text, |text, percent| {
-            let within = ranking.within(percent);
+        let study = self.study;
+        let integrator_of = |m: &Measurement| m.setting.stepping.map(|stepping| stepping.integrator);
+        study.add_costs(text, |text, percent| {
+            let within = study.within(percent);
             for integrator in INTEGRATORS {
-                let own = within.iter().find(|m| m.setting.integrator == integrator.kind);
+                let own = within.iter().find(|m| integrator_of(m) == Some(integrator.kind));
                 let cost = own.map_or_else(|| "not reached".to_owned(), |m| cost_text(m));
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         });
-        if let Claim::NotKnown { .. } = Claim::of_ranking(ranking, 1.0) {
+        if let Claim::NotKnown { .. } = Claim::of_study(study, 1.0) {
             text.push('\n');
             return;
         }
-        let close = ranking.within(1.0);
+        let close = study.within(1.0);
         let real = close.first().filter(|m| m.milliseconds <= REAL_TIME);
         let cost = real.map_or_else(
             || match close.first() {
@@ -128,23 +136,23 @@ impl MotionStudy {
             text,
             "by time step, newton on {}: error of the time steps, %; energy drift, % of the largest kinetic energy; \
              time per simulated second, ms",
-            mesh_text(self.reference.element, self.own_mesh)
+            mesh_text(self.reference.element, self.reference.own_mesh)
         );
-        let own = |m: &&MotionMeasurement| {
-            let MotionSetting { element, cells, method, .. } = m.setting;
-            (element, cells, method) == (self.reference.element, self.own_mesh, MethodKind::Newton)
-        };
-        for m in self.measurements.iter().filter(own) {
-            let setting = &m.setting;
+        let own = (self.reference.element, self.reference.own_mesh, MethodKind::Newton);
+        for (m, stepping, motion) in self.rows() {
+            let Setting { element, cells, method, iterations, .. } = m.setting;
+            if (element, cells, method) != own {
+                continue;
+            }
             let _ = writeln!(
                 text,
                 "    {:<16} {:<18} {:>10}  {:>12} {:>12.5} {:<6} {:>10.3}",
-                setting.integrator.id(),
-                setting.solves_text().to_string(),
-                step_text(setting.time_step),
-                m.error.map_or_else(|| m.ending.id().replace('_', " "), |e| format!("{:.4}", e.integration)),
-                m.drift_percent,
-                m.energy().id(),
+                stepping.integrator.id(),
+                stepping.solves_text(iterations).to_string(),
+                step_text(stepping.time_step),
+                m.error.map_or_else(|| motion.ending.id().replace('_', " "), |e| format!("{:.4}", e.iteration)),
+                motion.drift_percent,
+                motion.energy().id(),
                 m.milliseconds
             );
         }
@@ -153,11 +161,13 @@ impl MotionStudy {
 
     /// Adds the savings of `auto` compared with `newton`.
     fn auto(&self, text: &mut String) {
-        let pairs = self.measurements.iter().filter(|m| m.setting.method == MethodKind::Auto).filter_map(|auto| {
-            let setting = MotionSetting { method: MethodKind::Newton, ..auto.setting };
-            let newton = self.measurements.iter().find(|m| m.setting == setting)?;
+        let autos = self.rows().filter(|(m, ..)| m.setting.method == MethodKind::Auto);
+        let pairs = autos.filter_map(|(auto, _, figures)| {
+            let setting = Setting { method: MethodKind::Newton, ..auto.setting };
+            let (newton, _, of_newton) = self.rows().find(|(m, ..)| m.setting == setting)?;
             let farther = auto.error?.bound() - newton.error?.bound();
-            let factors = auto.counts.factorizations as f64 / newton.counts.factorizations.max(1) as f64;
+            let [all, few] = [of_newton, figures].map(|motion| motion.counts.factorizations as f64);
+            let factors = few / all.max(1.0);
             Some((auto.milliseconds / newton.milliseconds, factors, farther))
         });
         let pairs: Vec<(f64, f64, f64)> = pairs.collect();
@@ -185,23 +195,23 @@ impl MotionStudy {
             (Ending::Stopped, "stopped before the end"),
             (Ending::CutShort, "stopped early: too many steps to the end"),
         ] {
-            let those: Vec<_> = self.measurements.iter().filter(|m| m.ending == ending).collect();
+            let those: Vec<_> = self.rows().filter(|(.., motion)| motion.ending == ending).collect();
             if !those.is_empty() {
                 let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
             }
-            for m in those {
+            for (m, ..) in those {
                 let _ = writeln!(text, "    {} ({:.0} ms per simulated second)", m.setting, m.milliseconds);
             }
         }
-        let gained = self.measurements.iter().filter(|m| m.energy() == EnergyBehaviour::Gained);
-        let most = gained.max_by(|a, b| a.drift_percent.total_cmp(&b.drift_percent));
-        if let Some(m) = most {
-            let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", m.drift_percent, m.setting);
+        let gained = self.rows().filter(|(.., motion)| motion.energy() == EnergyBehaviour::Gained);
+        let most = gained.max_by(|(.., a), (.., b)| a.drift_percent.total_cmp(&b.drift_percent));
+        if let Some((m, _, motion)) = most {
+            let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", motion.drift_percent, m.setting);
         }
     }
 }
 
-fn cost_text(m: &MotionMeasurement) -> String {
+fn cost_text(m: &Measurement) -> String {
     format!("{}, {}", m.time_text(), m.setting)
 }
 

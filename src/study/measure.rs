@@ -1,0 +1,247 @@
+//! Measurement of the settings of a body at rest. A solve starts from rest, which is the hardest case; data computed once
+//! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+use web_time::{Duration, Instant};
+
+use super::fine::{Effort, finest_element};
+use super::progress::{Extent, StudyError, all_done, check};
+use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
+use super::setting::{Setting, mesh_text};
+use super::timing::{expected_time, times_from_rest};
+use super::trade::{ErrorSplit, Measurement, Study, StudyReference};
+use super::{motion, parallel};
+use crate::assembly::System;
+use crate::method::METHODS;
+use crate::progress::{Observer, Progress};
+use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
+use crate::sentence::sentence;
+use crate::simulation::{Simulation, Status};
+
+/// Fraction of a study's time spent before timing starts.
+const ENDS_SHARE: f64 = 0.1;
+/// Numbers of iterations that are recorded.
+const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, Study::MAX_ITERATIONS];
+
+impl Study {
+    /// Measures a scene. `observe` receives the progress, and breaks to cancel: the study then has the measurements so far.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use warpbeam::{
+    ///     Demand, ErrorSplit, Extent, Measurement, Observer, Progress, Scene, Sentence, Setting, Study, StudyError,
+    /// };
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
+    /// let observe: Observer<'_> = &|Progress { fraction, now }| {
+    ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
+    ///     ControlFlow::Continue(()) // `Break` cancels
+    /// };
+    /// let study = Study::new(&scene, Extent::Quick, observe)?;
+    /// let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(100.0) };
+    /// for Measurement { setting, error, .. } in study.meeting(demand) {
+    ///     let (Setting { iterations, .. }, Some(ErrorSplit { discretization, iteration, model, .. })) = (setting, error)
+    ///     else {
+    ///         continue;
+    ///     };
+    ///     println!("{setting}: mesh {discretization} %, stopped after {iterations}: {iteration} %, theory {model} %");
+    ///     assert!(discretization + iteration + model <= 5.0);
+    /// }
+    /// # Ok::<(), StudyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`StudyError`]; [`StudyError::Cancelled`] if nothing has been measured.
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        Self::with_partial(scene, extent, observe, &mut |_| {})
+    }
+
+    /// Measures as [`Self::new`]; `partial` receives the study so far each time a mesh is done.
+    ///
+    /// # Errors
+    /// [`StudyError`]; [`StudyError::Cancelled`] if nothing has been measured.
+    pub fn with_partial(
+        scene: &Scene,
+        extent: Extent,
+        observe: Observer<'_>,
+        partial: &mut dyn FnMut(&Self),
+    ) -> Result<Self, StudyError> {
+        match scene.analysis {
+            Analysis::Static => at_rest(scene, extent, observe, partial),
+            Analysis::Dynamic => motion::study(scene, extent, observe, partial),
+        }
+    }
+}
+
+/// Measures a scene at rest: see [`Study::with_partial`].
+fn at_rest(
+    scene: &Scene,
+    extent: Extent,
+    observe: Observer<'_>,
+    partial: &mut dyn FnMut(&Study),
+) -> Result<Study, StudyError> {
+    let meshes = meshes(scene, extent);
+    let (study, against) = begin(scene, observe)?;
+    // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
+    let ends = |mesh: &MeshChoice, observe: Observer<'_>| MeshEnds::find(scene, mesh, observe);
+    let ends = all_done(parallel::map(&meshes, ends, |done| {
+        let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
+        observe(Progress { fraction, now: Some(&sentence!("end state of every method")) })
+    }))?;
+    // Start with the element that converges fastest, which is likely to give the best results.
+    let mut order: Vec<_> = meshes.iter().zip(&ends).collect();
+    order.sort_by_key(|(mesh, _)| mesh.element != finest_element(scene));
+    let weighted = order.into_iter().map(|(mesh, ends)| ((mesh, ends), ends.expected_time()));
+    study.measure_meshes(ENDS_SHARE, weighted, observe, partial, |study, (mesh, ends), observe| {
+        measure(study, against, scene, mesh, ends, observe)?;
+        study.measurements.sort_by_key(|m| {
+            let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
+            meshes.iter().position(of)
+        });
+        Ok(())
+    })
+}
+
+/// Returns a study with its reference solution and no measurements, and the reference of the first probe.
+pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<(Study, ProbeReference), StudyError> {
+    let begin = &|progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
+    let reference = Reference::find(scene, None, Effort::Bounded, begin)?;
+    let against = reference.first().ok_or(StudyError::NoBound)?;
+    Ok((Study::begin(scene, StudyReference::Rest(reference), against.own_error_percent), against))
+}
+
+/// Measures every method on a mesh. A cancelled measurement leaves the study unchanged.
+pub(super) fn measure(
+    study: &mut Study,
+    reference: ProbeReference,
+    scene: &Scene,
+    mesh: &MeshChoice,
+    ends: &MeshEnds,
+    observe: Observer<'_>,
+) -> Result<(), StudyError> {
+    let text = mesh_text(mesh.element, mesh.cells);
+    let percent = |a, b| reference.percent(a, b);
+    let MeshEnds { system, exact, linear, .. } = ends;
+    let mut measurements = Vec::new();
+    for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
+        let now = sentence!("%{mesh}, %{method}", mesh = &text, method = method.id());
+        let fraction = number as f64 / METHODS.len() as f64;
+        check(observe(Progress { fraction, now: Some(&now) }))?;
+        let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
+        // `auto` decides itself how many iterations it needs.
+        let most = if method == MethodKind::Auto { u32::MAX } else { Study::MAX_ITERATIONS };
+        let times = times_from_rest(&mut simulation, most, &|_| observe(Progress::at(fraction)));
+        let times = times.ok_or(StudyError::Cancelled)?;
+        simulation.reset();
+        for (iterations, time) in (1..).zip(times) {
+            simulation.step();
+            let ended = *simulation.status() != Status::Running;
+            if !ended && (method == MethodKind::Auto || !ITERATIONS.contains(&iterations)) {
+                continue;
+            }
+            let tip = first_probe(&simulation)?;
+            // Converged corotated methods end at the exact equilibrium.
+            let own_end = *if simulation.is_linear() { linear } else { exact };
+            measurements.push(Measurement {
+                setting: Setting { iterations, ..mesh.with(method) },
+                dofs: simulation.system().dofs(),
+                converged: *simulation.status() == Status::Converged,
+                milliseconds: time.total().as_secs_f64() * 1e3,
+                error: Some(ErrorSplit {
+                    total: percent(tip, reference.displacement),
+                    discretization: percent(*exact, reference.displacement),
+                    iteration: percent(tip, own_end),
+                    model: percent(own_end, *exact),
+                }),
+                time,
+                motion: None,
+                pareto: false,
+            });
+        }
+    }
+    study.measurements.append(&mut measurements);
+    Ok(())
+}
+
+/// Mesh of a study.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MeshChoice {
+    pub element: ElementKind,
+    pub cells: Option<[u32; 2]>,
+    /// Approximate cost relative to other meshes.
+    pub weight: f64,
+}
+
+impl MeshChoice {
+    fn with(&self, method: MethodKind) -> Setting {
+        Setting { element: self.element, cells: self.cells, method, iterations: 0, stepping: None }
+    }
+}
+
+/// Mesh with the final results of methods on it: displacements of the first probe, m.
+#[derive(Clone, Debug)]
+pub(super) struct MeshEnds {
+    system: Arc<System>,
+    /// Displacement in the exact equilibrium.
+    exact: Vector2<f64>,
+    /// Displacement by linear theory.
+    linear: Vector2<f64>,
+    /// Time needed to compute them.
+    time: Duration,
+}
+
+impl MeshEnds {
+    /// Computes the results on a mesh.
+    pub fn find(scene: &Scene, mesh: &MeshChoice, observe: Observer<'_>) -> Result<Self, StudyError> {
+        let meshed = mesh.with(MethodKind::Newton).apply(scene);
+        let system = system_of(&meshed)?;
+        let start = Instant::now();
+        let first_end = |method| -> Result<_, StudyError> {
+            Ok(end(&meshed, method, &system, observe)?.first().copied().unwrap_or_default())
+        };
+        let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
+        Ok(Self { system, exact, linear, time: start.elapsed() })
+    }
+
+    /// Returns the approximate time of its measurement, s.
+    fn expected_time(&self) -> f64 {
+        METHODS.len() as f64 * expected_time(self.time).as_secs_f64()
+    }
+}
+
+/// Largest number of rows of cells in meshes that are measured in addition to those with square cells; elements without
+/// locking need few rows.
+const MAX_ROWS: u32 = 2;
+/// Largest ratio of height to length of such cells.
+const HIGHEST_CELL: f64 = 4.0;
+
+/// Returns the meshes of a scene, from coarse to fine for each element.
+pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
+    let mut meshes = Vec::new();
+    for element in scene.elements() {
+        let Some(beam) = &scene.beam else {
+            meshes.push(MeshChoice { element, cells: None, weight: 1.0 });
+            continue;
+        };
+        // The number of nodes along the beam is about the same for every element; cells are as high as long if
+        // possible.
+        let pieces = element.entry().degree() as u32;
+        let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
+        let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
+        for &nodes_along in nodes_along {
+            let along = nodes_along.div_ceil(pieces);
+            let pieces = f64::from(pieces);
+            let squares = f64::from(along) * beam.height / beam.length;
+            let as_high = (squares / pieces).round().max(1.0) as u32;
+            let few = |across: u32| across <= MAX_ROWS && squares / f64::from(across) <= HIGHEST_CELL;
+            for across in (1..=as_high).filter(|&across| across == as_high || few(across)) {
+                let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
+                // The weight includes the setup of the mesh.
+                meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
+            }
+        }
+    }
+    meshes
+}
