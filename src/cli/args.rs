@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::CliError;
 #[cfg(feature = "app")]
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use super::outputs::OutputArgs;
-use super::scene_args::{NumberError, RequiredSceneArgs, SceneArgs, parse_number};
+use super::scene_args::{RequiredSceneArgs, SceneArgs, within};
 use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
 use crate::study::Effort;
 
@@ -198,7 +199,7 @@ pub(super) struct SectionArgs {
     pub at: Option<(f64, Option<f64>)>,
     /// Direction of the cut's normal, counter-clockwise from the x axis, with --at: 30deg, or a number of radians. The normal
     /// points to the part in front.
-    #[arg(long, value_name = "ANGLE", value_parser = parse_angle, default_value = "0deg", requires = "at", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = within(ROTATION), default_value = "0deg", requires = "at", allow_hyphen_values = true)]
     pub angle: f64,
     /// Print N, V and M in this number of sections normal to the axis of a beam, evenly spaced from end to end.
     #[arg(long, value_name = "COUNT", conflicts_with_all = ["at", "angle"], value_parser = clap::value_parser!(u16).range(2..=1000))]
@@ -210,16 +211,12 @@ pub(super) struct SectionArgs {
     pub outputs: OutputArgs,
 }
 
-fn parse_place(text: &str) -> Result<(f64, Option<f64>), NumberError> {
-    let coordinate = |text: &str| parse_number(text, COORDINATE);
+fn parse_place(text: &str) -> Result<(f64, Option<f64>), CliError> {
+    let coordinate = within(COORDINATE);
     match text.split_once(',') {
         Some((x, y)) => Ok((coordinate(x)?, Some(coordinate(y)?))),
         None => Ok((coordinate(text)?, None)),
     }
-}
-
-fn parse_angle(text: &str) -> Result<f64, NumberError> {
-    parse_number(text, ROTATION)
 }
 
 #[derive(Debug, Args)]
@@ -248,22 +245,14 @@ pub(super) struct TuneArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
     /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
-    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    #[arg(long, value_name = "PERCENT", value_parser = within(MAX_ERROR_PERCENT))]
     pub error: Option<f64>,
     /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or a number of milliseconds.
-    #[arg(long, value_name = "TIME", value_parser = parse_milliseconds)]
+    #[arg(long, value_name = "TIME", value_parser = within(BUDGET_MS))]
     pub time: Option<f64>,
     /// Save the scene with the chosen setting; the rest of its text stays as it is.
     #[arg(long, value_name = "FILE.toml")]
     pub write: Option<PathBuf>,
-}
-
-fn parse_percent(text: &str) -> Result<f64, NumberError> {
-    parse_number(text, MAX_ERROR_PERCENT)
-}
-
-fn parse_milliseconds(text: &str) -> Result<f64, NumberError> {
-    parse_number(text, BUDGET_MS)
 }
 
 #[cfg(test)]
@@ -272,8 +261,9 @@ mod tests {
 
     #[test]
     fn errors_and_times_are_read_with_their_units() {
+        let [parse_percent, parse_milliseconds] = [MAX_ERROR_PERCENT, BUDGET_MS].map(within);
         for (text, percent) in [("1%", 1.0), ("0.5 %", 0.5), ("2", 2.0)] {
-            assert_eq!(parse_percent(text), Ok(percent), "{text}");
+            assert_eq!(parse_percent(text).ok(), Some(percent), "{text}");
         }
         for (text, ms) in [("0.5ms", 0.5), ("200us", 0.2), ("200 µs", 0.2), ("2s", 2e3), ("16", 16.0)] {
             assert!(parse_milliseconds(text).is_ok_and(|v| (v - ms).abs() < 1e-12), "{text}");

@@ -9,7 +9,7 @@ use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
 use super::solved::{SolvedScene, Spent};
 use super::{
-    CliError, NOT_CONVERGED, check_fit, check_suffix, exit_code, json, named, sections_of, simulate, text, validated,
+    CliError, NOT_CONVERGED, about, check_fit, check_suffix, exit_code, json, sections_of, simulate, text, validated,
 };
 use crate::atomic_write;
 use crate::export::{self, ExportError, Format, MotionWriter};
@@ -207,6 +207,10 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
     let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
     drop(watch);
+    let no_path = || {
+        let expected = "expected a static scene with a method other than linear";
+        about(&source, format_args!("{expected}: a load path is a sequence of equilibria with large rotations"))
+    };
     let (summary, table) = match (&beam, &path) {
         (Some(curve), path) => {
             // A path on which nothing happens adds nothing to the curve.
@@ -215,11 +219,11 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
             (text::curve(&scene, curve) + &own, text::curve_table(curve))
         }
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
-        (None, None) => return Err(CliError::NoPath(named(&source))),
+        (None, None) => return Err(no_path()),
     };
     outputs.write_table(|| table)?;
     outputs.write_picture(|| {
-        let path = path.as_ref().ok_or_else(|| CliError::NoPath(named(&source)))?;
+        let path = path.as_ref().ok_or_else(no_path)?;
         Ok(plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)))
     })?;
     text::print(&summary)?;
@@ -242,8 +246,8 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
         Some(i) => Ok(Ordinate::Reaction(i)),
         None => {
             let of_probe = |name: &String| ["", ".x", ".y", ".path"].map(|part| format!("{name}{part}"));
-            let known = scene.probes.iter().flat_map(|probe| of_probe(&probe.name)).chain(supports).collect();
-            Err(CliError::NoOrdinate { name, known })
+            let known: Vec<_> = scene.probes.iter().flat_map(|probe| of_probe(&probe.name)).chain(supports).collect();
+            Err(format!("--of {name}: expected one of {}", known.join(", ")).into())
         }
     }
 }
@@ -255,7 +259,7 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     drop(watch);
     let study = match study {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
-        study => study.map_err(failed(source))?,
+        study => study.map_err(|error| about(source, error))?,
     };
     let summary = study.summary();
     write_folder(&out.folder, "study", &study.table(), &plot::study(&study), Some(&summary))?;
@@ -288,7 +292,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
             text::print(&format!("{}: it is not known which settings meet {demand}: {error}\n", scene.name))?;
             return Ok(ExitCode::from(NOT_CONVERGED));
         }
-        tuning => tuning.map_err(failed(&source))?,
+        tuning => tuning.map_err(|error| about(&source, error))?,
     };
     text::print(&format!("{tuning}\n"))?;
     if let Some(path) = &write {
@@ -337,13 +341,9 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
 
 /// Solves all cases, or until `observe` cancels the rest.
 fn solve_atlas<C: Case>(cases: &[C], observe: impl FnMut(usize) -> ControlFlow<()>) -> Result<Vec<Entry<C>>, CliError> {
-    let failed = |case: &C, error| CliError::Simulation { scene: format!("{case:?}"), error };
-    let entries = parallel::map(cases, |case, _| case.solve().map_err(|error| failed(case, error)), observe);
+    let solve = |case: &C| case.solve().map_err(|error| format!("{case:?}: {error}").into());
+    let entries = parallel::map(cases, |case, _| solve(case), observe);
     entries.into_iter().flatten().collect()
-}
-
-fn failed(source: &scene::Source) -> impl Fn(StudyError) -> CliError {
-    |error| CliError::Study { scene: named(source), error }
 }
 
 fn extent(out: &FolderArgs) -> Extent {

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use thiserror::Error;
 
-use super::scene_args::{NumberError, RequiredSceneArgs, SetArgs, parse_number};
+use super::CliError;
+use super::scene_args::{RequiredSceneArgs, SetArgs, within};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
@@ -79,19 +79,14 @@ pub(super) struct ShotArgs {
     /// Show two to four panes side by side under one load. A pane is a method, an element, cells or an iteration limit,
     /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
-    #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
+    #[arg(long, value_name = "PANE,PANE", value_parser = app::parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
     pub compare: Option<PaneSettings>,
     #[command(flatten)]
     pub look: LookArgs,
 }
 
-/// Panes of a comparison, as the option --compare lists them.
-#[derive(Clone, Debug)]
-pub(super) struct PaneSettings(pub Vec<app::PaneSetting>);
-
-fn parse_panes(text: &str) -> Result<PaneSettings, app::PaneSettingError> {
-    app::parse_panes(text).map(PaneSettings)
-}
+/// Panes of a comparison, as the option --compare lists them: one value, which clap would not read as a `Vec`.
+type PaneSettings = Vec<app::PaneSetting>;
 
 /// Notes about files in `record --help`.
 pub(super) const RECORD_NOTES: &str = "\
@@ -118,10 +113,10 @@ pub(super) struct RecordArgs {
     #[arg(short, long, value_name = "OUT.gif|FOLDER")]
     pub output: PathBuf,
     /// Duration to record: 2, 2s or 500ms. Default: the scene's dynamics.duration.
-    #[arg(long, value_name = "TIME", value_parser = parse_seconds)]
+    #[arg(long, value_name = "TIME", value_parser = within(DURATION))]
     pub seconds: Option<f64>,
     /// Playback speed, simulated seconds per second: 0.1 is slow motion.
-    #[arg(long, value_name = "FACTOR", value_parser = parse_speed)]
+    #[arg(long, value_name = "FACTOR", value_parser = within(PLAYBACK_SPEED))]
     pub speed: Option<f64>,
     /// Frames per second, 1 to 100. Default: 25, 4 for the iterations of a static scene, or 10 for the story.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
@@ -136,49 +131,27 @@ pub(super) struct RecordArgs {
     pub look: LookArgs,
 }
 
-/// Error for an unknown integrator name.
-#[derive(Debug, Error)]
-#[error("expected one of {}", INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "))]
-struct NoIntegrator;
-
-fn parse_integrator(text: &str) -> Result<IntegratorKind, NoIntegrator> {
-    INTEGRATORS.iter().find(|entry| entry.id == text).map(|entry| entry.kind).ok_or(NoIntegrator)
+fn parse_integrator(text: &str) -> Result<IntegratorKind, CliError> {
+    let known = || INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", ");
+    let entry = INTEGRATORS.iter().find(|entry| entry.id == text);
+    Ok(entry.ok_or_else(|| format!("expected one of {}", known()))?.kind)
 }
 
-/// Error for an unknown field.
-#[derive(Debug, Error)]
-#[error("expected one of {}", Field::ALL.map(Field::id).join(", "))]
-struct NoField;
-
-fn parse_field(text: &str) -> Result<Field, NoField> {
-    Field::ALL.into_iter().find(|field| field.id() == text).ok_or(NoField)
+fn parse_field(text: &str) -> Result<Field, CliError> {
+    let known = || Field::ALL.map(Field::id).join(", ");
+    let field = Field::ALL.into_iter().find(|field| field.id() == text);
+    Ok(field.ok_or_else(|| format!("expected one of {}", known()))?)
 }
 
-fn parse_magnification(text: &str) -> Result<app::Magnification, NumberError> {
+fn parse_magnification(text: &str) -> Result<app::Magnification, CliError> {
     match text {
         "auto" => Ok(app::Magnification::Automatic),
-        _ => parse_number(text, app::Magnification::LIMIT).map(app::Magnification::Factor),
+        _ => within(app::Magnification::LIMIT)(text).map(app::Magnification::Factor),
     }
 }
 
-fn parse_seconds(text: &str) -> Result<f64, NumberError> {
-    parse_number(text, DURATION)
-}
-
-fn parse_speed(text: &str) -> Result<f64, NumberError> {
-    parse_number(text, PLAYBACK_SPEED)
-}
-
-/// Error for an invalid image size, or one out of range.
-#[derive(Debug, Error)]
-#[error("expected WIDTHxHEIGHT, each from 64 to {}, as in 1280x800", app::MAX_SHOT_SIDE)]
-struct SizeError;
-
-fn parse_size(text: &str) -> Result<[u32; 2], SizeError> {
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or(SizeError)?;
-    let side = |text: &str| match text.trim().parse() {
-        Ok(side) if (64..=app::MAX_SHOT_SIDE).contains(&side) => Ok(side),
-        _ => Err(SizeError),
-    };
-    Ok([side(width)?, side(height)?])
+fn parse_size(text: &str) -> Result<[u32; 2], CliError> {
+    let side = |text: &str| text.trim().parse().ok().filter(|side| (64..=app::MAX_SHOT_SIDE).contains(side));
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    Ok(sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, each from 64 to {}, as in 1280x800", app::MAX_SHOT_SIDE))?)
 }

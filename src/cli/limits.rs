@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
 use super::progress::Watch;
-use super::{CliError, json, named, text, validated};
+use super::{CliError, about, json, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
 use crate::scene::{self, Scene};
@@ -26,7 +26,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let watch = Watch::new();
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
     drop(watch);
-    let limits = limits.map_err(|error| CliError::Study { scene: named(&source), error })?;
+    let limits = limits.map_err(|error| about(&source, error))?;
     outputs.write_table(|| table(&limits, &scene))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
     text::print(&match json {

@@ -18,7 +18,7 @@ pub(super) fn completions(shell: clap_complete::Shell) -> Result<ExitCode, CliEr
 /// Prints one manual page with every command.
 pub(super) fn man() -> Result<ExitCode, CliError> {
     let mut page = Vec::new();
-    render(&mut page).map_err(CliError::Output)?;
+    render(&mut page)?;
     print(&page)
 }
 

@@ -13,12 +13,10 @@ use clap::error::{ContextKind, ContextValue};
 
 use self::args::{Cli, Command};
 use crate::assembly::{Problem, System, SystemError};
-use crate::export::ExportError;
 use crate::format::number;
-use crate::scene::{self, Analysis, Scene, SceneError};
+use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError};
 use crate::simulation::{Simulation, SimulationError, Status};
-use crate::study::StudyError;
 
 mod args;
 mod commands;
@@ -51,50 +49,24 @@ const BAD_INPUT: u8 = 2;
 #[cfg(feature = "app")]
 const NO_ADAPTER: u8 = 3;
 
-/// Error that ends a command early.
-#[derive(Debug, thiserror::Error)]
-enum CliError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error("{scene}: {error}")]
-    Simulation { scene: String, error: SimulationError },
-    #[error("{scene}: {error}")]
-    Study { scene: String, error: StudyError },
-    #[error(
-        "{0}: expected a static scene with a method other than linear: a load path is a sequence of equilibria with \
-         large rotations"
-    )]
-    NoPath(String),
-    #[error("{scene}: {error}")]
-    Section { scene: String, error: SectionError },
-    #[error("{0}: expected --at or --along, or a scene with a [[section]]")]
-    NoSection(String),
-    #[error("--of {name}: expected one of {}", known.join(", "))]
-    NoOrdinate { name: String, known: Vec<String> },
-    #[error("standard output: {0}")]
-    Output(std::io::Error),
-    #[error(transparent)]
-    Export(#[from] ExportError),
-    #[error(
-        "{scene}: expected a scene with analysis = \"{}\" for {option}: {reason}",
-        if *moves { "dynamic" } else { "static" }
-    )]
-    Misfit { scene: String, option: &'static str, moves: bool, reason: &'static str },
-    #[error("{}: expected a name that ends in {expected}", path.display())]
-    Suffix { path: std::path::PathBuf, expected: &'static str },
+/// Error that ends a command early; its text is the message.
+type CliError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Returns the exit code of an error.
+#[cfg_attr(not(feature = "app"), expect(unused_variables, reason = "only a window needs an adapter"))]
+fn error_code(error: &CliError) -> u8 {
     #[cfg(feature = "app")]
-    #[error(transparent)]
-    App(#[from] crate::app::AppError),
+    if let Some(crate::app::AppError::Render(error)) = error.downcast_ref()
+        && error.is_missing_adapter()
+    {
+        return NO_ADAPTER;
+    }
+    BAD_INPUT
 }
 
-impl CliError {
-    fn exit_code(&self) -> u8 {
-        match self {
-            #[cfg(feature = "app")]
-            Self::App(crate::app::AppError::Render(error)) if error.is_missing_adapter() => NO_ADAPTER,
-            _ => BAD_INPUT,
-        }
-    }
+/// Returns an error with the name of its scene.
+fn about(source: &scene::Source, error: impl std::fmt::Display) -> CliError {
+    format!("{}: {error}", source.name.display()).into()
 }
 
 /// Messages of libraries that are printed without `RUST_LOG`. Errors of drivers are left out: they come back as values,
@@ -177,7 +149,7 @@ fn run() -> ExitCode {
         if needs_dialog {
             explorer::show_error(&error.to_string());
         }
-        ExitCode::from(error.exit_code())
+        ExitCode::from(error_code(&error))
     })
 }
 
@@ -186,7 +158,7 @@ fn check_suffix(path: &Path, known: &[&str], expected: &'static str) -> Result<(
     let suffix = path.extension().and_then(|e| e.to_str()).map(|e| format!(".{}", e.to_ascii_lowercase()));
     match suffix.is_some_and(|suffix| known.contains(&suffix.as_str())) {
         true => Ok(()),
-        false => Err(CliError::Suffix { path: path.to_owned(), expected }),
+        false => Err(format!("{}: expected a name that ends in {expected}", path.display()).into()),
     }
 }
 
@@ -198,21 +170,16 @@ fn check_fit(
     reason: &'static str,
 ) -> Result<(), CliError> {
     let fits = (scene.analysis == Analysis::Dynamic) == moves;
-    match given && !fits {
-        true => Err(CliError::Misfit { scene: named(source), option, moves, reason }),
-        false => Ok(()),
-    }
+    let expected = if moves { "dynamic" } else { "static" };
+    let refusal = || format!("expected a scene with analysis = \"{expected}\" for {option}: {reason}");
+    if given && !fits { Err(about(source, refusal())) } else { Ok(()) }
 }
 
 /// Computes the sections that the scene lists.
 fn sections_of(source: &scene::Source, simulation: &Simulation) -> Result<Vec<Section>, CliError> {
     let sections = simulation.scene_sections().into_iter().enumerate();
-    sections
-        .map(|(i, section)| {
-            let scene = || format!("{}: section.{i}", named(source));
-            section.map_err(|error| CliError::Section { scene: scene(), error })
-        })
-        .collect()
+    let located = |i: usize, error: SectionError| about(source, format_args!("section.{i}: {error}"));
+    sections.map(|(i, section)| section.map_err(|error| located(i, error))).collect()
 }
 
 /// Opens a scene, and sets up its simulation.
@@ -236,7 +203,7 @@ fn validated(source: &scene::Source) -> Result<(Scene, Arc<System>), CliError> {
 fn refused(source: &scene::Source, error: SimulationError) -> CliError {
     match error {
         SimulationError::System(SystemError::Scene(invalid)) => scene::locate(source, invalid).into(),
-        error => CliError::Simulation { scene: named(source), error },
+        error => about(source, error),
     }
 }
 
@@ -247,11 +214,6 @@ fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
         system.seams().iter().for_each(|seam| eprintln!("warpbeam: warning: {seam}"));
         warn_of_built_in_mesh(source, scene);
     }
-}
-
-/// Returns the name of a scene in messages.
-fn named(source: &scene::Source) -> String {
-    source.name.display().to_string()
 }
 
 /// Prints a warning if a mesh file seems to be in millimetres; `size` is the body's, m.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use thiserror::Error;
 
+use super::CliError;
 use crate::scene;
-use crate::scene::limits::{Limit, OutOfRange};
-use crate::scene::units::{self, UnitError};
+use crate::scene::limits::Limit;
+use crate::scene::units;
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
@@ -46,18 +46,11 @@ impl From<RequiredSceneArgs> for scene::Source {
     }
 }
 
-/// Reason why a number on the command line is rejected.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub(super) enum NumberError {
-    #[error(transparent)]
-    Unit(#[from] UnitError),
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-}
-
-/// Parses a number within the limit, in its unit or with another unit of the same dimension.
-pub(super) fn parse_number(text: &str, limit: Limit) -> Result<f64, NumberError> {
-    let value = units::parse(text, limit.unit)?;
-    limit.check(value)?;
-    Ok(value)
+/// Returns a parser of numbers within the limit, in its unit or with another unit of the same dimension.
+pub(super) fn within(limit: Limit) -> impl Fn(&str) -> Result<f64, CliError> + Clone + Send + Sync {
+    move |text| {
+        let value = units::parse(text, limit.unit)?;
+        limit.check(value)?;
+        Ok(value)
+    }
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::args::SectionArgs;
 use super::progress::Watch;
-use super::{CliError, commands, exit_code, json, named, sections_of, simulate, text};
+use super::{CliError, about, commands, exit_code, json, sections_of, simulate, text};
 use crate::format::{Context, engineering, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
 use crate::scene::{self, Analysis, Scene, SectionLine};
@@ -23,10 +23,10 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     outputs.check()?;
     let (scene, mut simulation) = simulate(&source)?;
-    let refused = |error: SectionError| CliError::Section { scene: named(&source), error };
+    let refused = |error: SectionError| about(&source, error);
     let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });
     if line.is_none() && along.is_none() && scene.sections.is_empty() {
-        return Err(CliError::NoSection(named(&source)));
+        return Err(about(&source, "expected --at or --along, or a scene with a [[section]]"));
     }
     // A line that misses the body is refused before the solve.
     match (line, along) {
@@ -42,7 +42,7 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let status = simulation.status().clone();
     if matches!(status, Status::Diverged(_)) {
-        eprintln!("warpbeam: {}: {}", named(&source), status.failure().unwrap_or_default());
+        eprintln!("warpbeam: {}", about(&source, status.failure().unwrap_or_default()));
         return Ok(exit_code(&status));
     }
     let sections = match (line, along) {

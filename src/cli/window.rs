@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::args::{ReferenceEffort, SolveArgs};
-use super::draw_args::{DEFAULT_PICTURE, LookArgs, ShotArgs};
+use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
 use super::progress::Watch;
 use super::scene_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
@@ -14,43 +14,25 @@ use crate::render;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let ShotArgs {
-        scene,
-        output,
-        size,
-        no_panel,
-        field,
-        magnify,
-        curve,
-        sections,
-        study,
-        limits,
-        learn,
-        motion,
-        compare,
-        look: LookArgs { theme, language, adapter },
-    } = args;
-    let compare = compare.map(|panes| panes.0).unwrap_or_default();
-    let learn = learn.map(usize::from);
-    let (panel, adapter) = (!no_panel, adapter.adapter);
     let options = app::ShotOptions {
-        size,
-        panel,
-        field,
-        magnification: magnify.unwrap_or_default(),
-        curve,
-        sections,
-        study,
-        limits,
-        learn,
-        motion,
-        compare,
-        theme,
-        language,
-        adapter,
+        size: args.size,
+        panel: !args.no_panel,
+        field: args.field,
+        magnification: args.magnify.unwrap_or_default(),
+        curve: args.curve,
+        sections: args.sections,
+        study: args.study,
+        limits: args.limits,
+        learn: args.learn.map(usize::from),
+        motion: args.motion,
+        compare: args.compare.unwrap_or_default(),
+        theme: args.look.theme,
+        language: args.look.language,
+        adapter: args.look.adapter.adapter,
     };
+    let output = args.output;
     check_suffix(&output, &[".png"], ".png")?;
-    let source = scene::Source::from(scene);
+    let source = scene::Source::from(args.scene);
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);

@@ -5,7 +5,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
@@ -190,7 +189,7 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     for assignment in assignments {
         let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
-        let (key, value) = assign(&mut table, assignment).map_err(|e| failed(e.to_string()))?;
+        let (key, value) = assign(&mut table, assignment).map_err(failed)?;
         if let Some(invalid) = kinds::wrong_kind(&table) {
             return Err(failed(match same_key(&key, &invalid.key) {
                 true => invalid.message(),
@@ -250,38 +249,39 @@ impl Scene {
     }
 }
 
-/// Reason why an assignment cannot be applied.
-#[derive(Debug, Error)]
-enum AssignError {
-    #[error("expected PATH=VALUE")]
-    NoAssignment,
-    #[error("expected PATH=VALUE, got an empty path")]
-    EmptyPath,
-    #[error("`{part}` is a {kind}: expected a table or a list there")]
-    NoPlace { part: String, kind: &'static str },
-    #[error("expected an index below {length}, got {part}")]
-    Index { part: String, length: usize },
-    #[error("{}", .0.message())]
-    Value(#[from] Invalid),
-}
-
-/// Sets `a.0.b=value` in the table. A value that is not TOML is taken as a string, so that quotes can be left out.
-fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), AssignError> {
-    let (key, text) = assignment.split_once('=').ok_or(AssignError::NoAssignment)?;
+/// Sets `a.0.b=value` in the table; returns the reason if the assignment cannot be applied. A value that is not TOML is taken as a string, so that quotes can be left out.
+fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), String> {
+    let (key, text) = assignment.split_once('=').ok_or("expected PATH=VALUE")?;
     let (key, text) = (key.trim(), text.trim());
-    let value = value(key, text)?;
-    let mut parts: Vec<&str> = key.split('.').collect();
-    let last = parts.pop().filter(|k| !k.is_empty()).ok_or(AssignError::EmptyPath)?;
-    let mut place = PlaceMut::Table(table);
-    for part in parts {
-        place = place.enter(part)?;
+    let value = value(key, text).map_err(|invalid| invalid.message())?;
+    if key.is_empty() || key.ends_with('.') {
+        return Err("expected PATH=VALUE, got an empty path".to_owned());
     }
-    *place.slot(last)? = value.clone();
+    let mut parts = key.split('.');
+    let mut name = parts.next().unwrap_or_default();
+    let mut place = table.entry(name).or_insert_with(|| Value::Table(Table::new()));
+    for part in parts {
+        place = inside(place, name, part)?;
+        name = part;
+    }
+    *place = value.clone();
     Ok((key.to_owned(), value))
 }
 
+/// Returns the value at `part` in the value at `name`. A missing table, such as `[solver]`, is created.
+fn inside<'a>(value: &'a mut Value, name: &str, part: &str) -> Result<&'a mut Value, String> {
+    match value {
+        Value::Table(table) => Ok(table.entry(part).or_insert_with(|| Value::Table(Table::new()))),
+        Value::Array(items) => {
+            let refusal = format!("expected an index below {}, got {part}", items.len());
+            part.parse().ok().and_then(|index: usize| items.get_mut(index)).ok_or(refusal)
+        }
+        other => Err(format!("`{name}` is a {}: expected a table or a list there", other.type_str())),
+    }
+}
+
 /// Parses an assigned value: TOML, or text without quotes, with numbers in any unit.
-fn value(key: &str, text: &str) -> Result<Value, AssignError> {
+fn value(key: &str, text: &str) -> Result<Value, Invalid> {
     let typed = format!("value = {text}");
     let plain = units::plain(&typed, |name| name.replacen("value", key, 1))?;
     let read = toml::from_str::<Table>(&plain).ok();
@@ -295,34 +295,6 @@ fn value(key: &str, text: &str) -> Result<Value, AssignError> {
         return Ok(Value::Array(items.collect::<Result<_, Invalid>>()?));
     }
     Ok(number(text)?.map_or_else(|| Value::String(text.to_owned()), Value::Float))
-}
-
-enum PlaceMut<'a> {
-    Table(&'a mut Table),
-    Array(&'a mut Vec<Value>),
-}
-
-impl<'a> PlaceMut<'a> {
-    fn enter(self, part: &str) -> Result<Self, AssignError> {
-        match self.slot(part)? {
-            Value::Table(table) => Ok(Self::Table(table)),
-            Value::Array(array) => Ok(Self::Array(array)),
-            other => Err(AssignError::NoPlace { part: part.to_owned(), kind: other.type_str() }),
-        }
-    }
-
-    /// Returns the value at `part`. A missing table, such as `[solver]`, is created.
-    fn slot(self, part: &str) -> Result<&'a mut Value, AssignError> {
-        match self {
-            Self::Table(table) => Ok(table.entry(part).or_insert_with(|| Value::Table(Table::new()))),
-            Self::Array(array) => {
-                let length = array.len();
-                let no_index = || AssignError::Index { part: part.to_owned(), length };
-                let index: usize = part.parse().map_err(|_| no_index())?;
-                array.get_mut(index).ok_or_else(no_index)
-            }
-        }
-    }
 }
 
 /// Returns the line of the longest prefix of `key` that is written in the file.
