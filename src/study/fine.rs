@@ -1,24 +1,23 @@
 //! Reference solutions of a scene on refined meshes, up to one with a small error.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::StudyError;
 use super::convergence::remaining_error;
-use super::displacement_map::DisplacementMap;
 use super::progress::check;
+use super::reference::{MovedPoint, Reference, is_unstable, probes_of};
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
-use crate::format::{engineering, engineering_pair};
-use crate::mesh::{Mesh, Segment, bent, straightened};
+use crate::mesh::{Mesh, bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::progress::{Observer, Progress};
 use crate::rotation::Rotation;
-use crate::scene::{Beam, ElementKind, Load, MethodKind, Place, Scene};
-use crate::sentence::{Sentence, displayed, sentence};
+use crate::scene::{Analysis, Beam, ElementKind, Load, MethodKind, Place, Scene};
+use crate::sentence::sentence;
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
@@ -35,76 +34,18 @@ pub enum Effort {
 impl Effort {
     /// Returns the largest number of unknowns of a mesh.
     pub(super) fn most_unknowns(self) -> usize {
-        match self {
-            Self::Bounded => 10_000,
-            Self::Full => 700_000,
-        }
+        if self == Self::Full { 700_000 } else { 10_000 }
     }
 
     /// Returns the largest sum of unknowns over all solves.
     fn most_work(self) -> f64 {
-        match self {
-            Self::Bounded => 5e5,
-            Self::Full => f64::INFINITY,
-        }
+        if self == Self::Full { f64::INFINITY } else { 5e5 }
     }
 
     /// Returns the error, relative to the displacement, below which no finer mesh is tried.
     fn good_enough(self) -> f64 {
-        match self {
-            Self::Bounded => 1e-3,
-            Self::Full => 1e-4,
-        }
+        if self == Self::Full { 1e-4 } else { 1e-3 }
     }
-}
-
-/// Point of a scene that is not at a node of the mesh.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[non_exhaustive]
-pub struct MovedPoint {
-    /// Table of the scene that names the point: `load.0`, `support.1`.
-    pub key: String,
-    /// Position at rest, m.
-    pub at: [f64; 2],
-    /// Distance to the node used instead, m.
-    pub distance: f64,
-}
-
-displayed!(MovedPoint);
-
-impl From<&MovedPoint> for Sentence {
-    fn from(point: &MovedPoint) -> Self {
-        sentence!(
-            "%{point} at %{place} acts on the nearest node, %{distance} away",
-            point = point.key.clone(),
-            place = engineering_pair(point.at, "m"),
-            distance = engineering(point.distance, "m")
-        )
-    }
-}
-
-/// Solution on the finest mesh.
-pub(super) struct Fine {
-    /// Displacement of every probe, m.
-    pub probes: Vec<Vector2<f64>>,
-    /// Bound of the error of each probe, m; `None` if unknown.
-    pub errors: Vec<Option<f64>>,
-    /// Closed outlines of the body, m, node by node.
-    pub outline: Vec<Vec<Vector2<f64>>>,
-    /// The same at rest, m.
-    pub rest_outline: Vec<Vec<Vector2<f64>>>,
-    /// Displacement of every point.
-    pub displacements: DisplacementMap,
-    /// Displacement of the first probe by linear theory on the same mesh, m.
-    pub linear: Option<Vector2<f64>>,
-    /// Points that are not at the places given in the scene.
-    pub moved: Vec<MovedPoint>,
-    /// `true` if the solution on the next finer mesh has a fold, which [`Self::errors`] cover.
-    pub folds: bool,
-    /// `true` if the mesh comes from a file and all its sides are straight.
-    pub is_polygon: bool,
-    /// Number of unknowns of the finest mesh.
-    pub unknowns: usize,
 }
 
 /// Returns the element of fine solutions: the one of the highest degree that the scene's mesh can have, which converges
@@ -131,18 +72,92 @@ const FARTHER_FOLD: f64 = 1.5;
 /// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
+impl Reference {
+    /// Computes the reference solution of a scene at bounded cost.
+    ///
+    /// ```
+    /// use warpbeam::{ProbeReference, Reference, ReferenceSource, Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
+    /// let reference: ProbeReference = Reference::of(&scene)?.first().ok_or("no reference")?;
+    /// // P L³/(3 E I) = 4 mm, and a little more by shear.
+    /// assert!((reference.displacement.y + 0.004).abs() < 0.0001);
+    /// assert_eq!(reference.source, ReferenceSource::ExactBeam);
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.solve();
+    /// let error = reference.percent(beam.probe("tip").unwrap_or_default(), reference.displacement);
+    /// assert!(error < 2.0, "the tip is off by {error} %");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Same errors as [`Self::find`].
+    pub fn of(scene: &Scene) -> Result<Self, StudyError> {
+        Self::find(scene, None, Effort::Bounded, &|_| ControlFlow::Continue(()))
+    }
+
+    /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
+    /// `near`, a simulation of the scene on a mesh of its own, that mesh is refined.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use warpbeam::{Effort, MovedPoint, Observer, Progress, Reference, Scene, Sentence};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
+    /// let observe: Observer<'_> = &|Progress { fraction, now }| {
+    ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
+    ///     ControlFlow::Continue(()) // `Break` cancels
+    /// };
+    /// let reference = Reference::find(&scene, None, Effort::Bounded, observe)?;
+    /// for MovedPoint { key, distance, .. } in &reference.moved {
+    ///     println!("{key} acts on a node {distance} m away");
+    /// }
+    /// assert!(reference.moved.is_empty(), "the scene names edges, not points");
+    /// # Ok::<(), warpbeam::StudyError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`StudyError`]: the scene is dynamic or has no probe, its mesh is too fine to be refined, the fine solutions do
+    /// not converge, or the search was cancelled.
+    pub fn find(
+        scene: &Scene,
+        near: Option<&Simulation>,
+        effort: Effort,
+        observe: Observer<'_>,
+    ) -> Result<Self, StudyError> {
+        match near {
+            Some(_) => scene.validate_all_but_geometry(),
+            None => scene.validate(),
+        }
+        .map_err(SimulationError::from)?;
+        if scene.analysis == Analysis::Dynamic {
+            return Err(StudyError::InMotion);
+        }
+        if scene.probes.is_empty() {
+            return Err(StudyError::NoProbe);
+        }
+        if near.is_some_and(is_unstable) {
+            return Err(StudyError::Unstable);
+        }
+        match on_fine_meshes(scene, near, effort, observe) {
+            Err(StudyError::NoReference) => Self::of_slender(scene).ok_or(StudyError::NoReference),
+            found => found,
+        }
+    }
+}
+
 /// Computes the reference solution: on each mesh the end of the load path from rest. With `near`, a simulation of the
 /// scene on a mesh of its own, that mesh is refined.
 ///
 /// # Errors
 /// [`StudyError`] if the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
-pub(super) fn fine(
-    scene: &Scene,
+fn on_fine_meshes(
+    original: &Scene,
     near: Option<&Simulation>,
     effort: Effort,
     observe: Observer<'_>,
-) -> Result<Fine, StudyError> {
-    let mut scene = prepared(scene);
+) -> Result<Reference, StudyError> {
+    let mut scene = prepared(original);
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = has_point(&scene);
@@ -212,20 +227,8 @@ pub(super) fn fine(
     scene.solver.method = MethodKind::Linear;
     let mut linear = Simulation::with_system(&scene, simulation.system().clone())?;
     linear.solve();
-    let first = linear.problem().probes().first().map(|p| p.mean(linear.displacement()));
-    let [rest_outline, outline] = outlines(&simulation);
-    Ok(Fine {
-        probes: solutions.pop().unwrap_or_default(),
-        errors,
-        outline,
-        rest_outline,
-        displacements: DisplacementMap::of(&simulation),
-        linear: first,
-        moved,
-        folds: !fold.is_empty(),
-        is_polygon: scene.beam.is_none() && has_straight_sides(simulation.system().mesh()),
-        unknowns: simulation.system().dofs(),
-    })
+    let solved: Vec<_> = solutions.pop().unwrap_or_default().into_iter().zip(errors).collect();
+    Ok(Reference::of_finest(original, &simulation, &solved, &linear, moved, !fold.is_empty()))
 }
 
 /// Returns a scene with element and method of fine solutions.
@@ -244,12 +247,6 @@ fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
     const FAR: f64 = 0.03;
     let u = simulation.displacement();
     largest_distance(start, u) > FAR * largest(u).max(largest(start))
-}
-
-/// Returns the displacement of every probe, m.
-pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
-    let u = simulation.displacement();
-    simulation.problem().probes().iter().map(|probe| probe.mean(u)).collect()
 }
 
 /// Returns `true` if a rectangle has a fold, as the corner of a clamp has under large compression: the law between stress
@@ -544,37 +541,4 @@ fn on_lines(lines: &[f64], part: f64) -> f64 {
         Some([here, ..]) => *here,
         _ => lines.last().copied().unwrap_or(part),
     }
-}
-
-/// Returns `true` if no side of the outline is curved.
-pub(super) fn has_straight_sides(mesh: &Mesh) -> bool {
-    const STRAIGHT: f64 = 1e-9;
-    mesh.outline().iter().all(|side| {
-        let [a, b] = side.ends().map(|n| mesh.node(n));
-        side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
-    })
-}
-
-/// Returns the closed outlines of a body at rest and in its state, m, node by node.
-pub(super) fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
-    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
-    for side in mesh.outline() {
-        sides.entry(side.ends()[0]).or_default().push(side);
-    }
-    let [mut rest, mut current] = [Vec::new(), Vec::new()];
-    while let Some((&first, _)) = sides.first_key_value() {
-        let (mut line, mut corner) = (Vec::new(), first);
-        while let Some(own) = sides.get_mut(&corner) {
-            let Some(side) = own.pop() else { break };
-            if own.is_empty() {
-                sides.remove(&corner);
-            }
-            line.extend(side.nodes());
-            corner = side.ends()[1];
-        }
-        rest.push(line.iter().map(|&n| mesh.node(n)).collect());
-        current.push(line.iter().map(|&n| mesh.node(n) + u[n as usize]).collect());
-    }
-    [rest, current]
 }

@@ -3,11 +3,8 @@
 
 use std::sync::Arc;
 
-use super::displacement_map::DisplacementMap;
-use super::fine::{
-    Effort, Fine, Meshes, MovedPoint, errors, has_point, has_straight_sides, outlines, prepared, probes_of,
-};
-use super::reference::Reference;
+use super::fine::{Effort, Meshes, errors, has_point, prepared};
+use super::reference::{MovedPoint, Reference, probes_of};
 use crate::assembly::System;
 use crate::scene::{Load, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, Status};
@@ -82,7 +79,13 @@ impl LiveReference {
         self.is_started = true;
         self.linear.change_scene(&scene_of_levels.with_method(MethodKind::Linear)).ok()?;
         self.linear.solve();
-        Some(Reference::of_live(scene, self.fine()?))
+        let [.., _, finest] = self.levels.as_slice() else { return None };
+        let solutions: Vec<_> = self.levels.iter().map(probes_of).collect();
+        let [.., coarse, fine] = solutions.as_slice() else { return None };
+        // The displacements of the probes are extrapolated from the two finest meshes.
+        let probes = coarse.iter().zip(fine).map(|(coarse, fine)| fine + (fine - coarse) / 3.0);
+        let solved: Vec<_> = probes.zip(errors(&solutions, has_point(&self.own))).collect();
+        Some(Reference::of_finest(scene, finest, &solved, &self.linear, self.moved.clone(), false))
     }
 
     /// Returns the scene of the solutions with the loads of `scene`.
@@ -95,26 +98,6 @@ impl LiveReference {
             }
         }
         own
-    }
-
-    /// Returns the solution on the finest mesh; that of the probes is extrapolated from the two finest.
-    fn fine(&self) -> Option<Fine> {
-        let [.., _, finest] = self.levels.as_slice() else { return None };
-        let solutions: Vec<_> = self.levels.iter().map(probes_of).collect();
-        let [.., coarse, fine] = solutions.as_slice() else { return None };
-        let [rest_outline, outline] = outlines(finest);
-        Some(Fine {
-            probes: coarse.iter().zip(fine).map(|(coarse, fine)| fine + (fine - coarse) / 3.0).collect(),
-            errors: errors(&solutions, has_point(&self.own)),
-            outline,
-            rest_outline,
-            displacements: DisplacementMap::of(finest),
-            linear: probes_of(&self.linear).first().copied(),
-            moved: self.moved.clone(),
-            folds: false,
-            is_polygon: self.own.beam.is_none() && has_straight_sides(finest.system().mesh()),
-            unknowns: finest.system().dofs(),
-        })
     }
 }
 

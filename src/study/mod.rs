@@ -32,7 +32,7 @@ pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub(crate) use claim::driven_texts;
 pub use claim::{Advice, Claim};
 pub use colors::color;
-pub use fine::{Effort, MovedPoint, moved_points};
+pub use fine::{Effort, moved_points};
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
@@ -46,7 +46,7 @@ pub use ranking::Demand;
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
 pub(crate) use reference::{FOLDS, is_known_unstable};
-pub use reference::{ProbeReference, Reference, ReferenceSource};
+pub use reference::{MovedPoint, ProbeReference, Reference, ReferenceSource};
 pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
 pub use trade::{Ending, EnergyBehaviour, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};

@@ -2,21 +2,21 @@
 //! reference is the exact beam ([`crate::exact_beam`]) if solutions on fine meshes confirm it, else the finest of
 //! these.
 
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::StudyError;
 use super::displacement_map::DisplacementMap;
-use super::fine::{Effort, Fine, MovedPoint, fine};
 use super::progress::check;
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
-use crate::format::{number, two_digits};
+use crate::format::{engineering, engineering_pair, number, two_digits};
+use crate::mesh::{Mesh, Segment};
 use crate::method::Certificate;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, MethodKind, Place, Scene};
+use crate::scene::{MethodKind, Place, Probe, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
 
@@ -102,8 +102,31 @@ impl From<&ProbeReference> for Sentence {
     }
 }
 
-/// Reference solution of a scene.
+/// Point of a scene that is not at a node of the mesh.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
+pub struct MovedPoint {
+    /// Table of the scene that names the point: `load.0`, `support.1`.
+    pub key: String,
+    /// Position at rest, m.
+    pub at: [f64; 2],
+    /// Distance to the node used instead, m.
+    pub distance: f64,
+}
+
+impl From<&MovedPoint> for Sentence {
+    fn from(point: &MovedPoint) -> Self {
+        sentence!(
+            "%{point} at %{place} acts on the nearest node, %{distance} away",
+            point = point.key.clone(),
+            place = engineering_pair(point.at, "m"),
+            distance = engineering(point.distance, "m")
+        )
+    }
+}
+
+/// Reference solution of a scene.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct Reference {
     /// Reference of every probe of the scene; `None` if the probe does not move, or no bound of the error is known.
@@ -135,11 +158,12 @@ pub struct Reference {
 }
 
 /// Reason why a probe has no reference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 enum Missing {
     /// The probe does not move.
     AtRest,
     /// The solutions on finer meshes give no bound of the error.
+    #[default]
     NoBound,
     /// The bound exceeds [`LARGEST_OWN_ERROR`].
     LargeBound,
@@ -174,7 +198,7 @@ impl From<&Missing> for Sentence {
     }
 }
 
-displayed!(ReferenceSource, ProbeReference, Reference);
+displayed!(ReferenceSource, ProbeReference, MovedPoint, Reference);
 
 impl From<&Reference> for Sentence {
     fn from(reference: &Reference) -> Self {
@@ -202,142 +226,47 @@ const MARGIN: f64 = 1.5;
 const MAX_CONFIRMED_ERROR: f64 = 1.0;
 
 impl Reference {
-    /// Computes the reference solution of a scene at bounded cost.
-    ///
-    /// ```
-    /// use warpbeam::{ProbeReference, Reference, ReferenceSource, Scene, Simulation};
-    ///
-    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
-    /// let reference: ProbeReference = Reference::of(&scene)?.first().ok_or("no reference")?;
-    /// // P L³/(3 E I) = 4 mm, and a little more by shear.
-    /// assert!((reference.displacement.y + 0.004).abs() < 0.0001);
-    /// assert_eq!(reference.source, ReferenceSource::ExactBeam);
-    /// let mut beam = Simulation::new(&scene)?;
-    /// beam.solve();
-    /// let error = reference.percent(beam.probe("tip").unwrap_or_default(), reference.displacement);
-    /// assert!(error < 2.0, "the tip is off by {error} %");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// Same errors as [`Self::find`].
-    pub fn of(scene: &Scene) -> Result<Self, StudyError> {
-        Self::find(scene, None, Effort::Bounded, &|_| ControlFlow::Continue(()))
-    }
-
-    /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
-    /// `near`, a simulation of the scene on a mesh of its own, that mesh is refined.
-    ///
-    /// ```
-    /// use std::ops::ControlFlow;
-    /// use warpbeam::{Effort, MovedPoint, Observer, Progress, Reference, Scene, Sentence};
-    ///
-    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
-    /// let observe: Observer<'_> = &|Progress { fraction, now }| {
-    ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
-    ///     ControlFlow::Continue(()) // `Break` cancels
-    /// };
-    /// let reference = Reference::find(&scene, None, Effort::Bounded, observe)?;
-    /// for MovedPoint { key, distance, .. } in &reference.moved {
-    ///     println!("{key} acts on a node {distance} m away");
-    /// }
-    /// assert!(reference.moved.is_empty(), "the scene names edges, not points");
-    /// # Ok::<(), warpbeam::StudyError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`StudyError`]: the scene is dynamic or has no probe, its mesh is too fine to be refined, the fine solutions do
-    /// not converge, or the search was cancelled.
-    pub fn find(
+    /// Returns the reference of the solution on the finest mesh of a search: the displacements of the probes, m, with the
+    /// bounds of their errors, and linear theory on the same mesh. For probes at its tip it is the exact beam if the
+    /// solution confirms it.
+    pub(super) fn of_finest(
         scene: &Scene,
-        near: Option<&Simulation>,
-        effort: Effort,
-        observe: Observer<'_>,
-    ) -> Result<Self, StudyError> {
-        match near {
-            Some(_) => scene.validate_all_but_geometry(),
-            None => scene.validate(),
-        }
-        .map_err(SimulationError::from)?;
-        if scene.analysis == Analysis::Dynamic {
-            return Err(StudyError::InMotion);
-        }
-        if scene.probes.is_empty() {
-            return Err(StudyError::NoProbe);
-        }
-        if near.is_some_and(is_unstable) {
-            return Err(StudyError::Unstable);
-        }
-        let beam = ExactBeam::of(scene);
-        match (beam.and_then(|b| b.tip_displacement()), fine(scene, near, effort, observe)) {
-            (Some(tip), Ok(fine)) => Ok(Self::confirmed(scene, beam, tip, fine)),
-            (None, Ok(fine)) => Ok(Self::of_fine(scene, fine)),
-            (Some(tip), Err(StudyError::NoReference)) => {
-                Self::of_slender(scene, beam, tip).ok_or(StudyError::NoReference)
-            }
-            (_, Err(error)) => Err(error),
-        }
-    }
-
-    /// Returns the reference of a fine solution that follows the scene's load.
-    #[cfg(feature = "app")]
-    pub(super) fn of_live(scene: &Scene, fine: Fine) -> Self {
-        let beam = ExactBeam::of(scene);
-        match beam.and_then(|beam| beam.tip_displacement()) {
-            Some(tip) => Self::confirmed(scene, beam, tip, fine),
-            None => Self::of_fine(scene, fine),
-        }
-    }
-
-    fn of_fine(scene: &Scene, fine: Fine) -> Self {
+        finest: &Simulation,
+        solved: &[(Vector2<f64>, Option<f64>)],
+        linear: &Simulation,
+        moved: Vec<MovedPoint>,
+        folds: bool,
+    ) -> Self {
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
-        let probes = fine.probes.iter().zip(&fine.errors).map(|(&u, error)| probe(u, (*error)?, source));
-        let probes: Vec<_> = probes.collect();
-        let lines = fine.outline.iter().flatten().zip(fine.rest_outline.iter().flatten());
+        let [rest_outline, outline] = outlines(finest);
+        let lines = outline.iter().flatten().zip(rest_outline.iter().flatten());
         let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
-        let first = fine.probes.first().zip(fine.errors.first());
-        let missing = first.map_or(Missing::NoBound, |(&u, &error)| Missing::of(u, error, largest));
-        let is_known = probes.first().is_some_and(Option::is_some);
-        Self {
-            probes,
-            missing,
-            beam_off_by_percent: None,
-            outline: if is_known { fine.outline } else { Vec::new() },
-            rest_outline: if is_known { fine.rest_outline } else { Vec::new() },
-            displacements: if is_known { fine.displacements } else { DisplacementMap::default() },
-            linear: fine.linear,
-            moved: fine.moved,
-            folds: fine.folds,
-            is_polygon: fine.is_polygon,
-            unknowns: fine.unknowns,
+        let mut reference = Self {
+            probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
+            missing: solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(u, error, largest)),
+            linear: first_probe(linear).ok(),
+            moved,
+            folds,
+            is_polygon: scene.beam.is_none() && has_straight_sides(finest.system().mesh()),
+            unknowns: finest.system().dofs(),
+            ..Self::default()
+        };
+        if reference.first().is_some() {
+            (reference.rest_outline, reference.outline) = (rest_outline, outline);
+            reference.displacements = DisplacementMap::of(finest);
         }
-    }
-
-    /// Returns the exact beam's values for probes at its tip if a fine solution confirms them, the fine solution for
-    /// all others.
-    fn confirmed(scene: &Scene, beam: Option<ExactBeam>, tip: Vector2<f64>, fine: Fine) -> Self {
-        let own: Vec<Option<f64>> = fine.errors.clone();
-        let ends = fine.probes.clone();
-        let mut reference = Self::of_fine(scene, fine);
-        for (i, place) in scene.probes.iter().map(|p| &p.place).enumerate() {
-            if *place != Place::from("right") {
-                continue;
-            }
-            let off = (ends[i] - tip).norm();
+        let Some((beam, tip)) = exact(scene) else { return reference };
+        for (i, (_, &(u, own))) in scene.probes.iter().zip(solved).enumerate().filter(|(_, (p, _))| is_at_tip(p)) {
+            let off = (u - tip).norm();
             let within = |own: f64| off <= MARGIN * own && off + own <= 0.01 * MAX_CONFIRMED_ERROR * tip.norm();
-            let confirmed = off <= 0.01 * CONFIRMED * tip.norm() || own[i].is_some_and(within);
-            if confirmed {
+            if off <= 0.01 * CONFIRMED * tip.norm() || own.is_some_and(within) {
                 // Without a bound the error of the fine solution is taken as its distance from the beam.
-                let error = off + own[i].unwrap_or(off);
-                reference.probes[i] = probe(tip, error, ReferenceSource::ExactBeam);
-                let is_known = i == 0 && reference.probes[i].is_some();
-                let beam = beam.zip(scene.beam.as_ref()).filter(|_| is_known);
-                if let Some([rest, line]) = beam.and_then(|(b, beam)| b.outline(beam.height)) {
-                    reference.displacements = DisplacementMap::of_beam([&rest, &line]);
-                    (reference.rest_outline, reference.outline) = (vec![rest], vec![line]);
+                reference.probes[i] = probe(tip, off + own.unwrap_or(off), ReferenceSource::ExactBeam);
+                if i == 0 && reference.first().is_some() {
+                    reference.draw(scene, &beam);
                 }
             } else if i == 0 {
-                reference.beam_off_by_percent = error_percent(tip, ends[i]);
+                reference.beam_off_by_percent = error_percent(tip, u);
             }
         }
         reference
@@ -345,32 +274,26 @@ impl Reference {
 
     /// Returns the exact beam for a body too slender for any mesh: the assumption of plane sections has an error of the
     /// order of height over length. `None` if this ratio is not small, or a probe is not at the tip.
-    fn of_slender(scene: &Scene, beam: Option<ExactBeam>, tip: Vector2<f64>) -> Option<Self> {
+    pub(super) fn of_slender(scene: &Scene) -> Option<Self> {
         /// Largest height over length for which the beam's own error is known.
         const STUBBY: f64 = 0.02;
-        let rectangle = scene.beam.as_ref()?;
-        let at_tip = scene.probes.iter().all(|p| p.place == Place::from("right"));
+        let (rectangle, (beam, tip)) = (scene.beam.as_ref()?, exact(scene)?);
         let ratio = rectangle.height / rectangle.length;
-        if !at_tip || ratio > STUBBY {
+        if ratio > STUBBY || !scene.probes.iter().all(is_at_tip) {
             return None;
         }
-        let lines = beam?.outline(rectangle.height);
-        let displacements =
-            lines.as_ref().map(|[rest, line]| DisplacementMap::of_beam([rest, line])).unwrap_or_default();
-        let [rest, line] = lines.map(|lines| lines.map(|line| vec![line])).unwrap_or_default();
-        Some(Self {
-            probes: vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()],
-            missing: Missing::NoBound,
-            beam_off_by_percent: None,
-            outline: line,
-            rest_outline: rest,
-            displacements,
-            linear: None,
-            moved: Vec::new(),
-            folds: false,
-            is_polygon: false,
-            unknowns: 0,
-        })
+        let probes = vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()];
+        let mut reference = Self { probes, ..Self::default() };
+        reference.draw(scene, &beam);
+        Some(reference)
+    }
+
+    /// Takes outline and displacements from the exact beam of a scene, if it has an outline.
+    fn draw(&mut self, scene: &Scene, beam: &ExactBeam) {
+        if let Some([rest, line]) = scene.beam.as_ref().and_then(|rectangle| beam.outline(rectangle.height)) {
+            self.displacements = DisplacementMap::of_beam([&rest, &line]);
+            (self.rest_outline, self.outline) = (vec![rest], vec![line]);
+        }
     }
 
     /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and
@@ -424,7 +347,7 @@ pub(crate) const MAX_CERTIFIED: usize = 100_000;
 
 /// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has
 /// not been.
-fn is_unstable(simulation: &Simulation) -> bool {
+pub(super) fn is_unstable(simulation: &Simulation) -> bool {
     let is_small = simulation.system().dofs() <= MAX_CERTIFIED;
     let examine =
         |search: Equilibrium<'_>| search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
@@ -442,6 +365,16 @@ fn is_unstable_by(simulation: &Simulation, certificate: impl FnOnce(Equilibrium<
     *simulation.status() == Status::Converged
         && !simulation.is_linear()
         && simulation.equilibrium().and_then(certificate).and_then(|c| c.stable) == Some(false)
+}
+
+/// Returns the exact beam of a scene with the displacement of its tip, m.
+fn exact(scene: &Scene) -> Option<(ExactBeam, Vector2<f64>)> {
+    let beam = ExactBeam::of(scene)?;
+    Some((beam, beam.tip_displacement()?))
+}
+
+fn is_at_tip(probe: &Probe) -> bool {
+    probe.place == Place::from("right")
 }
 
 /// Returns the reference of a probe; `None` if its error, m, is too large a fraction of its displacement.
@@ -471,10 +404,11 @@ pub(super) fn end(
     if *simulation.status() != Status::Converged && method == MethodKind::Newton {
         return Err(StudyError::NoReference);
     }
-    Ok(probe_displacements(&simulation))
+    Ok(probes_of(&simulation))
 }
 
-fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {
+/// Returns the displacement of every probe, m.
+pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
     let displacement = simulation.displacement();
     simulation.problem().probes().iter().map(|p| p.mean(displacement)).collect()
 }
@@ -483,4 +417,37 @@ fn probe_displacements(simulation: &Simulation) -> Vec<Vector2<f64>> {
 pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
     let probe = simulation.problem().probes().first().ok_or(StudyError::NoProbe)?;
     Ok(probe.mean(simulation.displacement()))
+}
+
+/// Returns `true` if no side of the outline is curved.
+fn has_straight_sides(mesh: &Mesh) -> bool {
+    const STRAIGHT: f64 = 1e-9;
+    mesh.outline().iter().all(|side| {
+        let [a, b] = side.ends().map(|n| mesh.node(n));
+        side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
+    })
+}
+
+/// Returns the closed outlines of a body at rest and in its state, m, node by node.
+fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
+    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
+    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
+    for side in mesh.outline() {
+        sides.entry(side.ends()[0]).or_default().push(side);
+    }
+    let [mut rest, mut current] = [Vec::new(), Vec::new()];
+    while let Some((&first, _)) = sides.first_key_value() {
+        let (mut line, mut corner) = (Vec::new(), first);
+        while let Some(own) = sides.get_mut(&corner) {
+            let Some(side) = own.pop() else { break };
+            if own.is_empty() {
+                sides.remove(&corner);
+            }
+            line.extend(side.nodes());
+            corner = side.ends()[1];
+        }
+        rest.push(line.iter().map(|&n| mesh.node(n)).collect());
+        current.push(line.iter().map(|&n| mesh.node(n) + u[n as usize]).collect());
+    }
+    [rest, current]
 }
