@@ -92,102 +92,28 @@ const PREFIXES: &[(&str, i32)] = &[
 
 /// Reason why a text is not a number in the expected unit.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{}", Sentence::from(self))]
-#[non_exhaustive]
-pub enum UnitError {
-    /// The text does not begin with a number.
-    NoNumber {
-        /// Text as typed.
-        text: String,
-        /// Expected quantity.
-        expected: Quantity,
-    },
-    /// A comma in the number separates thousands, or is the decimal sign.
-    Ambiguous {
-        /// Text as typed.
-        text: String,
-        /// The number with thousands, and the one with decimals.
-        readings: [String; 2],
-    },
-    /// A comma, a space or a second decimal point in the number is neither the decimal sign nor separates thousands.
-    Malformed {
-        /// Text as typed.
-        text: String,
-    },
-    /// The text after the number is not a unit.
-    UnknownUnit {
-        /// Text as typed.
-        text: String,
-        /// Unknown unit.
-        unit: String,
-        /// Expected quantity.
-        expected: Quantity,
-    },
-    /// The unit has the wrong dimension.
-    WrongDimension {
-        /// Text as typed.
-        text: String,
-        /// Quantity of the text.
-        got: Quantity,
-        /// Expected quantity.
-        expected: Quantity,
-    },
+#[error("{message}")]
+pub struct UnitError {
+    /// `false` if the text does not begin with a number.
+    pub has_number: bool,
+    /// Text as typed, and the expected quantity.
+    pub message: Sentence,
 }
 
-impl From<&UnitError> for Sentence {
-    fn from(error: &UnitError) -> Self {
-        match error {
-            UnitError::NoNumber { text, expected } => {
-                sentence!("`%{text}` is not a number; expected %{expected}", text, expected)
-            }
-            UnitError::Ambiguous { text, readings: [thousands, decimals] } => sentence!(
-                "`%{text}` can be read in two ways: write %{thousands} or %{decimals}",
-                text,
-                thousands,
-                decimals
-            ),
-            UnitError::Malformed { text } => sentence!(
-                "`%{text}` is not a number: numbers look like 1500000, 1 500 000 and 1.5e6, with a point before decimals",
-                text
-            ),
-            UnitError::UnknownUnit { text, unit, expected } => {
-                sentence!("`%{text}` has the unknown unit `%{unit}`; expected %{expected}", text, unit, expected)
-            }
-            UnitError::WrongDimension { text, got, expected } => {
-                sentence!("`%{text}` is %{got}; expected %{expected}", text, got, expected)
-            }
-        }
-    }
-}
-
-/// Dimension with the expected unit, shown as "a pressure (Pa)".
-#[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
-    dimension: Dimension,
-    unit: Option<&'static str>,
-}
-
-impl Quantity {
-    fn in_unit(unit: &'static str) -> Self {
-        Self { dimension: scale_of(unit).map_or(NUMBER, |scale| scale.dimension), unit: Some(unit) }
-    }
-}
-
-impl From<&Quantity> for Sentence {
-    fn from(Quantity { dimension, unit }: &Quantity) -> Self {
-        let known = NAMES.iter().find(|known| known.0 == *dimension);
-        let unit = unit.or(known.map(|known| known.2)).unwrap_or_default();
-        match known {
-            Some((_, name, _)) if unit.is_empty() => (*name).into(),
-            Some((_, name, _)) => sentence!("%{quantity} (%{unit})", quantity = *name, unit),
-            None => {
-                let powers = ["m", "kg", "s", "rad"].iter().zip(dimension.0).filter(|(_, power)| *power != 0);
-                let powers = powers.map(|(base, power)| match power {
-                    1 => format!(" {base}"),
-                    power => format!(" {base}^{power}"),
-                });
-                format!("a quantity in{}", powers.collect::<String>()).into()
-            }
+/// Describes a dimension with the expected unit, or its SI unit: "a pressure (Pa)".
+fn quantity(dimension: Dimension, unit: Option<&'static str>) -> Sentence {
+    let known = NAMES.iter().find(|known| known.0 == dimension);
+    let unit = unit.or(known.map(|known| known.2)).unwrap_or_default();
+    match known {
+        Some((_, name, _)) if unit.is_empty() => (*name).into(),
+        Some((_, name, _)) => sentence!("%{quantity} (%{unit})", quantity = *name, unit),
+        None => {
+            let powers = ["m", "kg", "s", "rad"].iter().zip(dimension.0).filter(|(_, power)| *power != 0);
+            let powers = powers.map(|(base, power)| match power {
+                1 => format!(" {base}"),
+                power => format!(" {base}^{power}"),
+            });
+            format!("a quantity in{}", powers.collect::<String>()).into()
         }
     }
 }
@@ -218,27 +144,43 @@ struct Scale {
 pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     let text = text.trim();
     let target = scale_of(unit).unwrap_or(Scale { dimension: NUMBER, factor: 1.0, tens: 0 });
-    let expected = || Quantity::in_unit(unit);
-    let malformed = || UnitError::Malformed { text: shown(text) };
-    let Grouped { number: plain, commas } = without_groups(text).ok_or_else(malformed)?;
-    let (number, rest) =
-        split(&plain).ok_or_else(|| UnitError::NoNumber { text: shown(text), expected: expected() })?;
+    let expected = || quantity(target.dimension, Some(unit));
+    let refused = |message: Sentence| UnitError { has_number: true, message };
+    let malformed = || {
+        refused(sentence!(
+            "`%{text}` is not a number: numbers look like 1500000, 1 500 000 and 1.5e6, with a point before decimals",
+            text = shown(text)
+        ))
+    };
+    let (plain, commas) = without_groups(text).ok_or_else(malformed)?;
+    let (number, rest) = split(&plain).ok_or_else(|| {
+        let (text, expected) = (shown(text), expected());
+        let message = sentence!("`%{text}` is not a number; expected %{expected}", text, expected);
+        UnitError { has_number: false, message }
+    })?;
     if rest.starts_with('.') {
         return Err(malformed());
     }
     if commas == 1 && !plain.strip_suffix(rest).is_some_and(|number| number.contains('.')) {
-        let readings = [shown(&plain), shown(&text.replacen(',', ".", 1))];
-        return Err(UnitError::Ambiguous { text: shown(text), readings });
+        let [text, thousands, decimals] = [text, &plain, &text.replacen(',', ".", 1)].map(shown);
+        return Err(refused(sentence!(
+            "`%{text}` can be read in two ways: write %{thousands} or %{decimals}",
+            text,
+            thousands,
+            decimals
+        )));
     }
     let rest = rest.trim();
     if rest.is_empty() {
         return Ok(number);
     }
-    let unknown = || UnitError::UnknownUnit { text: shown(text), unit: shown(rest), expected: expected() };
-    let typed = scale_of(rest).ok_or_else(unknown)?;
+    let typed = scale_of(rest).ok_or_else(|| {
+        let ([text, unit], expected) = ([text, rest].map(shown), expected());
+        refused(sentence!("`%{text}` has the unknown unit `%{unit}`; expected %{expected}", text, unit, expected))
+    })?;
     if typed.dimension != target.dimension {
-        let got = Quantity { dimension: typed.dimension, unit: None };
-        return Err(UnitError::WrongDimension { text: shown(text), got, expected: expected() });
+        let (text, got, expected) = (shown(text), quantity(typed.dimension, None), expected());
+        return Err(refused(sentence!("`%{text}` is %{got}; expected %{expected}", text, got, expected)));
     }
     let value = if typed.factor == target.factor { number } else { number * (typed.factor / target.factor) };
     // Positive powers of ten are exact, negative ones are not.
@@ -246,16 +188,10 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
 }
 
-/// Text of a number without thousands separators and with `-` for a typographic minus.
-struct Grouped<'a> {
-    number: Cow<'a, str>,
-    /// Number of commas that separated thousands.
-    commas: usize,
-}
-
-/// Removes thousands separators (`1,234,567` and `30 000` become `1234567` and `30000`); `None` if a comma or a space
-/// separates anything but groups of three digits.
-fn without_groups(text: &str) -> Option<Grouped<'_>> {
+/// Removes thousands separators (`1,234,567` and `30 000` become `1234567` and `30000`) and replaces a typographic minus;
+/// returns the text and the number of commas removed. `None` if a comma or a space separates anything but groups of three
+/// digits.
+fn without_groups(text: &str) -> Option<(Cow<'_, str>, usize)> {
     let text = text.trim();
     let sign = text.chars().next().filter(|c| "+-\u{2212}".contains(*c));
     let unsigned = text.get(sign.map_or(0, char::len_utf8)..)?;
@@ -281,12 +217,12 @@ fn without_groups(text: &str) -> Option<Grouped<'_>> {
         return None;
     }
     if separator.is_none() && sign != Some('\u{2212}') {
-        return Some(Grouped { number: Cow::Borrowed(text), commas: 0 });
+        return Some((Cow::Borrowed(text), 0));
     }
     let digits = whole.chars().filter(char::is_ascii_digit);
     let sign = sign.map(|sign| if sign == '\u{2212}' { '-' } else { sign });
     let number = sign.into_iter().chain(digits).chain(rest.chars()).collect();
-    Some(Grouped { number: Cow::Owned(number), commas: whole.matches(',').count() })
+    Some((Cow::Owned(number), whole.matches(',').count()))
 }
 
 /// Splits a text into the number at its start and the rest.
@@ -371,22 +307,22 @@ fn unit_of(key: &str) -> Option<&'static str> {
     KEYS.iter().find(|known| known.path == key)?.kind.quantity().map(|limit| limit.unit)
 }
 
-/// Returns the quantity that `key` holds; `None` if `key` holds no number with a unit.
-pub(crate) fn quantity_of(key: &str) -> Option<Quantity> {
-    unit_of(key).map(Quantity::in_unit)
+/// Describes the quantity that `key` holds; `None` if `key` holds no number with a unit.
+pub(crate) fn quantity_of(key: &str) -> Option<Sentence> {
+    unit_of(key).map(|unit| quantity(scale_of(unit).map_or(NUMBER, |scale| scale.dimension), Some(unit)))
 }
 
 /// Parses a number typed as text for `key`; `None` if `key` holds no number with a unit.
 pub(crate) fn number_for(key: &str, text: &str) -> Option<Result<f64, Invalid>> {
     let unit = unit_of(key)?;
-    Some(parse(text, unit).map_err(|error| Invalid::new(key, &error)))
+    Some(parse(text, unit).map_err(|error| Invalid::new(key, error.message)))
 }
 
 /// Writes a number for `key` in the unit of the text `before`; `None` if no decimal number in that unit is exactly `value`.
 #[cfg(feature = "cli")]
 pub(crate) fn in_unit_of(before: &str, key: &str, value: f64) -> Option<String> {
     let unit = unit_of(key)?;
-    let plain = without_groups(before.trim())?.number;
+    let (plain, _) = without_groups(before.trim())?;
     let (_, typed) = split(&plain)?;
     let one = parse(&format!("1{typed}"), unit).ok()?;
     let rounded = (14..17).filter_map(|digits| format!("{:.digits$e}", value / one).parse::<f64>().ok());

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 
 use super::keys::{KEYS, Key, Need};
 use super::{Invalid, Scene, units};
-use crate::sentence::{Sentence, sentence};
+use crate::sentence::sentence;
 
 /// Deserialisation error that distinguishes missing keys from all other errors.
 #[derive(Debug, Error)]
@@ -88,8 +88,7 @@ pub(super) fn missing(table: Table) -> Option<Invalid> {
         let Need::Required(description) = key.need else { return None };
         let parts: Vec<&str> = key.path.split('.').collect();
         let place = place_without(&scene, &parts)?;
-        let expected =
-            units::quantity_of(key.path).map_or_else(|| description.into(), |quantity| Sentence::from(&quantity));
+        let expected = units::quantity_of(key.path).unwrap_or_else(|| description.into());
         Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
     })
 }

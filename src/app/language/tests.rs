@@ -67,7 +67,7 @@ fn the_sentences_of_the_library_are_translated() {
     }
     texts.push(both(&floor_text(3e-8, 1e-8)));
     texts.extend([0.5, 2.0, 1e4].map(|rho| both(&rho_text(rho))));
-    texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| both(&units::parse(text, "N").unwrap_err())));
+    texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| both(&units::parse(text, "N").unwrap_err().message)));
     for id in ["article", "cantilever", "cook", "bracket"] {
         texts.push(both(&Reference::of(&open(id)).unwrap()));
         texts.push(both(&Setting { iterations: 4, ..Setting::of(&open(id)) }));

@@ -254,7 +254,7 @@ impl NumberField {
 pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
     match parse(text, limit.unit) {
         Ok(number) if number.is_finite() => limit.check(number).map(|()| number).map_err(|error| (&error).into()),
-        Ok(_) | Err(UnitError::NoNumber { .. }) => {
+        Ok(_) | Err(UnitError { has_number: false, .. }) => {
             let example = editable(12.0, limit.unit);
             Err(sentence!(
                 "expected a number, such as %{example}, got \u{201c}%{got}\u{201d}",
@@ -262,7 +262,7 @@ pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
                 got = text.trim()
             ))
         }
-        Err(error) => Err((&error).into()),
+        Err(error) => Err(error.message),
     }
 }
 
@@ -330,10 +330,15 @@ mod tests {
         }
         assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Ok(0.003), Ok(7800.0)));
         assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
-        assert!(matches!(parse("12 kN", "Pa"), Err(UnitError::WrongDimension { .. })));
-        assert!(matches!(parse("1,500", "N"), Err(UnitError::Ambiguous { .. })));
-        assert!(matches!(parse("0,5", "N"), Err(UnitError::Malformed { .. })));
-        assert!(matches!(parse("two", "N"), Err(UnitError::NoNumber { .. })));
+        for (text, unit, reason) in [
+            ("12 kN", "Pa", "is a force"),
+            ("1,500", "N", "in two ways"),
+            ("0,5", "N", "numbers look like"),
+            ("two", "N", "is not a number; expected"),
+        ] {
+            let error = parse(text, unit).unwrap_err();
+            assert!(error.to_string().contains(reason) && error.has_number == (text != "two"), "{error}");
+        }
         assert!(parse("", "N").is_err());
     }
 }
