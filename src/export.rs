@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::dynamics::Ledger;
 use crate::simulation::{Field, Simulation};
 
 /// Reason why a result was not written.
@@ -278,18 +279,9 @@ fn table_row(simulation: &Simulation) -> String {
         let x = probe.mean(nodes) + u;
         let _ = write!(text, ",{},{},{},{},{},{}", x.x, x.y, u.x, u.y, v.x, v.y);
     }
-    let ledger = simulation.motion().map(|motion| *motion.ledger()).unwrap_or_default();
-    let _ = writeln!(
-        text,
-        ",{},{},{},{},{},{},{}",
-        ledger.kinetic,
-        ledger.elastic,
-        ledger.potential,
-        ledger.dissipated,
-        ledger.integrator,
-        ledger.pulses,
-        ledger.mouse_spring
-    );
+    let Ledger { kinetic, elastic, potential, dissipated, integrator, pulses, mouse_spring, .. } =
+        simulation.motion().map(|motion| *motion.ledger()).unwrap_or_default();
+    let _ = writeln!(text, ",{kinetic},{elastic},{potential},{dissipated},{integrator},{pulses},{mouse_spring}");
     text
 }
 

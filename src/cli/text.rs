@@ -63,29 +63,20 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
     let within = Contexts::of(solved);
-    let mut text = format!(
-        "{}: element {}, {}, {}\n",
-        scene.name,
-        scene.element().id(),
-        solver_text(scene),
-        count(solution.dofs as u64, "unknown")
-    );
-    let word = solution.status.word();
+    let (element, unknowns, word) =
+        (scene.element().id(), count(solution.dofs as u64, "unknown"), solution.status.word());
+    let mut text = format!("{}: element {element}, {}, {unknowns}\n", scene.name, solver_text(scene));
     let precision = if solution.residual_floor.is_some() { " to working precision" } else { "" };
-    let _ = match &solution.motion {
-        Some(MotionResult { time, counts, .. }) => writeln!(
-            text,
-            "{word} at {} after {} and {}; the numbers below are those of this instant",
-            engineering(*time, "s"),
-            steps_text(scene, counts.steps, *time),
-            count(counts.solves, "back substitution"),
-        ),
-        None => writeln!(
-            text,
-            "{word}{precision} after {}, relative residual {:.2e}",
-            count(solution.iterations, "iteration"),
-            solution.residual
-        ),
+    text += &match &solution.motion {
+        Some(MotionResult { time, counts, .. }) => {
+            let (solves, steps) = (count(counts.solves, "back substitution"), steps_text(scene, counts.steps, *time));
+            let at = engineering(*time, "s");
+            format!("{word} at {at} after {steps} and {solves}; the numbers below are those of this instant\n")
+        }
+        None => {
+            let iterations = count(solution.iterations, "iteration");
+            format!("{word}{precision} after {iterations}, relative residual {:.2e}\n", solution.residual)
+        }
     };
     if let (Some(_), Some(reason)) = (solution.motion, solution.status.failure()) {
         let _ = writeln!(text, "  {reason}");
@@ -100,26 +91,20 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         return text;
     }
     if let Some(auto) = &solution.auto {
-        let _ = writeln!(
-            text,
-            "{}: {}, {}, {}",
-            auto.decision,
-            match auto.estimated_error.is_finite() {
-                true => format!("estimated error of the method {:.4} %", 100.0 * auto.estimated_error),
-                false => "no estimate of the method's error".to_owned(),
-            },
-            count(auto.solves, "back substitution"),
-            count(auto.factorizations, "factorization")
-        );
+        let error = match auto.estimated_error.is_finite() {
+            true => format!("estimated error of the method {:.4} %", 100.0 * auto.estimated_error),
+            false => "no estimate of the method's error".to_owned(),
+        };
+        let (solves, made) = (count(auto.solves, "back substitution"), count(auto.factorizations, "factorization"));
+        let _ = writeln!(text, "{}: {error}, {solves}, {made}", auto.decision);
     }
     if let Some(auto) = solution.motion.and_then(|motion| motion.auto) {
+        let [linear, old, new] =
+            [count(auto.linear_steps, "step"), auto.old_factor_steps.to_string(), auto.new_factor_steps.to_string()];
+        let made = count(auto.factorizations, "factorization");
         let _ = writeln!(
             text,
-            "auto: {}, {} with an old factor, {} with a new one; {}",
-            count(auto.linear_steps, "step") + " under linear theory",
-            auto.old_factor_steps,
-            auto.new_factor_steps,
-            count(auto.factorizations, "factorization")
+            "auto: {linear} under linear theory, {old} with an old factor, {new} with a new one; {made}"
         );
     }
     let references = reference.map_or(&[][..], Reference::probes);
@@ -129,11 +114,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         if let Some(at_probe) = stress.probes.get(i) {
             let [x, y, _, xy] = at_probe.strain.components();
             let [x, y, shear] = [x, y, 2.0 * xy].map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
-            let _ = writeln!(
-                text,
-                "  rotation {}, strain {x}, {y}, shear γ {shear}",
-                within.rotation.engineering(at_probe.rotation_deg, "°")
-            );
+            let rotation = within.rotation.engineering(at_probe.rotation_deg, "°");
+            let _ = writeln!(text, "  rotation {rotation}, strain {x}, {y}, shear γ {shear}");
             if let Some(cauchy) = &at_probe.cauchy {
                 let [x, y, _, xy] = cauchy.components().map(|v| within.stress.engineering(v, "Pa"));
                 let von_mises = within.stress.engineering(cauchy.von_mises(), "Pa");
@@ -168,12 +150,9 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     };
     // If supports move, the sum of their reactions may be only rounding error.
     if !moved(scene) {
-        let _ = writeln!(
-            text,
-            "reaction {}, moment about the origin {}",
-            within.force.pair(solution.reaction.force.into(), "N"),
-            within.moment.engineering(solution.reaction.moment, "N m")
-        );
+        let force = within.force.pair(solution.reaction.force.into(), "N");
+        let moment = within.moment.engineering(solution.reaction.moment, "N m");
+        let _ = writeln!(text, "reaction {force}, moment about the origin {moment}");
     }
     text.push_str(&reactions(scene, solution, &within));
     for section in sections {
@@ -183,20 +162,14 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         let _ = writeln!(text, "section at {at}, normal at {angle}: {forces}");
     }
     let joules = |energy: f64| within.energy.engineering(energy, "J");
-    let _ = write!(
-        text,
-        "elastic energy {}, work of the loads {}",
-        joules(solution.energy.elastic),
-        joules(solution.energy.external)
-    );
-    text.push_str(&match moved(scene) {
-        true => match solution.energy.supports {
-            Some(work) => format!(", of the moved supports {}\n", joules(work)),
-            None if path.is_none() => ", of the moved supports not known: the result is not certified\n".to_owned(),
-            None => ", of the moved supports not known: the load path was not followed to its end\n".to_owned(),
-        },
-        false => "\n".to_owned(),
-    });
+    let [elastic, external] = [solution.energy.elastic, solution.energy.external].map(joules);
+    let of_supports = match solution.energy.supports {
+        _ if !moved(scene) => String::new(),
+        Some(work) => format!(", of the moved supports {}", joules(work)),
+        None if path.is_none() => ", of the moved supports not known: the result is not certified".to_owned(),
+        None => ", of the moved supports not known: the load path was not followed to its end".to_owned(),
+    };
+    let _ = writeln!(text, "elastic energy {elastic}, work of the loads {external}{of_supports}");
     if let Some(motion) = &solution.motion {
         text.push_str(&energy_text(motion, &within));
     }
@@ -206,7 +179,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let shown = parts.iter().filter(|(_, time)| !time.is_zero());
     let shown: Vec<String> =
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
-    let _ = writeln!(text, "time {}: {}", seconds(spent.wall()), shown.join(", "));
+    let _ = writeln!(text, "time {}: {}", seconds(spent.wall), shown.join(", "));
     text
 }
 
@@ -272,21 +245,17 @@ fn solver_text(scene: &Scene) -> String {
 fn energy_text(motion: &MotionResult, within: &Contexts) -> String {
     let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
     let joules = |energy: f64| within.energy.engineering(energy, "J");
-    let gained = within.energy.rounded(ledger.integrator) < 0.0;
+    let change = if within.energy.rounded(ledger.integrator) < 0.0 { "gained" } else { "lost" };
+    let [kinetic, potential, dissipated, pulses, changed] =
+        [ledger.kinetic, ledger.potential, ledger.dissipated, ledger.pulses, ledger.integrator.abs()].map(joules);
+    let (drift, of_input) = (ledger.drift(), ledger.drift_of_input());
+    let linear = within.momentum.pair(momentum.linear.into(), "kg m/s");
+    let angular = within.angular_momentum.engineering(momentum.angular, "kg m²/s");
     let mut text = format!(
-        "kinetic energy {}, potential of the loads {}, dissipated {}, put in by pulses {}\n\
-         {} by the integrator {}: energy drift {:.2e} of the largest kinetic energy, {:.2e} of the energy put in\n\
-         momentum {}, angular momentum about the origin {}\n",
-        joules(ledger.kinetic),
-        joules(ledger.potential),
-        joules(ledger.dissipated),
-        joules(ledger.pulses),
-        if gained { "gained" } else { "lost" },
-        joules(ledger.integrator.abs()),
-        ledger.drift(),
-        ledger.drift_of_input(),
-        within.momentum.pair(momentum.linear.into(), "kg m/s"),
-        within.angular_momentum.engineering(momentum.angular, "kg m²/s")
+        "kinetic energy {kinetic}, potential of the loads {potential}, dissipated {dissipated}, put in by pulses {pulses}\n\
+         {change} by the integrator {changed}: energy drift {drift:.2e} of the largest kinetic energy, {of_input:.2e} of \
+         the energy put in\n\
+         momentum {linear}, angular momentum about the origin {angular}\n"
     );
     if counts.halvings > 0 {
         let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
@@ -307,18 +276,10 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     let _ =
         writeln!(text, "  load   linear theory            exact beam               linear error   rotation   strain");
     for sample in curve.samples.iter().step_by(5).skip(1) {
-        let _ = writeln!(
-            text,
-            "{:5.1} %  ({:9.4}, {:9.4})   ({:9.4}, {:9.4})   {:9.2} %   {:7.2}°   {:.5}",
-            100.0 * sample.factor,
-            scale * sample.linear.x,
-            scale * sample.linear.y,
-            scale * sample.exact.x,
-            scale * sample.exact.y,
-            sample.linear_error_percent(),
-            sample.rotation.to_degrees(),
-            sample.strain
-        );
+        let [[x, y], [exact_x, exact_y]]: [[f64; 2]; 2] = [sample.linear, sample.exact].map(|u| (u * scale).into());
+        let (part, error, angle) = (100.0 * sample.factor, sample.linear_error_percent(), sample.rotation.to_degrees());
+        let _ = write!(text, "{part:5.1} %  ({x:9.4}, {y:9.4})   ({exact_x:9.4}, {exact_y:9.4})   {error:9.2} %   ");
+        let _ = writeln!(text, "{angle:7.2}°   {:.5}", sample.strain);
     }
     text.push('\n');
     for claim in Claim::of_curve(curve) {
@@ -339,29 +300,17 @@ pub(super) fn curve_table(curve: &LoadCurve) -> String {
     let mut text =
         String::from("load_factor,linear_x,linear_y,truth_x,truth_y,linear_error_percent,tip_rotation_deg,strain\n");
     for s in &curve.samples {
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{}",
-            s.factor,
-            s.linear.x,
-            s.linear.y,
-            s.exact.x,
-            s.exact.y,
-            s.linear_error_percent(),
-            s.rotation.to_degrees(),
-            s.strain
-        );
+        let [linear, exact] = [s.linear, s.exact].map(|u| format!("{},{}", u.x, u.y));
+        let (error, rotation) = (s.linear_error_percent(), s.rotation.to_degrees());
+        let _ = writeln!(text, "{},{linear},{exact},{error},{rotation},{}", s.factor, s.strain);
     }
     text
 }
 
 /// Formats a load path for display, with its changes of stability and jumps.
 pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
-    let mut text = format!(
-        "{}: load path on the scene's own mesh, {}\n\n",
-        path.scene,
-        count(path.states.len() as u64, "equilibrium state")
-    );
+    let states = count(path.states.len() as u64, "equilibrium state");
+    let mut text = format!("{}: load path on the scene's own mesh, {states}\n\n", path.scene);
     let displacement = path.driven.map(|i| format!("displacement of {}", support_text(scene, i)));
     let width = displacement.as_ref().map_or(0, |displacement| displacement.chars().count());
     let probe = scene.probes.first().map(|p| p.name.as_str());
