@@ -1,7 +1,6 @@
 //! Tests of affine maps of triangles, and of those of quadrilaterals and tetrahedra (article eqs. 4–24 and its examples).
 
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3};
-use thiserror::Error;
 
 use super::{Affine2, AffineError, DEGENERATE};
 
@@ -18,17 +17,6 @@ impl Affine2 {
     }
 }
 
-/// Reason why no affine map of a tetrahedron exists.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-enum Affine3Error {
-    /// The four rest corners lie in a plane.
-    #[error("the rest corners are coplanar: expected a tetrahedron with volume")]
-    CoplanarCorners,
-    /// A coordinate is NaN or infinite.
-    #[error("a corner is not finite: expected finite coordinates")]
-    NotFinite,
-}
-
 /// Returns the matrix P of eq. (15): unknowns a₁₁ a₁₂ a₁₃ a₂₁ a₂₂ a₂₃, right-hand side x′₁ x′₂ x′₃ y′₁ y′₂ y′₃.
 ///
 /// [`Affine2::from_triangle`] solves the same system without forming it.
@@ -39,64 +27,32 @@ fn triangle_system(rest: [Vector2<f64>; 3]) -> SMatrix<f64, 6, 6> {
     })
 }
 
-/// The diagonal that cuts a quadrilateral with corners 1 2 3 4 into two triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Diagonal {
-    /// Triangles (1, 2, 3) and (1, 3, 4), as in eq. (21).
-    OneThree,
-    /// Triangles (1, 2, 4) and (2, 3, 4).
-    TwoFour,
-}
+/// Triangles of a quadrilateral with corners 1 2 3 4 that is cut from 1 to 3, as in eq. (21), and from 2 to 4.
+const ONE_THREE: [[usize; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+const TWO_FOUR: [[usize; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
 
 /// Returns the two affine maps of a quadrilateral, one for each triangle (eqs. 21–22). They depend on the diagonal
 /// unless the deformation is affine.
 fn quadrilateral_maps(
-    rest: [Vector2<f64>; 4],
-    deformed: [Vector2<f64>; 4],
-    diagonal: Diagonal,
+    [rest, deformed]: [[Vector2<f64>; 4]; 2],
+    triangles: [[usize; 3]; 2],
 ) -> Result<[Affine2; 2], AffineError> {
-    let triangles = match diagonal {
-        Diagonal::OneThree => [[0, 1, 2], [0, 2, 3]],
-        Diagonal::TwoFour => [[0, 1, 3], [1, 2, 3]],
-    };
     let map = |t: [usize; 3]| Affine2::from_triangle(t.map(|i| rest[i]), t.map(|i| deformed[i]));
     Ok([map(triangles[0])?, map(triangles[1])?])
 }
 
-/// Affine map x ↦ M x + d in space (eq. 23).
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Affine3 {
-    /// M.
-    linear: Matrix3<f64>,
-    /// d.
-    translation: Vector3<f64>,
-}
-
-impl Affine3 {
-    /// Returns the map that takes the corners `rest` of a tetrahedron to `deformed`. It solves eq. (24) with one
-    /// 3×3 inverse of the edge vectors instead of a 12×12 solve.
-    fn from_tetrahedron(rest: [Vector3<f64>; 4], deformed: [Vector3<f64>; 4]) -> Result<Self, Affine3Error> {
-        if !rest.iter().chain(&deformed).all(|p| p.iter().all(|v| v.is_finite())) {
-            return Err(Affine3Error::NotFinite);
-        }
-        let edges = |p: &[Vector3<f64>; 4]| Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
-        let (before, after) = (edges(&rest), edges(&deformed));
-        let longest = before.column_iter().map(|e| e.norm()).fold(0.0, f64::max);
-        let scaled = before / longest;
-        if !(longest > 0.0 && scaled.determinant().abs() > DEGENERATE) {
-            return Err(Affine3Error::CoplanarCorners);
-        }
-        let inverse = scaled.try_inverse().ok_or(Affine3Error::CoplanarCorners)?;
-        let linear = (after / longest) * inverse;
-        Ok(Self { linear, translation: deformed[0] - linear * rest[0] })
-    }
-
-    /// Returns the homogeneous matrix of eq. (23).
-    fn homogeneous(&self) -> Matrix4<f64> {
-        let mut m = self.linear.to_homogeneous();
-        m.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.translation);
-        m
-    }
+/// Returns the homogeneous matrix (eq. 23) of the map that takes the corners `rest` of a tetrahedron to `deformed`;
+/// `None` if they lie in a plane or are not finite. It solves eq. (24) with one 3×3 inverse of the edge vectors instead of
+/// a 12×12 solve.
+fn tetrahedron_map([rest, deformed]: [[Vector3<f64>; 4]; 2]) -> Option<Matrix4<f64>> {
+    let edges = |p: &[Vector3<f64>; 4]| Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
+    let (before, after) = (edges(&rest), edges(&deformed));
+    let longest = before.column_iter().map(|e| e.norm()).fold(0.0, f64::max);
+    let scaled = Some(before / longest).filter(|scaled| scaled.determinant().abs() > DEGENERATE)?;
+    let linear = (after / longest) * scaled.try_inverse()?;
+    let mut m = linear.to_homogeneous();
+    m.fixed_view_mut::<3, 1>(0, 3).copy_from(&(deformed[0] - linear * rest[0]));
+    m.iter().all(|v| v.is_finite()).then_some(m)
 }
 
 fn corners<const N: usize>(points: [[f64; 2]; N]) -> [Vector2<f64>; N] {
@@ -163,8 +119,8 @@ fn collinear_corners_are_refused_at_every_size() {
 fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
     let rest = corners([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
     let deformed = corners([[0.0, 0.0], [2.0, 0.3], [2.5, 1.6], [-0.2, 1.0]]);
-    let one_three = quadrilateral_maps(rest, deformed, Diagonal::OneThree).unwrap();
-    let two_four = quadrilateral_maps(rest, deformed, Diagonal::TwoFour).unwrap();
+    let one_three = quadrilateral_maps([rest, deformed], ONE_THREE).unwrap();
+    let two_four = quadrilateral_maps([rest, deformed], TWO_FOUR).unwrap();
     // Each map takes its corners to their deformed positions.
     for (map, corners) in
         [(one_three[0], [0, 1, 2]), (one_three[1], [0, 2, 3]), (two_four[0], [0, 1, 3]), (two_four[1], [1, 2, 3])]
@@ -182,8 +138,8 @@ fn a_quadrilateral_has_two_maps_that_depend_on_the_diagonal() {
     }
     // The maps agree if the deformation is affine.
     let affine = rest.map(|p| Vector2::new(1.0 + 2.0 * p.x - p.y, 0.5 * p.x + 3.0 * p.y));
-    let a = quadrilateral_maps(rest, affine, Diagonal::OneThree).unwrap();
-    let b = quadrilateral_maps(rest, affine, Diagonal::TwoFour).unwrap();
+    let a = quadrilateral_maps([rest, affine], ONE_THREE).unwrap();
+    let b = quadrilateral_maps([rest, affine], TWO_FOUR).unwrap();
     for map in [a[1], b[0], b[1]] {
         assert!((map.homogeneous() - a[0].homogeneous()).norm() < 1e-13);
     }
@@ -194,9 +150,8 @@ fn a_tetrahedron_has_one_map() {
     let rest = [[0.1, 0.0, 0.2], [1.3, 0.1, 0.0], [0.2, 1.1, -0.1], [0.0, 0.3, 0.9]].map(Vector3::from);
     let m = Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564);
     let d = Vector3::new(1.0, -2.0, 3.0);
-    let map = Affine3::from_tetrahedron(rest, rest.map(|p| m * p + d)).unwrap();
-    assert!((map.linear - m).norm() < 1e-12 && (map.translation - d).norm() < 1e-12);
-    assert!((map.homogeneous().fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12);
+    let map = tetrahedron_map([rest, rest.map(|p| m * p + d)]).unwrap();
+    assert!((map.fixed_view::<3, 3>(0, 0) - m).norm() < 1e-12 && (map.fixed_view::<3, 1>(0, 3) - d).norm() < 1e-12);
     // A general solver gives the same for all twelve rows of eq. (24).
     let p = SMatrix::<f64, 12, 12>::from_fn(|row, column| {
         let corner = rest[row % 4];
@@ -206,18 +161,18 @@ fn a_tetrahedron_has_one_map() {
     let a = p.lu().solve(&y).unwrap();
     for (row, entries) in a.as_slice().chunks(4).enumerate() {
         for (column, &entry) in entries.iter().enumerate() {
-            assert!((map.homogeneous()[(row, column)] - entry).abs() < 1e-11);
+            assert!((map[(row, column)] - entry).abs() < 1e-11);
         }
     }
     let flat = rest.map(|p| Vector3::new(p.x, p.y, p.x + p.y));
-    assert_eq!(Affine3::from_tetrahedron(flat, rest), Err(Affine3Error::CoplanarCorners));
+    assert_eq!(tetrahedron_map([flat, rest]), None);
 }
 
 #[test]
 fn numbers_out_of_range_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
         assert!(Affine2::from_triangle([Vector2::new(bad, 0.0); 3], [Vector2::zeros(); 3]).is_err());
-        assert!(Affine3::from_tetrahedron([Vector3::repeat(bad); 4], [Vector3::zeros(); 4]).is_err());
-        assert!(quadrilateral_maps([Vector2::repeat(bad); 4], [Vector2::zeros(); 4], Diagonal::OneThree).is_err());
+        assert!(tetrahedron_map([[Vector3::repeat(bad); 4], [Vector3::zeros(); 4]]).is_none());
+        assert!(quadrilateral_maps([[Vector2::repeat(bad); 4], [Vector2::zeros(); 4]], ONE_THREE).is_err());
     }
 }
