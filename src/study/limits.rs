@@ -14,6 +14,7 @@ use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::motion::steps::POWERS;
 use super::motion::steps::{StepResult, StepStudy};
 use super::progress::{StudyError, all_done, check};
+use super::reference::first_probe;
 use super::{Effort, ProbeReference, Reference, parallel};
 use crate::assembly::System;
 use crate::dynamics::INTEGRATORS;
@@ -630,17 +631,15 @@ impl MethodLimits {
         let between = factors().into_iter().skip(1).step_by(2);
         let factors: Vec<f64> = factors().into_iter().step_by(2).collect();
         let all = (factors.len() + settings.len()) as f64;
-        let so_far = SoFar::new(
-            partial,
-            Self {
-                range: RANGE,
-                duration: None,
-                mesh_error_percent: None,
-                criticals,
-                reference: factors.iter().map(|&factor| (factor, None)).collect(),
-                strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
-            },
-        );
+        let limits = Self {
+            range: RANGE,
+            duration: None,
+            mesh_error_percent: None,
+            criticals,
+            reference: factors.iter().map(|&factor| (factor, None)).collect(),
+            strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
+        };
+        let so_far = SoFar { limits: Mutex::new(limits), partial };
         let references = References { scene, known: Mutex::default() };
         let solve_references = |factors: &[f64], before: usize| {
             let found = parallel::map(
@@ -683,11 +682,9 @@ impl MethodLimits {
             let Some(solved) = solve(own, system, factor, observe)? else {
                 return Ok(LimitPoint { factor, converges: false, result: None });
             };
-            let problem = solved.problem();
-            let probe = problem.probes().first();
-            let displacement = probe.map_or_else(Vector2::zeros, |p| p.mean(solved.displacement()));
+            let displacement = first_probe(&solved)?;
             let Deformation { max_strain, inverted_elements, .. } =
-                Deformation::of(problem, solved.state(), &solved.nodal_stress());
+                Deformation::of(solved.problem(), solved.state(), &solved.nodal_stress());
             let mut error = None;
             if is_compared {
                 let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
@@ -735,17 +732,15 @@ impl MethodLimits {
         let strips = INTEGRATORS.iter().map(|entry| Strip { integrator: Some(entry.kind), ..Strip::new(scene) });
         let mut settings: Vec<(usize, (IntegratorKind, Strip))> =
             INTEGRATORS.iter().map(|entry| entry.kind).zip(strips).enumerate().collect();
-        let so_far = SoFar::new(
-            partial,
-            Self {
-                range: [first, last],
-                duration: Some(study.duration()),
-                mesh_error_percent: Some(study.mesh_error_percent()),
-                criticals: Vec::new(),
-                reference: Vec::new(),
-                strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),
-            },
-        );
+        let limits = Self {
+            range: [first, last],
+            duration: Some(study.duration()),
+            mesh_error_percent: Some(study.mesh_error_percent()),
+            criticals: Vec::new(),
+            reference: Vec::new(),
+            strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),
+        };
+        let so_far = SoFar { limits: Mutex::new(limits), partial };
         settings.sort_by_key(|(_, (integrator, _))| *integrator != scene.dynamics.integrator);
         all_done(parallel::map(
             &settings,
@@ -834,11 +829,7 @@ struct SoFar<'a> {
     partial: &'a (dyn Fn(&MethodLimits) + Sync),
 }
 
-impl<'a> SoFar<'a> {
-    fn new(partial: &'a (dyn Fn(&MethodLimits) + Sync), limits: MethodLimits) -> Self {
-        Self { limits: Mutex::new(limits), partial }
-    }
-
+impl SoFar<'_> {
     fn limits(&self) -> MutexGuard<'_, MethodLimits> {
         self.limits.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -939,7 +930,6 @@ fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::reference::first_probe;
 
     /// Returns a load with an error and one of the reference, percent, and a strain.
     fn compared(factor: f64, percent: Option<f64>, own: f64, max_strain: f64) -> LimitPoint {

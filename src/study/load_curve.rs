@@ -1,11 +1,9 @@
 //! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
@@ -126,11 +124,15 @@ impl LoadCurve {
         let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
         let mut methods = Vec::new();
         for (i, entry) in METHODS.iter().enumerate() {
-            let observe = |_: Progress<'_>| observe(Progress::at(i as f64 / METHODS.len() as f64));
-            match method_point(scene, entry.kind, &system, &observe) {
-                ControlFlow::Continue(point) => methods.extend(point),
-                ControlFlow::Break(()) => return None,
-            }
+            let mut own = scene.clone().with_method(entry.kind);
+            own.solver.accept_after = 0;
+            let Ok(mut simulation) = Simulation::with_system(&own, system.clone()) else { continue };
+            let fraction = i as f64 / METHODS.len() as f64;
+            simulation.solve_watched(&mut |_| observe(Progress::at(fraction))).continue_value()?;
+            let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"));
+            let Some(tip) = probe.map(|probe| probe.mean(simulation.displacement())) else { continue };
+            let stable = simulation.certify().stable;
+            methods.push(MethodPoint { method: entry.kind, tip, status: simulation.status().clone(), stable });
         }
         Some(Self { samples, buckles_at, departures, methods })
     }
@@ -153,26 +155,4 @@ fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Opti
         strain: between(a.strain, b.strain),
     };
     Some(Departure { percent, at })
-}
-
-/// Returns the result of a method, `None` if the scene cannot be simulated; breaks if it is cancelled.
-fn method_point(
-    scene: &Scene,
-    method: MethodKind,
-    system: &Arc<System>,
-    observe: Observer<'_>,
-) -> ControlFlow<(), Option<MethodPoint>> {
-    let mut scene = scene.clone();
-    scene.solver.method = method;
-    scene.solver.accept_after = 0;
-    let Ok(mut simulation) = Simulation::with_system(&scene, system.clone()) else {
-        return ControlFlow::Continue(None);
-    };
-    simulation.solve_watched(&mut |_| observe(Progress::at(0.0)))?;
-    let Some(probe) = simulation.problem().probes().iter().find(|p| p.place == Place::from("right")) else {
-        return ControlFlow::Continue(None);
-    };
-    let tip = probe.mean(simulation.displacement());
-    let stable = simulation.certify().stable;
-    ControlFlow::Continue(Some(MethodPoint { method, tip, status: simulation.status().clone(), stable }))
 }
