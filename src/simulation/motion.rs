@@ -43,7 +43,7 @@ pub(super) struct TimeStepping {
     method: MotionMethod,
     linear: LinearTheory,
     report: MotionReport,
-    ledger: Ledger,
+    pub(super) ledger: Ledger,
     keeps_ledger: bool,
     /// `true` if steps are checked for spurious energy. A mouse spring exerts larger forces on few nodes than loads do,
     /// so that a step with a single solve per stage can be inaccurate.
@@ -51,7 +51,7 @@ pub(super) struct TimeStepping {
     stopped: Option<StopReason>,
     /// Number of successive steps in which no node moved.
     quiet_steps: u32,
-    critical_step: Option<f64>,
+    pub(super) critical_step: Option<f64>,
     timings: Timings,
     last_step: Timings,
 }
@@ -486,10 +486,6 @@ impl TimeStepping {
         Momentum::of(&body.problem, &self.mass, inertia(&body.scene), &body.state)
     }
 
-    pub(super) fn ledger(&self) -> &Ledger {
-        &self.ledger
-    }
-
     pub(super) fn counts(&self) -> Counts {
         self.counts
     }
@@ -497,10 +493,6 @@ impl TimeStepping {
     pub(super) fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
         let Counts { solves, factorizations, .. } = self.counts;
         self.decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
-    }
-
-    pub(super) fn critical_step(&self) -> Option<f64> {
-        self.critical_step
     }
 }
 

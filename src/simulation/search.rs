@@ -6,10 +6,7 @@ use super::{Body, Status};
 use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
 use crate::displacement::Displacement;
 use crate::element::UNIT;
-use crate::method::{
-    AutoReport, Certificate, Criteria, Method, PathEvents, Reason, Restart, Verdict, Workspace, fixed_point_rho,
-    is_stable,
-};
+use crate::method::{Certificate, Criteria, Method, Reason, Restart, Verdict, Workspace, fixed_point_rho, is_stable};
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
 use crate::state::{State, largest};
@@ -19,7 +16,7 @@ use crate::timings::{Timings, timed};
 /// Search for an equilibrium with a method.
 #[derive(Debug)]
 pub(super) struct Search {
-    method: Box<dyn Method>,
+    pub method: Box<dyn Method>,
     /// Displacement and edge angles before the current iteration.
     previous: (Displacement, Vec<f64>),
     pub forces: Forces,
@@ -276,19 +273,6 @@ impl Search {
         self.method.linearization().load_factor
     }
 
-    pub fn load_steps(&self) -> u32 {
-        self.method.report().load_steps
-    }
-
-    pub fn auto_report(&self) -> Option<AutoReport> {
-        self.method.report().auto_report
-    }
-
-    /// Returns the critical points of the path from rest, if it is known to lead to the result.
-    pub fn path_events(&self) -> Option<PathEvents> {
-        self.method.path_events().filter(|_| self.outcome.status.is_success())
-    }
-
     pub fn residual(&self) -> f64 {
         self.forces.below_rounding.map_or(self.forces.relative_residual, |[residual, _]| residual)
     }
@@ -296,10 +280,6 @@ impl Search {
     pub fn residual_floor(&self) -> Option<f64> {
         let below = self.forces.below_rounding.filter(|_| self.outcome.status == Status::Converged);
         self.outcome.floor.or(below.map(|[_, bound]| bound))
-    }
-
-    pub fn step_ratio(&self) -> Option<f64> {
-        self.method.report().step_ratio
     }
 }
 

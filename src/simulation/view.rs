@@ -41,7 +41,7 @@ impl Equilibrium<'_> {
     #[doc(hidden)]
     #[must_use]
     pub fn auto_report(self) -> Option<AutoReport> {
-        self.search.auto_report()
+        self.search.method.report().auto_report
     }
 
     /// Returns the load factor currently applied, relative to the full loads.
@@ -53,7 +53,7 @@ impl Equilibrium<'_> {
     /// Returns the number of load steps so far; 1 if the loads were applied at once.
     #[must_use]
     pub fn load_steps(self) -> u32 {
-        self.search.load_steps()
+        self.search.method.report().load_steps
     }
 
     /// Returns the bound of the rounding error of [`Simulation::residual`], if a solve has ended within this bound but
@@ -67,13 +67,13 @@ impl Equilibrium<'_> {
     #[doc(hidden)]
     #[must_use]
     pub fn path_events(self) -> Option<PathEvents> {
-        self.search.path_events()
+        self.search.method.path_events().filter(|_| self.search.outcome.status.is_success())
     }
 
     /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
     #[must_use]
     pub fn step_ratio(self) -> Option<f64> {
-        self.search.step_ratio()
+        self.search.method.report().step_ratio
     }
 
     /// Returns a copy of the search, for display while the search itself goes on elsewhere. It has no work memory; that
@@ -118,7 +118,7 @@ impl<'a> Motion<'a> {
     /// Returns the energy ledger since the start.
     #[must_use]
     pub fn ledger(self) -> &'a Ledger {
-        self.steps.ledger()
+        &self.steps.ledger
     }
 
     /// Returns the numbers of steps and solves since the start.
@@ -143,7 +143,7 @@ impl<'a> Motion<'a> {
     /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
     #[must_use]
     pub fn critical_step(self) -> Option<f64> {
-        self.steps.critical_step()
+        self.steps.critical_step
     }
 
     /// Returns a snapshot for [`Simulation::return_to`].
