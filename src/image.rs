@@ -1,25 +1,13 @@
 //! Images in memory, written as PNG files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use thiserror::Error;
 
 /// Reason why an image could not be made.
 #[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum PictureError {
-    /// The picture cannot be written.
-    #[error("{path}: {reason}", path = path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        reason: String,
-    },
-    /// The picture cannot be encoded.
-    #[error("the picture cannot be encoded: {0}")]
-    Encode(String),
-}
+#[error("{0}")]
+pub struct PictureError(String);
 
 /// Pixels of an image, RGBA, eight bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,13 +21,13 @@ pub struct Picture {
 impl Picture {
     /// Writes a PNG file.
     pub fn write_png(&self, path: &Path) -> Result<(), PictureError> {
-        let failed = |error: std::io::Error| PictureError::Write { path: path.to_owned(), reason: error.to_string() };
+        let failed = |error: std::io::Error| PictureError(format!("{}: {error}", path.display()));
         std::fs::write(path, self.png()?).map_err(failed)
     }
 
     /// Returns the bytes of a PNG file.
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
-        let failed = |error: png::EncodingError| PictureError::Encode(error.to_string());
+        let failed = |error: png::EncodingError| PictureError(format!("the picture cannot be encoded: {error}"));
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.size[0], self.size[1]);
         encoder.set_color(png::ColorType::Rgba);

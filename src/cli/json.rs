@@ -31,7 +31,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
     let parts = spent.parts().map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
-    let sums = [("total", spent.solve()), ("wall", spent.wall())];
+    let sums = [("total", spent.solve()), ("wall", spent.wall)];
     let sums = sums.map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
     let time_us: Map<String, Value> = sums.into_iter().chain(parts).collect();
     // Linear theory follows no path.

@@ -207,37 +207,25 @@ fn refused(source: &scene::Source, error: SimulationError) -> CliError {
     }
 }
 
-/// Prints warnings about the mesh file of a scene; the unit of a built-in mesh is known.
+/// Prints warnings about the mesh file of a scene: that it seems to be in millimetres, its seams, and that it does not
+/// exist, so that the mesh of a built-in scene is used. The unit of a built-in mesh is known.
 fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
-    if source.built_in().is_none() {
-        warn_of_millimetres(scene, system.size());
-        system.seams().iter().for_each(|seam| eprintln!("warpbeam: warning: {seam}"));
-        warn_of_built_in_mesh(source, scene);
-    }
-}
-
-/// Prints a warning if a mesh file seems to be in millimetres; `size` is the body's, m.
-fn warn_of_millimetres(scene: &Scene, size: f64) {
     /// Size above which a body is suspicious, m.
     const LARGE: f64 = 50.0;
-    if let Some(mesh) = scene.mesh.as_ref().filter(|mesh| mesh.scale.is_none() && size > LARGE) {
-        let size = number(size.round());
-        eprintln!(
-            "warpbeam: warning: {} is {size} m across; if it is in millimetres, write scale = 0.001 under [mesh], else scale = 1",
-            mesh.file
-        );
+    if source.built_in().is_some() {
+        return;
     }
-}
-
-/// Prints a warning if a scene file names a mesh file that does not exist, so that the mesh of a built-in scene is
-/// used.
-fn warn_of_built_in_mesh(source: &scene::Source, scene: &Scene) {
-    if let Some(file) = scene.mesh.as_ref().map(|mesh| &mesh.file)
-        && scene::built_in_mesh(file, &source.folder()).is_some()
-    {
-        eprintln!(
-            "warpbeam: warning: {file} does not exist in the folder of the scene; the built-in mesh of this name is used"
-        );
+    let size = system.size();
+    if let Some(mesh) = scene.mesh.as_ref().filter(|mesh| mesh.scale.is_none() && size > LARGE) {
+        let (file, size) = (&mesh.file, number(size.round()));
+        let advice = "if it is in millimetres, write scale = 0.001 under [mesh], else scale = 1";
+        eprintln!("warpbeam: warning: {file} is {size} m across; {advice}");
+    }
+    system.seams().iter().for_each(|seam| eprintln!("warpbeam: warning: {seam}"));
+    let file = scene.mesh.as_ref().map(|mesh| &mesh.file);
+    if let Some(file) = file.filter(|file| scene::built_in_mesh(file, &source.folder()).is_some()) {
+        let stand_in = "the built-in mesh of this name is used";
+        eprintln!("warpbeam: warning: {file} does not exist in the folder of the scene; {stand_in}");
     }
 }
 

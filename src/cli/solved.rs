@@ -24,11 +24,6 @@ pub(super) struct Spent {
 }
 
 impl Spent {
-    /// Returns the wall clock time of the whole command.
-    pub(super) fn wall(&self) -> Duration {
-        self.wall
-    }
-
     /// Returns the time of the solve, without certification.
     pub(super) fn solve(&self) -> Duration {
         self.stages.total().saturating_sub(self.stages.certify)

@@ -104,10 +104,6 @@ pub struct Pulse {
 }
 
 impl DynamicsSettings {
-    pub(super) fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     pub(super) fn validate(&self) -> Result<(), Invalid> {
         check("dynamics.time_step", limits::TIME_STEP, self.time_step)?;
         check("dynamics.duration", limits::DURATION, self.duration)?;
@@ -118,10 +114,6 @@ impl DynamicsSettings {
 }
 
 impl Start {
-    pub(crate) fn is_rest(&self) -> bool {
-        *self == Self::default()
-    }
-
     pub(super) fn validate(&self) -> Result<(), Invalid> {
         check("start.velocity", limits::SPEED, self.velocity[0].hypot(self.velocity[1]))?;
         check("start.spin", limits::SPIN, self.spin)

@@ -60,10 +60,10 @@ pub struct Scene {
     #[serde(default)]
     pub solver: SolverSettings,
     /// Time integration settings of dynamic scenes.
-    #[serde(default, skip_serializing_if = "DynamicsSettings::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub dynamics: DynamicsSettings,
     /// Initial velocities of dynamic scenes.
-    #[serde(default, skip_serializing_if = "Start::is_rest")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub start: Start,
 }
 
@@ -226,7 +226,7 @@ pub struct SolverSettings {
     /// Number of linear solves after which the search ends without convergence.
     pub max_iterations: u32,
     /// Number of iterations after which the result is accepted without convergence; 0 accepts converged results only.
-    #[serde(skip_serializing_if = "is_off")]
+    #[serde(skip_serializing_if = "is_default")]
     pub accept_after: u32,
     /// Largest error that the method `auto` allows itself, percent of the displacement at equilibrium on the scene's
     /// own mesh; the error of the mesh is not included.
@@ -243,12 +243,6 @@ impl Default for SolverSettings {
             max_error_percent: 1.0,
         }
     }
-}
-
-/// Returns `true` for 0, which turns `accept_after` off.
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_off(iterations: &u32) -> bool {
-    *iterations == 0
 }
 
 /// Methods that find an equilibrium or solve a time step.
@@ -356,8 +350,8 @@ impl Scene {
             let message = "expected analysis = \"dynamic\" in a scene with this table";
             if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
         };
-        given("dynamics", self.dynamics.is_default())?;
-        given("start", self.start.is_rest())
+        given("dynamics", is_default(&self.dynamics))?;
+        given("start", is_default(&self.start))
     }
 }
 

@@ -35,15 +35,6 @@ impl From<&Singularity> for Sentence {
     }
 }
 
-/// Support of a side of the outline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum SideSupport {
-    Free,
-    /// Fixed in one direction.
-    Roller,
-    Clamped,
-}
-
 /// Smallest excess of a corner's angle over 180°, rad, that counts as a corner; smaller ones occur on curved outlines
 /// made of straight sides.
 const CORNER: f64 = 0.6;
@@ -84,42 +75,29 @@ impl Singularity {
         if problem.scene_loads().iter().any(acts) {
             return Some(Self::PointForce);
         }
-        let holds: Vec<SideSupport> = mesh
-            .outline()
-            .iter()
-            .filter(|side| side.ends().contains(&node))
-            .map(|side| SideSupport::of(problem, side))
-            .collect();
-        let [a, b] = *holds.as_slice() else { return None };
+        let outline = mesh.outline();
+        let own = outline.iter().filter(|side| side.ends().contains(&node));
+        let [a, b] = own.map(|side| fixed_directions(problem, side)).collect::<Vec<_>>()[..] else { return None };
         let angle = interior_angle(mesh, node);
         let straight = std::f64::consts::PI;
         match (a, b) {
-            (SideSupport::Clamped, SideSupport::Free) | (SideSupport::Free, SideSupport::Clamped) => {
-                is_singular_clamp(angle, problem.material()).then_some(Self::SupportEnd)
-            }
+            (2, 0) | (0, 2) => is_singular_clamp(angle, problem.material()).then_some(Self::SupportEnd),
             // A roller is a symmetry condition: the mirror image continues the body.
-            (SideSupport::Roller, SideSupport::Free) | (SideSupport::Free, SideSupport::Roller) => {
-                (2.0 * angle > straight + CORNER).then_some(Self::SupportEnd)
-            }
+            (1, 0) | (0, 1) => (2.0 * angle > straight + CORNER).then_some(Self::SupportEnd),
             _ => (angle > straight + CORNER).then_some(Self::ReentrantCorner),
         }
     }
 }
 
-impl SideSupport {
-    fn of(problem: &Problem, side: &Segment) -> Self {
-        let fixed = [0, 1].map(|axis| {
-            side.nodes().iter().all(|node| {
-                let own = problem.supports().all().iter().flat_map(|s| &s.nodes);
-                own.into_iter().any(|(held, axes)| held == node && axes[axis])
-            })
-        });
-        match fixed {
-            [true, true] => Self::Clamped,
-            [false, false] => Self::Free,
-            _ => Self::Roller,
-        }
-    }
+/// Returns the number of directions in which supports fix a side of the outline.
+fn fixed_directions(problem: &Problem, side: &Segment) -> usize {
+    let is_fixed = |axis: &usize| {
+        side.nodes().iter().all(|node| {
+            let mut held = problem.supports().all().iter().flat_map(|s| &s.nodes);
+            held.any(|(held, axes)| held == node && axes[*axis])
+        })
+    };
+    [0, 1].iter().filter(|axis| is_fixed(axis)).count()
 }
 
 /// Returns the angle of the body at a node, rad; π at a node between corners of an element.
