@@ -11,22 +11,22 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_500),
-    ("study", &["src/study"], 7_760),
-    ("model", &["src/model", "src/scene"], 3_586),
+    ("study", &["src/study"], 7_651),
+    ("model", &["src/model", "src/scene"], 3_537),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
-    ("simulation", &["src/simulation"], 2_848),
-    ("assembly", &["src/assembly"], 3_040),
-    ("cli", &["src/cli"], 2_800),
+    ("simulation", &["src/simulation"], 2_819),
+    ("assembly", &["src/assembly"], 3_045),
+    ("cli", &["src/cli"], 2_630),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
-    ("mesh", &["src/mesh"], 1_843),
-    ("plot", &["src/plot"], 880),
-    ("the rest of src", &["src"], 5_222),
-    ("tests", &["tests"], 21_498),
+    ("mesh", &["src/mesh"], 1_963),
+    ("plot", &["src/plot"], 819),
+    ("the rest of src", &["src"], 5_153),
+    ("tests", &["tests"], 21_553),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 65_190;
+const SRC: usize = 64_672;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 
