@@ -13,6 +13,8 @@ use crate::study::figure::Figure;
 pub(crate) enum Action {
     /// Open a built-in scene.
     Open(&'static str),
+    /// Start a scene of one's own from this one.
+    New(Box<Scene>),
     /// Ask for a scene file and open it.
     OpenFile,
     /// Open a file that was dropped on the window.

@@ -78,7 +78,7 @@ pub(super) fn axes(support: &Support) -> [bool; 2] {
 /// nodes, because it is meant to be, because its point is a node, or because its point is outside the body.
 fn point_weights(support: &Support, mesh: &Mesh) -> Option<NodeWeights> {
     let Place::At(at) = support.place else { return None };
-    let weights = if support.at_point { mesh.weights_at(at.into()) } else { None };
+    let weights = if support.at_point { mesh.weights_over(at.into(), support.width) } else { None };
     let is_between = |weights: &NodeWeights| weights.iter().all(|(_, weight)| (weight - 1.0).abs() > NEGLIGIBLE);
     weights.filter(is_between)
 }

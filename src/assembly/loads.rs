@@ -28,9 +28,10 @@ pub struct Loads {
     dead: Vec<Vector2<f64>>,
 }
 
-/// Returns the weights of the nodes on which a force at a point acts, in the scene's table `key`; they sum to 1.
-fn force_weights(mesh: &Mesh, at: [f64; 2], at_point: bool, key: &str) -> Result<NodeWeights, Invalid> {
-    let weights = if at_point { mesh.weights_at(at.into()) } else { None };
+/// Returns the weights of the nodes on which a force at a point acts, in the scene's table `key`; they sum to 1. `None` in
+/// place of a width is the nearest node.
+fn force_weights(mesh: &Mesh, at: [f64; 2], width: Option<f64>, key: &str) -> Result<NodeWeights, Invalid> {
+    let weights = width.and_then(|width| mesh.weights_over(at.into(), width));
     weights.map_or_else(|| Ok(vec![(node_at(mesh, at, key)?, 1.0)]), Ok)
 }
 
@@ -81,8 +82,8 @@ impl Loads {
         for (i, load) in loads.iter().enumerate() {
             let key = format!("load.{i}");
             let (forces, pulse): (NodalForces, _) = match load {
-                Load::Force { place: Place::At(at), at_point, force, pulse } => {
-                    let weights = force_weights(system.mesh(), *at, *at_point, &key)?;
+                Load::Force { place: Place::At(at), at_point, width, force, pulse } => {
+                    let weights = force_weights(system.mesh(), *at, at_point.then_some(*width), &key)?;
                     (weights.into_iter().map(|(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }
                 Load::Force { place: Place::Edge(name), force, pulse, .. } => {

@@ -30,6 +30,8 @@ pub struct NodalSupport {
     pub point: Option<[bool; 2]>,
     /// Nodes with their weights: the middle of an edge, or a point between nodes, is their weighted mean.
     pub weights: NodeWeights,
+    /// Length over which a point is held, m.
+    pub width: f64,
     /// Prescribed displacement at full load, m.
     pub displacement: Vector2<f64>,
     /// Prescribed rotation about the middle, rad.
@@ -132,7 +134,9 @@ impl Supports {
             let middle = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
             let place = support.place.clone();
             let (displacement, rotation) = (support.displacement.into(), support.turn);
-            let mut new = NodalSupport { place, nodes: Vec::new(), point, weights, displacement, rotation, middle };
+            let width = support.width;
+            let mut new =
+                NodalSupport { place, nodes: Vec::new(), point, weights, width, displacement, rotation, middle };
             for node in nodes {
                 let mut own = axes(support);
                 for (axis, own) in own.iter_mut().enumerate().filter(|(_, own)| **own) {

@@ -424,15 +424,19 @@ impl Mesh {
     /// Returns the sides that belong to only one element, each counter-clockwise around the body.
     #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
-        let mut sides: Vec<Segment> = self.elements().flat_map(|nodes| self.sides(nodes)).collect();
-        sides.sort_unstable_by_key(Segment::key);
-        sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
+        outer(self.elements().flat_map(|nodes| self.sides(nodes)).collect())
     }
 
     /// Returns the registry entry of the mesh's element type.
     pub(crate) fn entry(&self) -> &'static ElementType {
         self.element.entry()
     }
+}
+
+/// Returns the sides that occur once.
+fn outer(mut sides: Vec<Segment>) -> Vec<Segment> {
+    sides.sort_unstable_by_key(Segment::key);
+    sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
 }
 
 /// Returns twice the area of a polygon, positive if it is counter-clockwise.

@@ -239,6 +239,38 @@ impl Scene {
         self
     }
 
+    /// Returns `true` if a support or force acts on a point or a node, and not on a width or an edge.
+    pub(crate) fn acts_on_points(&self) -> bool {
+        let is_point = |place: &Place, width: f64| matches!(place, Place::At(_)) && width == 0.0;
+        self.supports.iter().any(|support| is_point(&support.place, support.width))
+            || self.loads.iter().any(|load| matches!(load, Load::Force { place, width, .. } if is_point(place, *width)))
+    }
+
+    /// Spreads every support and force at a point over a width, m: see [`Support::width`].
+    ///
+    /// ```
+    /// use warpbeam::{Axis, Scene, Simulation, Status};
+    ///
+    /// let beam = Scene::beam(10.0, 1.0).point_support([0.5, -0.5], &[Axis::X, Axis::Y]).point_support([9.5, -0.5], &[Axis::Y]);
+    /// let beam = beam.point_force([5.0, 0.5], [0.0, -1000.0]).probe("middle", [5.0, 0.0]).with_widths(0.1);
+    /// let mut simulation = Simulation::new(&beam)?;
+    /// assert_eq!(*simulation.solve(), Status::Converged);
+    /// assert!((simulation.support_reactions()[0].force.y - 500.0).abs() < 20.0);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
+    #[must_use]
+    pub fn with_widths(mut self, to: f64) -> Self {
+        for support in self.supports.iter_mut().filter(|support| support.at_point) {
+            support.width = to;
+        }
+        for load in &mut self.loads {
+            if let Load::Force { at_point: true, width, .. } = load {
+                *width = to;
+            }
+        }
+        self
+    }
+
     /// Adds a moment, N m, counter-clockwise, that rotates with its edge.
     #[must_use]
     pub fn moment(mut self, edge: &str, moment: f64) -> Self {

@@ -133,6 +133,8 @@ pub const KEYS: &[Key] = keys! {
         "Point, at rest.";
     "support.acts_on": Choice(&["node", "point"]), Default(r#""node""#), r#""point""#,
         "Of a support with at: node holds the node nearest to the point; point holds the point itself, which moves with the nodes of the element there in proportion to their shape functions.";
+    "support.width": Number(limits::WIDTH), Default("0.0"), r#""10 cm""#,
+        "Of a support with at: holds the mean displacement over this length of the body's outline, or of the horizontal line through an inner point. Unlike that of a point, its error has a limit on finer meshes.";
     "support.fix": Choices(&["x", "y"]), Required(r#"the directions it fixes, as in ["x", "y"]"#), r#"["x", "y"]"#,
         "Directions that are held; at least one.";
     "support.displacement": Pair(limits::COORDINATE), Default("[0.0, 0.0]"), r#"[0.0, "-3 mm"]"#,
@@ -150,6 +152,8 @@ pub const KEYS: &[Key] = keys! {
         "Point, at rest, for a force.";
     "load.acts_on": Choice(&["node", "point"]), Default(r#""node""#), r#""point""#,
         "Of a force with at: node puts it on the node nearest to the point; point puts it on the nodes of the element there, in proportion to their shape functions.";
+    "load.width": Number(limits::WIDTH), Default("0.0"), r#""10 cm""#,
+        "Of a force with at: spreads it evenly over this length of the body's outline, or of the horizontal line through an inner point.";
     "load.force": Vector(limits::FORCE), Optional("required for a force"), r#"[0.0, "-12 kN"]"#,
         "Total force; on an edge a uniform traction.";
     "load.acceleration": Vector(limits::ACCELERATION), Optional("required for gravity"), "[0.0, -9.81]",

@@ -89,6 +89,8 @@ pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
 pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
+/// Width of a support or force.
+pub const WIDTH: Limit = Limit::new("m", 0.0, 1e6);
 /// Prescribed rotation of a support.
 pub const ROTATION: Limit = Limit::new("rad", -100.0, 100.0);
 /// Metres per unit of a mesh file.

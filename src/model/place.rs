@@ -60,7 +60,7 @@ pub enum TableError {
     #[error("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")]
     Force,
     /// The force or support acts on a point, and names an edge.
-    #[error("expected at = [x, y] with acts_on = \"point\", got an edge")]
+    #[error("expected at = [x, y] with acts_on = \"point\" or a width, got an edge")]
     PointOfEdge,
     /// The keys are not those of gravity.
     #[error("expected only acceleration = [ax, ay] in m/s² for a load of kind \"gravity\"")]
@@ -120,6 +120,9 @@ pub struct Support {
     /// the shape functions. `false` for one of the node nearest to the point. Without meaning on an edge, and outside the
     /// body, where the nearest node is used.
     pub at_point: bool,
+    /// Length around the point, m, over which the mean displacement is prescribed: of the body's outline, or of the
+    /// horizontal line through an inner point; 0 for the point itself. Needs `at_point`.
+    pub width: f64,
     /// Fixed directions.
     pub fix: Vec<Axis>,
     /// Prescribed displacement, m, in the fixed directions; applied in load steps, with the loads.
@@ -133,7 +136,7 @@ impl Support {
     /// Returns a support of an edge, or of the node nearest to a point, without prescribed displacement.
     #[must_use]
     pub fn new(place: impl Into<Place>, fix: &[Axis]) -> Self {
-        Self { place: place.into(), at_point: false, fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
+        Self { place: place.into(), at_point: false, width: 0.0, fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
     }
 
     /// Returns a support of a point of the body, m, and not of its nearest node.
@@ -150,11 +153,13 @@ impl Support {
 
     /// Returns `true` if both fix the same unknowns, whatever displacements they prescribe.
     pub(crate) fn fixes_as(&self, other: &Self) -> bool {
-        (&self.place, self.at_point, &self.fix) == (&other.place, other.at_point, &other.fix)
+        let of = |own: &Self| (own.place.clone(), own.at_point, own.width, own.fix.clone());
+        of(self) == of(other)
     }
 
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
         self.place.validate(key)?;
+        check(&format!("{key}.width"), limits::WIDTH, self.width)?;
         if self.fix.is_empty() {
             return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
         }
@@ -245,6 +250,9 @@ pub enum Load {
         /// functions, so that force and moment are those of the point. `false` for one on the node nearest to the
         /// point. Without meaning on an edge, and outside the body, where the nearest node is used.
         at_point: bool,
+        /// Length around the point, m, over which the force is uniform: of the body's outline, or of the horizontal line
+        /// through an inner point; 0 for the point itself. Needs `at_point`.
+        width: f64,
         /// Components, N.
         force: [f64; 2],
         /// Time dependence; `None` for a constant load.
@@ -272,13 +280,13 @@ impl Load {
     /// Returns a dead force, N, on an edge or on the node nearest to a point.
     #[must_use]
     pub fn force(place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
-        Self::Force { place: place.into(), at_point: false, force: force.into().into(), pulse: None }
+        Self::Force { place: place.into(), at_point: false, width: 0.0, force: force.into().into(), pulse: None }
     }
 
     /// Returns a dead force, N, at a point of the body, m, and not on its nearest node.
     #[must_use]
     pub fn point_force(at: impl Into<Vector2<f64>>, force: impl Into<Vector2<f64>>) -> Self {
-        Self::Force { place: at.into().into(), at_point: true, force: force.into().into(), pulse: None }
+        Self::Force { place: at.into().into(), at_point: true, width: 0.0, force: force.into().into(), pulse: None }
     }
 
     /// Returns a moment, N m, on an edge.
@@ -313,8 +321,9 @@ impl Load {
         }
         let check = |name: &str, limit, value| check(&format!("{key}.{name}"), limit, value);
         match self {
-            Self::Force { place, force, .. } => {
+            Self::Force { place, width, force, .. } => {
                 place.validate(key)?;
+                check("width", limits::WIDTH, *width)?;
                 check("force", limits::FORCE, force[0].hypot(force[1]))
             }
             Self::Moment { moment, .. } => check("moment", limits::MOMENT, *moment),
@@ -337,6 +346,8 @@ struct SupportTable {
     at: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "is_default", default)]
     acts_on: ActsOn,
+    #[serde(skip_serializing_if = "is_default", default)]
+    width: f64,
     fix: Vec<Axis>,
     #[serde(skip_serializing_if = "is_default", default)]
     displacement: [f64; 2],
@@ -348,17 +359,18 @@ impl TryFrom<SupportTable> for Support {
     type Error = TableError;
 
     fn try_from(table: SupportTable) -> Result<Self, TableError> {
-        let SupportTable { edge, at, acts_on, fix, displacement, turn } = table;
-        let (place, at_point) = acts_on.place(edge, at)?;
-        Ok(Self { place, at_point, fix, displacement, turn })
+        let SupportTable { edge, at, acts_on, width, fix, displacement, turn } = table;
+        let (place, at_point) = acts_on.place(edge, at, width)?;
+        Ok(Self { place, at_point, width, fix, displacement, turn })
     }
 }
 
 impl From<Support> for SupportTable {
     fn from(support: Support) -> Self {
-        let Support { place, at_point, fix, displacement, turn } = support;
+        let Support { place, at_point, width, fix, displacement, turn } = support;
         let (edge, at) = place.keys();
-        Self { acts_on: ActsOn::of(at_point, at), edge, at, fix, displacement, turn }
+        let (acts_on, width) = ActsOn::of(at_point, width, at);
+        Self { acts_on, width, edge, at, fix, displacement, turn }
     }
 }
 
@@ -417,6 +429,8 @@ struct LoadTable {
     at: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "is_default", default)]
     acts_on: ActsOn,
+    #[serde(skip_serializing_if = "is_default", default)]
+    width: f64,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     force: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -445,16 +459,20 @@ enum ActsOn {
 }
 
 impl ActsOn {
-    /// Returns the key of a place at `at`; without meaning on an edge.
-    fn of(at_point: bool, at: Option<[f64; 2]>) -> Self {
-        if at_point && at.is_some() { Self::Point } else { Self::Node }
+    /// Returns the keys of a place at `at`; without meaning on an edge. A width says that the point is meant.
+    fn of(at_point: bool, width: f64, at: Option<[f64; 2]>) -> (Self, f64) {
+        match at_point && at.is_some() {
+            true if width == 0.0 => (Self::Point, 0.0),
+            true => (Self::Node, width),
+            false => (Self::Node, 0.0),
+        }
     }
 
-    /// Makes a place from the other two keys, with `true` if its point is meant and not the nearest node.
-    fn place(self, edge: Option<String>, at: Option<[f64; 2]>) -> Result<(Place, bool), TableError> {
-        match (Place::new(edge, at)?, self) {
-            (Place::Edge(_), Self::Point) => Err(TableError::PointOfEdge),
-            (place, own) => Ok((place, own == Self::Point)),
+    /// Makes a place from the other keys, with `true` if its point is meant and not the nearest node.
+    fn place(self, edge: Option<String>, at: Option<[f64; 2]>, width: f64) -> Result<(Place, bool), TableError> {
+        match (Place::new(edge, at)?, self == Self::Point || width != 0.0) {
+            (Place::Edge(_), true) => Err(TableError::PointOfEdge),
+            placed => Ok(placed),
         }
     }
 }
@@ -463,12 +481,12 @@ impl TryFrom<LoadTable> for Load {
     type Error = TableError;
 
     fn try_from(table: LoadTable) -> Result<Self, TableError> {
-        let LoadTable { kind, edge, at, acts_on, force, acceleration, moment, pulse } = table;
-        let at_point = acts_on == ActsOn::Point;
+        let LoadTable { kind, edge, at, acts_on, width, force, acceleration, moment, pulse } = table;
+        let at_point = acts_on == ActsOn::Point || width != 0.0;
         match (kind, force, acceleration, moment) {
             (LoadKind::Force, Some(force), None, None) => {
-                let (place, at_point) = acts_on.place(edge, at)?;
-                Ok(Self::Force { place, at_point, force, pulse })
+                let (place, at_point) = acts_on.place(edge, at, width)?;
+                Ok(Self::Force { place, at_point, width, force, pulse })
             }
             (LoadKind::Force, ..) => Err(TableError::Force),
             (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() && !at_point => {
@@ -491,15 +509,17 @@ impl From<Load> for LoadTable {
             edge: None,
             at: None,
             acts_on: ActsOn::Node,
+            width: 0.0,
             force: None,
             acceleration: None,
             moment: None,
             pulse,
         };
         match load {
-            Load::Force { place, at_point, force, .. } => {
+            Load::Force { place, at_point, width, force, .. } => {
                 let (edge, at) = place.keys();
-                Self { acts_on: ActsOn::of(at_point, at), edge, at, force: Some(force), ..empty(LoadKind::Force) }
+                let (acts_on, width) = ActsOn::of(at_point, width, at);
+                Self { acts_on, width, edge, at, force: Some(force), ..empty(LoadKind::Force) }
             }
             Load::Moment { edge, moment, .. } => {
                 Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) }

@@ -71,13 +71,14 @@ pub(super) fn beyond_nodes(
     (balance, time): (&NodalBalance<'_>, f64),
     middle: Vector2<f64>,
 ) -> Wrench {
-    let mesh = shape.mesh;
     let mut sum = Wrench::default();
     for (support, force) in problem.supports().point_forces(&balance.residual) {
-        shape.add_point_load(cut, mesh.locate(support.middle), force, middle, &mut sum);
+        if let Place::At(at) = support.place {
+            shape.add_point_load(cut, (at, support.width), force, middle, &mut sum);
+        }
     }
     if let Some(spring) = problem.mouse_spring() {
-        shape.add_point_load(cut, Some(spring.point()), balance.mouse_spring, middle, &mut sum);
+        shape.add_material_load(cut, spring.point(), balance.mouse_spring, middle, &mut sum);
     }
     let factor = |pulse: &Option<Pulse>| balance.load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(time));
     let mut gravity = Vector2::zeros();
@@ -87,9 +88,9 @@ pub(super) fn beyond_nodes(
             Load::Force { place: Place::Edge(name), force, pulse, .. } => {
                 shape.add_edge_load(cut, name, Vector2::from(*force) * factor(pulse), middle, &mut sum);
             }
-            Load::Force { place: Place::At(at), at_point: true, force, pulse } => {
+            Load::Force { place: Place::At(at), at_point: true, width, force, pulse } => {
                 let force = Vector2::from(*force) * factor(pulse);
-                shape.add_point_load(cut, mesh.locate((*at).into()), force, middle, &mut sum);
+                shape.add_point_load(cut, (*at, *width), force, middle, &mut sum);
             }
             _ => {}
         }
@@ -144,18 +145,34 @@ impl PlacedMesh<'_> {
         }
     }
 
-    /// Adds the force, N, at a point inside an element of the cut if the point is in front, minus its parts on the nodes
-    /// in front.
+    /// Adds the force, N, around a place, over a width, m, as [`Self::add_material_load`] does.
     fn add_point_load(
         &self,
         cut: &Cut,
-        point: Option<MaterialPoint>,
+        (at, width): ([f64; 2], f64),
+        force: Vector2<f64>,
+        middle: Vector2<f64>,
+        sum: &mut Wrench,
+    ) {
+        for (point, share) in self.mesh.points_over(at.into(), width).into_iter().flatten() {
+            self.add_material_load(cut, point, force * share, middle, sum);
+        }
+    }
+
+    /// Adds the force, N, at a point inside an element of the cut if the point is in front, minus its parts on the nodes
+    /// in front.
+    fn add_material_load(
+        &self,
+        cut: &Cut,
+        point: MaterialPoint,
         force: Vector2<f64>,
         middle: Vector2<f64>,
         sum: &mut Wrench,
     ) {
         let (mesh, side) = (self.mesh, cut.side());
-        let Some(point) = point.filter(|point| cut.elements.contains(&point.element)) else { return };
+        if !cut.elements.contains(&point.element) {
+            return;
+        }
         let Some(weights) = mesh.weights(point) else { return };
         for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
             sum.add(self.positions[node as usize] - middle, force * -weight);

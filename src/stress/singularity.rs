@@ -58,7 +58,7 @@ impl Singularity {
         let is_there = |place: &Place| matches!(place, Place::At(at) if mesh.nearest_node((*at).into()) == node);
         let is_among = |weights: &[(u32, f64)]| weights.iter().any(|(own, weight)| *own == node && weight.abs() > 1e-9);
         let holds = |support: &NodalSupport| match support.point {
-            Some(_) => is_among(&support.weights),
+            Some(_) => support.width == 0.0 && is_among(&support.weights),
             None => is_there(&support.place),
         };
         if problem.supports().all().iter().any(holds) {
@@ -66,6 +66,7 @@ impl Singularity {
         }
         let acts = |load: &Load| match load {
             Load::Force { force: [0.0, 0.0], .. } => false,
+            Load::Force { at_point: true, width, .. } if *width > 0.0 => false,
             Load::Force { place: Place::At(at), at_point: true, .. } => {
                 mesh.weights_at((*at).into()).is_some_and(|weights| is_among(&weights))
             }

@@ -160,7 +160,7 @@ fn on_fine_meshes(
     let mut scene = prepared(original);
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
-    let has_point = has_point(&scene);
+    let has_point = scene.acts_on_points();
     let mut search = FineSearch { effort, work: 0.0, observe };
     let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
     let mut start: Option<Vec<Vector2<f64>>> = None;
@@ -304,13 +304,6 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
     counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= effort.good_enough() * u.norm()))
 }
 
-/// Returns `true` if a force or a support acts on a single point.
-pub(super) fn has_point(scene: &Scene) -> bool {
-    let at = |place: &Place| matches!(place, Place::At(_));
-    scene.supports.iter().any(|s| at(&s.place))
-        || scene.loads.iter().any(|load| matches!(load, Load::Force { place, .. } if at(place)))
-}
-
 /// Solver with a budget and progress reports.
 struct FineSearch<'a> {
     effort: Effort,
@@ -422,6 +415,7 @@ struct ScenePoint<'a> {
     key: String,
     at: &'a [f64; 2],
     at_point: bool,
+    width: f64,
 }
 
 impl ScenePoint<'_> {
@@ -433,15 +427,16 @@ impl ScenePoint<'_> {
 
 /// Returns every point at which a scene has a support or a force.
 fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
-    fn of<'a>(kind: &str, i: usize, place: &'a Place, at_point: bool) -> Option<ScenePoint<'a>> {
+    fn of<'a>(kind: &str, i: usize, place: &'a Place, (at_point, width): (bool, f64)) -> Option<ScenePoint<'a>> {
         match place {
-            Place::At(at) => Some(ScenePoint { key: format!("{kind}.{i}"), at, at_point }),
+            Place::At(at) => Some(ScenePoint { key: format!("{kind}.{i}"), at, at_point, width }),
             Place::Edge(_) => None,
         }
     }
-    let supports = scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, s.at_point));
+    let supports =
+        scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, (s.at_point, s.width)));
     let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
-        Load::Force { place, at_point, .. } => of("load", i, place, *at_point),
+        Load::Force { place, at_point, width, .. } => of("load", i, place, (*at_point, *width)),
         _ => None,
     });
     supports.chain(loads).collect()
@@ -482,8 +477,13 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
 fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let size = [beam.length, beam.height];
     let probes = scene.probes.iter().filter_map(|p| if let Place::At(at) = &p.place { Some(at) } else { None });
-    let points = points(scene).into_iter().map(|point| point.at).chain(probes);
-    let points = points.map(|at| straightened(beam, (*at).into())).map(|[along, across]| [along * size[0], across]);
+    // A width has lines at its ends, so that each mesh resolves it.
+    let lines_of = |ScenePoint { at: [x, y], width, .. }: ScenePoint<'_>| match width {
+        0.0 => vec![[*x, *y]],
+        width => vec![[x - 0.5 * width, *y], [x + 0.5 * width, *y]],
+    };
+    let points = points(scene).into_iter().flat_map(lines_of).chain(probes.copied());
+    let points = points.map(|at| straightened(beam, at.into())).map(|[along, across]| [along * size[0], across]);
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::fine::{Effort, Meshes, errors, has_point, prepared};
+use super::fine::{Effort, Meshes, errors, prepared};
 use super::reference::{MovedPoint, Reference, probes_of};
 use crate::assembly::System;
 use crate::scene::{Load, MethodKind, Scene, SolverSettings};
@@ -84,7 +84,7 @@ impl LiveReference {
         let [.., coarse, fine] = solutions.as_slice() else { return None };
         // The displacements of the probes are extrapolated from the two finest meshes.
         let probes = coarse.iter().zip(fine).map(|(coarse, fine)| fine + (fine - coarse) / 3.0);
-        let solved: Vec<_> = probes.zip(errors(&solutions, has_point(&self.own))).collect();
+        let solved: Vec<_> = probes.zip(errors(&solutions, self.own.acts_on_points())).collect();
         Some(Reference::of_finest(scene, finest, &solved, &self.linear, self.moved.clone(), false))
     }
 

@@ -167,6 +167,8 @@ enum Missing {
     NoBound,
     /// The bound exceeds [`LARGEST_OWN_ERROR`].
     LargeBound,
+    /// A support or force acts on a point, under which the displacement has no limit on finer meshes.
+    Point,
 }
 
 impl Missing {
@@ -187,6 +189,10 @@ impl From<&Missing> for Sentence {
     fn from(missing: &Missing) -> Self {
         match missing {
             Missing::AtRest => sentence!("no reference solution: the probe does not move"),
+            Missing::Point => sentence!(
+                "no reference solution: under a point the displacement grows without limit on finer meshes; give the \
+                 support or force there a width"
+            ),
             Missing::NoBound => {
                 sentence!("no reference solution: finer and finer meshes give no bound of its error at the probe")
             }
@@ -243,7 +249,10 @@ impl Reference {
         let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
         let mut reference = Self {
             probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
-            missing: solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(u, error, largest)),
+            missing: match solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(u, error, largest)) {
+                Missing::NoBound | Missing::LargeBound if scene.acts_on_points() => Missing::Point,
+                missing => missing,
+            },
             linear: first_probe(linear).ok(),
             moved,
             folds,

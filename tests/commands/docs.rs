@@ -370,7 +370,9 @@ fn scene_for(key: &Key) -> (toml::Table, Vec<String>) {
         load.as_table_mut().unwrap().insert("pulse".to_owned(), pulse.into());
     }
     let index = match key.path {
-        "support.at" | "support.acts_on" | "probe.at" | "load.at" | "load.acts_on" => "1",
+        "support.at" | "support.acts_on" | "support.width" | "probe.at" | "load.at" | "load.acts_on" | "load.width" => {
+            "1"
+        }
         "load.acceleration" => "2",
         "load.moment" => "3",
         _ => "0",

@@ -239,5 +239,36 @@ fn scene_files_have_the_point_of_a_support() {
     assert_eq!(scene.supports[0], Support::point([3.4, 0.1], BOTH));
     assert_eq!(scene.supports[0].place, Place::At([3.4, 0.1]));
     let error = Scene::from_toml(&toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1)).unwrap_err().to_string();
-    assert!(error.contains("expected at = [x, y] with acts_on = \"point\", got an edge"), "{error}");
+    assert!(error.contains("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"), "{error}");
+}
+
+/// A width of the outline, also at a corner, or of a line in the body, holds the mean displacement over it:
+/// the results have a limit on finer meshes, unlike those of points.
+#[test]
+fn widths_have_a_limit_on_finer_meshes() {
+    let on_two = |width: f64, at: [[f64; 2]; 3]| {
+        let scene = Scene::beam(10.0, 1.0).point_support(at[0], BOTH).point_support(at[1], &[Axis::Y]);
+        let scene = scene.point_force(at[2], [0.0, -1000.0]).with_widths(width).probe("middle", [5.0, 0.0]);
+        assert_eq!(Scene::from_toml(&scene.to_toml().unwrap()).unwrap(), scene);
+        scene
+    };
+    let below = [[0.5, -0.5], [9.5, -0.5], [5.0, 0.5]];
+    let steps = [0.0, 0.1].map(|width| {
+        let middle = |across: u32| {
+            let scene = on_two(width, below).with_element(ElementKind::T6).with_cells(10 * across, across);
+            solved(&scene.with_method(MethodKind::Linear)).probe("middle").unwrap().y
+        };
+        let [a, b, c] = [4, 8, 16].map(middle);
+        (c - b) / (b - a)
+    });
+    assert!(steps[0] > 0.8 && steps[1] < 0.7, "{steps:?}");
+    for at in [below, [[0.5, 0.1], [9.5, -0.2], [4.9, 0.3]], [[0.0, -0.5], [10.0, -0.5], [5.0, 0.5]]] {
+        let scene = on_two(0.1, at).with_element(ElementKind::Q4).with_cells(20, 2);
+        let reference = Reference::of(&scene).unwrap().first().unwrap();
+        let u = solved(&scene).probe("middle").unwrap();
+        let (error, own) = ((u - reference.displacement).norm() / u.norm(), reference.own_error_percent);
+        assert!(error < 0.02 && own < 1.0, "{at:?}: {error}, {own} %");
+        let [pin, roller] = [0, 1].map(|i| solved(&scene).support_reactions()[i].force.y);
+        assert!((pin + roller - 1000.0).abs() < 1e-6, "{pin} {roller}");
+    }
 }

@@ -48,7 +48,7 @@ fn the_key_is_read_and_written() {
     assert!(!on_node.contains("acts_on"), "{on_node}");
     let edge = toml.replace("at = [3.3, 0.1]", "edge = \"right\"");
     let error = Scene::from_toml(&edge).unwrap_err().to_string();
-    assert!(error.contains("expected at = [x, y] with acts_on = \"point\", got an edge"), "{error}");
+    assert!(error.contains("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"), "{error}");
     let gravity = toml.replace("force = [0.0, -1.0]", "acceleration = [0.0, -1.0]").replace("\"force\"", "\"gravity\"");
     assert!(Scene::from_toml(&gravity).is_err());
     let mut simulation = Simulation::new(&scene).unwrap();

@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_553),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_672;
+const SRC: usize = 64_673;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 

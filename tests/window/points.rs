@@ -221,18 +221,18 @@ fn bases_of_objects_are_dragged_along_the_body() {
         at
     };
     let load = |ui: &Ui| {
-        let Load::Force { place, at_point, .. } = &ui.scene().loads[0] else { panic!("a force") };
-        (place.clone(), *at_point)
+        let Load::Force { place, width, .. } = &ui.scene().loads[0] else { panic!("a force") };
+        (place.clone(), *width)
     };
     // The middle of the right edge, where the arrow begins; it moves to the side.
     drag(&mut ui, [9.999, 0.0], [6.9, 0.49]);
-    let (place, at_point) = load(&ui);
+    let (place, width) = load(&ui);
     let point = near(&place, [6.9, 0.5]);
-    assert!(point[1] == 0.5 && at_point, "{point:?}");
+    assert!(point[1] == 0.5 && width == 0.1, "{point:?}");
     assert!(!ui.says("acts on the nearest node"), "the force acts at its point");
     let moved = ui.scene().clone();
     drag(&mut ui, point, [9.999, 0.03]);
-    assert_eq!(load(&ui), (Place::At([10.0, 0.0]), false), "a force at a point is not distributed over an edge");
+    assert_eq!(load(&ui), (Place::At([10.0, 0.0]), 0.1), "a force at a point is not distributed over an edge");
     for earlier in [moved, before] {
         ui.undo();
         assert_eq!(*ui.scene(), earlier, "one step of undo");
@@ -277,6 +277,28 @@ fn coordinates_of_a_point_are_typed() {
     assert_eq!(load(&ui).0, Place::At([5.0, 0.5]), "undone");
     ui.type_into("y", "3 kg");
     ui.expect(&["expected"]);
+    ui.type_into("width", "20 cm");
+    assert!(matches!(ui.scene().loads[1], Load::Force { at_point: true, width: 0.2, .. }), "{:?}", ui.scene().loads);
+}
+
+/// A new beam on two supports has an error; its name is typed, and is in its file.
+#[test]
+fn a_new_beam_has_an_error_and_a_name() {
+    let mut ui = open("cantilever");
+    pick(&mut ui, "Scene", "on two supports");
+    settle(&mut ui);
+    assert!(!ui.says("no reference") && ui.says("ERROR 0."), "{:?}", ui.texts());
+    assert_eq!(ui.state().title(), "New beam \u{2013} warpbeam");
+    ui.get_by_label_contains("File: ").click();
+    ui.run_steps(8);
+    ui.get_by_role_and_label(Role::TextInput, "Name").click();
+    ui.run();
+    ui.event(egui::Event::Text(" of mine".into()));
+    ui.key(Key::Enter);
+    assert_eq!(ui.scene().name, "New beam of mine");
+    ui.undo();
+    ui.undo();
+    assert_eq!(ui.scene().name, scene("cantilever").name, "undo leads back to the scene before");
 }
 
 /// It is that of a solution on a fine mesh of our own, has no value while the reference is not known, and says so.

@@ -916,9 +916,9 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
 /// A question precedes another scene in place of an edited file. The key that opens the scene does not answer it.
 #[test]
 fn enter_in_the_gallery_answers_no_question() {
-    const QUESTION: &str = "Save the changes to \u{201c}Cantilever\u{201d}?";
     let mut ui = open("cantilever");
     let own = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    let question = format!("Save the changes to \u{201c}{}\u{201d}?", own.path().file_name().unwrap().display());
     std::fs::write(&own, ui.scene().to_toml().unwrap()).unwrap();
     ui.drop_file(own.path());
     ui.type_into("Force", "700");
@@ -928,7 +928,7 @@ fn enter_in_the_gallery_answers_no_question() {
         ui.get_by_label("bridge").focus();
         ui.step();
         ui.key(Key::Enter);
-        ui.get_by_label(QUESTION);
+        ui.get_by_label(&question);
         // Shortcuts of the window are inactive until the question is answered.
         ui.key(Key::P);
         assert!(ui.has(Role::Slider, "Force"));
@@ -937,7 +937,7 @@ fn enter_in_the_gallery_answers_no_question() {
             "Save" => ui.key(Key::Enter),
             answer => ui.push(answer),
         }
-        assert!(ui.query_by_label(QUESTION).is_none());
+        assert!(ui.query_by_label(&question).is_none());
         assert_eq!(ui.scene().name == "Bridge", ["Discard", "Save"].contains(&answer), "{answer}");
         if answer == "Discard" {
             ui.undo();

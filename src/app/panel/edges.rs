@@ -10,7 +10,7 @@ use crate::app::panel::{Action, PanelState, ViewOptions};
 use crate::app::readout::Readout;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{
-    acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand, with_probe,
+    acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,
 };
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::buttons::option_button;
@@ -81,15 +81,17 @@ fn place_of(load: &Load) -> Option<Place> {
 /// Change of a load or support by its row.
 enum EdgeChange {
     Move(Place),
+    /// Width, m.
+    Widen(f64),
     Remove,
 }
 
 /// Shows the row of a load or support with its place, and returns the user's change. The edge under the pointer is
-/// highlighted in the view. `more` shows further controls.
+/// highlighted in the view. `width` is that of a load or support at a point, m; `more` shows further controls.
 fn row(
     ui: &mut Ui,
     (label, id, remove): (&str, usize, &str),
-    (scene, present): (&Scene, &Place),
+    (scene, present, width): (&Scene, &Place, Option<f64>),
     places: impl Iterator<Item = (&'static str, Place)>,
     (view, messages): (&mut ViewOptions, &mut Messages),
     more: impl FnOnce(&mut Ui),
@@ -124,31 +126,38 @@ fn row(
         });
     });
     if let Place::At(at) = present {
-        let moved = coordinates(ui, (label, id), *at, messages);
-        change = change.or(moved.map(|at| EdgeChange::Move(at.into())));
+        change = change.or(coordinates(ui, (label, id), (*at, width), messages));
     }
     change
 }
 
-/// Shows the coordinates of a point, m; returns the point that was typed. The reason for which a text is refused becomes
-/// the message of the loads and supports.
-fn coordinates(ui: &mut Ui, id: (&str, usize), at: [f64; 2], messages: &mut Messages) -> Option<[f64; 2]> {
-    let mut moved = at;
+/// Shows the coordinates of a point and its width, m; returns the change that was typed. The reason for which a text is
+/// refused becomes the message of the loads and supports.
+fn coordinates(
+    ui: &mut Ui,
+    id: (&str, usize),
+    (at, width): ([f64; 2], Option<f64>),
+    messages: &mut Messages,
+) -> Option<EdgeChange> {
+    const POINT: &str = "Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm";
+    const WIDTH: &str = "Length of the edge, or of the horizontal line through an inner point, over which it acts; the error \
+                         of 0, a point, has no limit on finer meshes";
+    let (mut moved, mut widened) = (at, width);
     let refused = RefCell::new(None);
     ui.push_id(id, |ui| {
         ui.horizontal(|ui| {
-            for (name, value) in ["x", "y"].into_iter().zip(&mut moved) {
+            let [x, y] = &mut moved;
+            let fields = [("x", x, limits::COORDINATE, POINT), ("y", y, limits::COORDINATE, POINT)];
+            let wide = widened.as_mut().map(|width| (tr("width"), width, limits::WIDTH, WIDTH));
+            for (name, value, limit, tip) in fields.into_iter().chain(wide) {
                 let label = ui.label(name);
                 let mut typed = *value;
                 let field = DragValue::new(&mut typed)
                     .speed(0.0)
                     .update_while_editing(false)
                     .custom_formatter(|v, _| editable(v, "m"))
-                    .custom_parser(|text| {
-                        read(text, limits::COORDINATE).map_err(|reason| refused.replace(Some(reason))).ok()
-                    });
-                let tip = tr("Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm");
-                let response = ui.add(field).labelled_by(label.id).on_hover_text(tip);
+                    .custom_parser(|text| read(text, limit).map_err(|reason| refused.replace(Some(reason))).ok());
+                let response = ui.add(field).labelled_by(label.id).on_hover_text(tr(tip));
                 if response.changed() {
                     *value = typed;
                 }
@@ -158,7 +167,8 @@ fn coordinates(ui: &mut Ui, id: (&str, usize), at: [f64; 2], messages: &mut Mess
     if let Some(reason) = refused.into_inner() {
         messages.insert(SECTION, reason);
     }
-    (moved != at).then_some(moved)
+    let widened = widened.filter(|_| widened != width).map(EdgeChange::Widen);
+    (moved != at).then(|| EdgeChange::Move(moved.into())).or(widened)
 }
 
 /// Returns the numbers of loads and supports.
@@ -195,12 +205,13 @@ pub(super) fn show(
             Load::Moment { moment, .. } => engineering(three_digits(*moment), "N m"),
             Load::Gravity { .. } => String::new(),
         };
+        let width = if let Load::Force { width, .. } = load { *width } else { 0.0 };
         let size = |ui: &mut Ui| _ = ui.weak(&size);
         let change = if load.is_moment() {
             row(
                 ui,
                 (tr("Moment on"), i, &remove),
-                (scene, &present),
+                (scene, &present, None),
                 edges(can_carry_moment),
                 (view, &mut state.messages),
                 size,
@@ -209,7 +220,7 @@ pub(super) fn show(
             row(
                 ui,
                 (tr("Force on"), i, &remove),
-                (scene, &present),
+                (scene, &present, Some(width)),
                 edges(is_free).chain(points(scene)),
                 (view, &mut state.messages),
                 size,
@@ -223,9 +234,10 @@ pub(super) fn show(
                 scene.loads.remove(i);
                 state.discard_force(i);
             }
-            (EdgeChange::Move(to), Load::Force { place, at_point: kind, .. }) => {
-                (*kind, *place) = (acts_at_point(system.mesh(), &to), to);
+            (EdgeChange::Move(to), Load::Force { place, at_point, width, .. }) => {
+                move_by_hand(system, to, place, at_point, width);
             }
+            (EdgeChange::Widen(to), Load::Force { at_point, width, .. }) => (*at_point, *width) = (true, to),
             (EdgeChange::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
             _ => {}
         }
@@ -235,8 +247,13 @@ pub(super) fn show(
         let places = edges(|_, _| true).chain(points(scene));
         let mut fix = support.fix.clone();
         let remove = fill!("Remove support %{n}", n = i + 1);
-        let change =
-            row(ui, (tr("Held at"), i, &remove), (scene, &support.place), places, (view, &mut state.messages), |ui| {
+        let change = row(
+            ui,
+            (tr("Held at"), i, &remove),
+            (scene, &support.place, Some(support.width)),
+            places,
+            (view, &mut state.messages),
+            |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 // The layout runs from right to left.
                 for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
@@ -253,7 +270,8 @@ pub(super) fn show(
                         }
                     }
                 }
-            });
+            },
+        );
         say_if_on_node(ui, &format!("support.{i}"));
         let is_refixed = fix != support.fix;
         if change.is_none() && !is_refixed {
@@ -264,9 +282,10 @@ pub(super) fn show(
             // A support that fixes no direction is removed.
             _ if fix.is_empty() => _ = scene.supports.remove(i),
             (Some(EdgeChange::Remove), _) => _ = scene.supports.remove(i),
-            (Some(EdgeChange::Move(to)), support) => {
-                (support.at_point, support.place) = (acts_at_point(system.mesh(), &to), to);
+            (Some(EdgeChange::Move(to)), Support { place, at_point, width, .. }) => {
+                move_by_hand(system, to, place, at_point, width);
             }
+            (Some(EdgeChange::Widen(to)), support) => (support.at_point, support.width) = (true, to),
             (None, support) => *support = refixed(support, &fix),
         }
         edited = Some(scene);
@@ -275,12 +294,14 @@ pub(super) fn show(
         let places = edges(|_, _| true).chain(points(scene));
         let label = fill!("Probe %{name}", name = tr(&probe.name));
         let remove = fill!("Remove the probe %{name}", name = tr(&probe.name));
-        let change = row(ui, (&label, i, &remove), (scene, &probe.place), places, (view, &mut state.messages), |_| {});
+        let change =
+            row(ui, (&label, i, &remove), (scene, &probe.place, None), places, (view, &mut state.messages), |_| {});
         let Some(change) = change else { continue };
         let mut scene = Box::new(scene.clone());
         match change {
             EdgeChange::Remove => _ = scene.probes.remove(i),
             EdgeChange::Move(to) => scene.probes[i].place = to,
+            EdgeChange::Widen(_) => {}
         }
         edited = Some(scene);
     }
@@ -299,7 +320,7 @@ pub(super) fn show(
 /// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are
 /// kept.
 fn refixed(before: &Support, fix: &[Axis]) -> Support {
-    let mut support = Support { at_point: before.at_point, ..Support::new(before.place.clone(), fix) };
+    let mut support = Support { displacement: [0.0; 2], turn: 0.0, fix: fix.to_vec(), ..before.clone() };
     for (i, axis) in [Axis::X, Axis::Y].into_iter().enumerate() {
         if fix.contains(&axis) {
             support.displacement[i] = before.displacement[i];
@@ -335,7 +356,7 @@ fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
     if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
         let present = OpeningLoads::of(&scene);
         let [usual, _] = force_range(present, &scene.material, input.simulation.system());
-        scene.loads.push(force_by_hand(input.simulation.system().mesh(), place, [0.0, -usual]));
+        scene.loads.push(force_by_hand(input.simulation.system(), place, [0.0, -usual]));
     }
     scene
 }
@@ -368,7 +389,7 @@ fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     let edges = system.edges().iter().map(|edge| Place::from(edge.name()));
     // A beam that is held at one end gets a roller under the other end.
     if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
-        scene.supports.push(support_by_hand(system.mesh(), place, &[Axis::Y]));
+        scene.supports.push(support_by_hand(system, place, &[Axis::Y]));
     }
     scene
 }

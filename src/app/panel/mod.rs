@@ -133,7 +133,7 @@ pub(super) fn show(
         }
         let summary = view::summary(view, input.scene);
         fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
-        fold(ui, "File", tr("open, save, picture"), false, |ui| view::keep(ui, actions));
+        fold(ui, "File", tr("open, save, picture"), false, |ui| view::keep(ui, input.scene, actions));
         if let Some(errors) = errors {
             fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
         }

@@ -1,6 +1,6 @@
 //! Panel section of the display options.
 
-use egui::{ComboBox, Ui};
+use egui::{ComboBox, Id, TextEdit, Ui};
 
 use crate::app::language::{joined, tr};
 use crate::app::panel::{Action, PanelState, ViewOptions};
@@ -162,8 +162,32 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     joined(std::iter::once(field).chain(shown))
 }
 
-/// Shows the buttons that open, save and copy.
-pub(super) fn keep(ui: &mut Ui, actions: &mut Vec<Action>) {
+/// Shows the name and the description of the scene, and the buttons that open, save and copy.
+pub(super) fn keep(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
+    type Part = fn(&mut Scene) -> &mut String;
+    let parts: [(&str, Part); 2] = [("Name", |scene| &mut scene.name), ("Description", |scene| &mut scene.about)];
+    for (label, part) in parts {
+        let mut edited = Box::new(scene.clone());
+        let id = Id::unique((label, "of the scene"));
+        // The text while it is typed.
+        let typed: Option<String> = ui.data(|data| data.get_temp(id));
+        let own = tr(part(&mut edited)).to_owned();
+        let mut text = typed.unwrap_or_else(|| own.clone());
+        let field = |ui: &mut Ui| {
+            let name = ui.label(tr(label));
+            ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).labelled_by(name.id)
+        };
+        let response = ui.horizontal(field).inner;
+        if response.lost_focus() && text != own {
+            part(&mut edited).clone_from(&text);
+            actions.push(Action::Edit(label, edited));
+        }
+        let is_typed = response.has_focus();
+        ui.data_mut(|data| match is_typed {
+            true => _ = data.insert_temp(id, text),
+            false => data.remove::<String>(id),
+        });
+    }
     ui.horizontal_wrapped(|ui| {
         for (name, tip, action) in [
             ("Open…", "Open a scene file; one can also be dropped on the window (Ctrl+O)", Action::OpenFile),

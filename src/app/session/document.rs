@@ -72,6 +72,15 @@ impl Document {
         Some(String::from_utf8_lossy(&bytes).into())
     }
 
+    /// Returns the document of a scene that is not in a file yet.
+    pub(crate) fn unnamed(scene: &Scene) -> Self {
+        Self::with_text(
+            Source { name: scene::STANDARD_INPUT.into(), assignments: Vec::new() },
+            scene.clone(),
+            Some("".into()),
+        )
+    }
+
     /// Returns the content of the file when it was last read or written.
     pub(crate) fn text(&self) -> Option<&str> {
         self.text.as_deref()

@@ -66,6 +66,7 @@ impl Lab {
             Action::Open(id) => {
                 self.depart(ctx, UnsavedDeparture::Open(Source { name: id.into(), assignments: Vec::new() }));
             }
+            Action::New(scene) => self.depart(ctx, UnsavedDeparture::New(scene)),
             Action::OpenFile => self.depart(ctx, UnsavedDeparture::AskForFile),
             Action::Drop(path) => {
                 self.depart(ctx, UnsavedDeparture::Open(Source { name: path, assignments: Vec::new() }))

@@ -14,7 +14,7 @@ use crate::app::language::tr;
 use crate::app::readout::Readout;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::text::with_keys;
-use crate::scene::{Analysis, Scene, registry};
+use crate::scene::{Analysis, Axis, ElementKind, Scene, registry};
 
 /// Size of a picture, and height of its entry, points.
 const PICTURE: egui::Vec2 = vec2(112.0, 68.0);
@@ -43,6 +43,23 @@ static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {
 
 /// Groups of entries with their headings.
 const GROUPS: [(Analysis, &str); 2] = [(Analysis::Dynamic, "Dynamic"), (Analysis::Static, "Static")];
+
+/// Returns a beam without supports and loads, to be changed in the panel.
+fn new_beam() -> Scene {
+    let mut scene = Scene::beam(10.0, 1.0).with_element(ElementKind::T6).with_cells(20, 2);
+    (scene.name, scene.about) = (tr("New beam").to_owned(), String::new());
+    scene
+}
+
+fn clamped() -> Scene {
+    new_beam().clamp("left").force("right", [0.0, -1000.0]).probe("tip", "right")
+}
+
+/// Returns a beam on a pin and a roller with a force on its middle, each over a tenth of the height.
+fn on_two_supports() -> Scene {
+    let scene = new_beam().point_support([0.5, -0.5], &[Axis::X, Axis::Y]).point_support([9.5, -0.5], &[Axis::Y]);
+    scene.point_force([5.0, 0.5], [0.0, -1000.0]).with_widths(0.1).probe("middle", [5.0, -0.5])
+}
 
 /// Gallery; it has its pictures while it is open.
 #[derive(Default)]
@@ -93,6 +110,17 @@ impl Gallery {
                 actions.push(Action::OpenFile);
             }
             ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
+            ui.label(tr("New beam:"));
+            for (name, scene) in [("clamped left", clamped as fn() -> Scene), ("on two supports", on_two_supports)] {
+                if ui
+                    .button(tr(name))
+                    .on_hover_text(tr("Start a beam of your own; the panel has its length and height"))
+                    .clicked()
+                {
+                    actions.push(Action::New(Box::new(scene())));
+                    ui.close();
+                }
+            }
         });
         if !self.is_open {
             // The list would open where it was last scrolled to.

@@ -1,6 +1,6 @@
 //! Help overlay with the list of keys and mouse actions.
 
-use egui::{Align2, Context, Key, Modifiers};
+use egui::{Align2, Context, Key, Modifiers, RichText};
 
 use crate::app::language::tr;
 use crate::app::shell::shortcuts::shortcuts;
@@ -27,6 +27,10 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Double click", "Fit the view; on an arrow's tip, a slider or a number: reset its value"),
     ("Drop a file", "Open it"),
 ];
+
+/// Headings of the groups of keys, each with the first key of its group.
+const GROUPS: [(&str, &str); 5] =
+    [("Space", "Run"), ("F", "View"), ("L", "Drawers and modes"), ("S", "Files"), ("Ctrl+Z", "Edits")];
 
 /// Scrolls by the keys of the list.
 fn scroll_by_keys(ui: &egui::Ui) {
@@ -67,14 +71,26 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
         .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ctx, |ui| {
             scroll_by_keys(ui);
-            let of_shortcuts = shortcuts().map(|shortcut| (with_keys(ctx, &shortcut.text()), tr(shortcut.does)));
-            let of_gestures = FOCUS_KEYS.iter().chain(MOUSE);
-            let rows = of_shortcuts.chain(of_gestures.map(|(gesture, does)| (tr(gesture).to_owned(), tr(does))));
+            let heading = |of: &str| GROUPS.iter().find(|(first, _)| *first == of).map(|(_, heading)| *heading);
+            let of_shortcuts = shortcuts().map(|shortcut| (shortcut.text(), shortcut.does, heading(&shortcut.text())));
+            let of_gestures = MOUSE.iter().chain(FOCUS_KEYS).enumerate();
+            let of_gestures = of_gestures.map(|(i, (gesture, does))| {
+                (
+                    tr(gesture).to_owned(),
+                    *does,
+                    if i == 0 { Some("Mouse, and the control with the focus") } else { None },
+                )
+            });
+            let rows = of_gestures.chain(of_shortcuts);
             let list = egui::Grid::new("shortcuts").num_columns(2).max_col_width(0.6 * size.x);
             list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {
-                for (keys, does) in rows {
-                    ui.strong(keys);
-                    ui.label(does);
+                for (keys, does, heading) in rows {
+                    if let Some(heading) = heading {
+                        ui.label(RichText::new(tr(heading)).color(ui.visuals().hyperlink_color));
+                        ui.end_row();
+                    }
+                    ui.strong(with_keys(ctx, &keys));
+                    ui.label(tr(does));
                     ui.end_row();
                 }
             });

@@ -133,6 +133,7 @@ impl Story {
 pub(super) enum UnsavedDeparture {
     Close,
     Open(Source),
+    New(Box<Scene>),
     AskForFile,
 }
 

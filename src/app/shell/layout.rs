@@ -2,7 +2,7 @@
 
 use web_time::Duration;
 
-use egui::{CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo};
+use egui::{Button, CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo, vec2};
 
 use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
@@ -336,6 +336,12 @@ impl Lab {
         self.paint_story(ui, &painter, rect);
         if self.desk.view.bars {
             self.show_work(ui, rect, actions);
+        }
+        if self.desk.viewport.misses_body() {
+            let place = Rect::from_center_size(rect.center_bottom() - vec2(0.0, 64.0), vec2(120.0, 24.0));
+            if ui.put(place, Button::new(tr("Fit"))).on_hover_text(tr("Show the whole body (F)")).clicked() {
+                actions.push(Action::Fit);
+            }
         }
         self.report_crossing(ui);
         self.paint_toast(ui, &painter, rect);

@@ -1,5 +1,7 @@
 //! Question before unsaved edits are lost, and the offer to restore the edits left by a crashed window.
 
+use std::path::Path;
+
 use egui::{Context, Event, Id, Key, Modal, RichText, Ui};
 
 use crate::app::language::{fill, tr};
@@ -71,6 +73,9 @@ impl Lab {
         match departure {
             UnsavedDeparture::Close => self.closes = true,
             UnsavedDeparture::Open(source) => self.open(ctx, source),
+            UnsavedDeparture::New(scene) => {
+                _ = self.apply(ctx, Edit::Restore(Box::new((Document::unnamed(&scene), *scene))));
+            }
             UnsavedDeparture::AskForFile if IS_PAGE => files::choose(),
             UnsavedDeparture::AskForFile => {
                 self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
@@ -92,10 +97,14 @@ impl Lab {
             Question::Unsaved(departure) => departure,
             other => return self.question = other,
         };
-        let title = fill!("Save the changes to “%{scene}”?", scene = tr(&self.scene().name));
+        let file = self.desk.session.document().path().and_then(Path::file_name);
+        let name = file.map_or_else(|| tr(&self.scene().name).to_owned(), |file| file.to_string_lossy().into_owned());
+        let title = fill!("Save the changes to “%{scene}”?", scene = name);
         let text = match departure {
             UnsavedDeparture::Close => "Discarded changes are lost.",
-            UnsavedDeparture::Open(_) | UnsavedDeparture::AskForFile => "Undo restores discarded changes.",
+            UnsavedDeparture::Open(_) | UnsavedDeparture::New(_) | UnsavedDeparture::AskForFile => {
+                "Undo restores discarded changes."
+            }
         };
         match dialog(ctx, &title, tr(text)) {
             None => self.question = Question::Unsaved(departure),

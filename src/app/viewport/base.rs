@@ -6,14 +6,14 @@ use nalgebra::Vector2;
 
 use crate::app::language::{fill, tr};
 use crate::app::viewport::arrow::point_of_application;
-use crate::app::viewport::menu::{acts_at_point, nearest_on_side, rounded};
+use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
 use crate::format::{editable, engineering_pair, three_digits};
-use crate::mesh::{Mesh, Segment, bent, straightened};
-use crate::scene::{Load, Place, Scene, SectionLine};
+use crate::mesh::{Mesh, Segment};
+use crate::scene::{Load, Place, Scene, SectionLine, Support};
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
@@ -23,7 +23,7 @@ const NEAR: f32 = 9.0;
 const REACH: f64 = 80.0;
 
 /// Distance within which an object moves to the outline or to the axis of a beam, points.
-const CLOSE: f64 = 4.0;
+pub(crate) const CLOSE: f64 = 4.0;
 
 /// Distance from the point of a section within which its end does not turn it, points.
 const CLOSE_TO_POINT: f64 = 6.0;
@@ -166,8 +166,7 @@ impl Bases<'_> {
         let world = self.projection.place(pointer);
         let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
-        let rest = self.on_side(rest).unwrap_or_else(|| self.on_axis(rest));
-        let rest = rounded(self.system, rest);
+        let rest = snapped(self.system, self.outline, rest, CLOSE / self.projection.camera.scale);
         Some((Place::At(rest.into()), self.drawn(rest)?))
     }
 
@@ -184,35 +183,20 @@ impl Bases<'_> {
         matches!(place, Some(Place::At(_)))
     }
 
-    /// Returns the nearest point of the outline at rest, m; `None` if it is not close to the rest position `at`.
-    fn on_side(&self, at: Vector2<f64>) -> Option<Vector2<f64>> {
-        let mesh = self.mesh();
-        let feet = self.outline.iter().map(|side| nearest_on_side(mesh, side, at));
-        let nearest = feet.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm()))?;
-        ((nearest - at).norm() * self.projection.camera.scale <= CLOSE).then_some(nearest)
-    }
-
-    /// Returns the point of the beam's axis nearest to a rest position, m, if it is close; the position itself otherwise.
-    fn on_axis(&self, at: Vector2<f64>) -> Vector2<f64> {
-        let Some(beam) = self.system.beam() else { return at };
-        let axis = bent(beam, straightened(beam, at)[0], 0.0);
-        if (axis - at).norm() * self.projection.camera.scale <= CLOSE { axis } else { at }
-    }
-
     /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.
     pub(crate) fn moved(&self, object: Object, pointer: Pos2) -> Option<Scene> {
         let (place, _) = self.target(object, pointer)?;
         let mut scene = self.scene.clone();
         match object {
             Object::Force(i) => match scene.loads.get_mut(i)? {
-                Load::Force { place: own, at_point: kind, .. } => {
-                    (*kind, *own) = (acts_at_point(self.mesh(), &place), place);
+                Load::Force { place: own, at_point, width, .. } => {
+                    move_by_hand(self.system, place, own, at_point, width);
                 }
                 _ => return None,
             },
             Object::Support(i) => {
-                let support = scene.supports.get_mut(i)?;
-                (support.at_point, support.place) = (acts_at_point(self.mesh(), &place), place);
+                let Support { place: own, at_point, width, .. } = scene.supports.get_mut(i)?;
+                move_by_hand(self.system, place, own, at_point, width);
             }
             Object::Probe(i) => scene.probes.get_mut(i)?.place = place,
             Object::Section(i) => match place {

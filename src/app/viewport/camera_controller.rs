@@ -64,6 +64,11 @@ impl CameraController {
         self.own = None;
     }
 
+    /// Returns `true` if the user has moved the camera.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.own.is_some()
+    }
+
     /// Jumps to `camera` without animation, so that dragging does not lag.
     pub(crate) fn set_camera(&mut self, camera: Camera) {
         self.own = Some(camera);

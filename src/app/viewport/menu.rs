@@ -10,6 +10,7 @@ use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::{Edge, System};
+use crate::format::two_digits;
 use crate::mesh::{Mesh, Segment, axis_angle, bent, straightened};
 use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
 use crate::section;
@@ -56,9 +57,28 @@ pub(crate) fn acts_at_point(mesh: &Mesh, place: &Place) -> bool {
 /// Name of the edits that are made on the body; a message about one has no field beside which it could stand.
 pub(crate) const EDIT: &str = "body";
 
+/// Returns the width, m, of a support or force that is put at a place by hand: a tenth of the height of the beam, or of the
+/// smaller dimension of another body; 0 on an edge.
+fn width_by_hand(system: &System, place: &Place) -> f64 {
+    let (low, high) = system.mesh().bounds();
+    let height = system.beam().map_or((high - low).min(), |beam| beam.height);
+    if matches!(place, Place::At(_)) { two_digits(0.1 * height) } else { 0.0 }
+}
+
+/// Moves a support or a force to another place by hand, where it acts on a width if it did, or comes from an edge.
+pub(crate) fn move_by_hand(system: &System, to: Place, own: &mut Place, at_point: &mut bool, width: &mut f64) {
+    *width = match (&to, &own) {
+        (Place::At(_), Place::At(_)) => *width,
+        _ => width_by_hand(system, &to),
+    };
+    *at_point = *width > 0.0 || acts_at_point(system.mesh(), &to);
+    *own = to;
+}
+
 /// Returns a force, N, that is put at a place by hand.
-pub(crate) fn force_by_hand(mesh: &Mesh, place: Place, force: [f64; 2]) -> Load {
-    Load::Force { at_point: acts_at_point(mesh, &place), place, force, pulse: None }
+pub(crate) fn force_by_hand(system: &System, place: Place, force: [f64; 2]) -> Load {
+    let width = width_by_hand(system, &place);
+    Load::Force { at_point: width > 0.0, width, place, force, pulse: None }
 }
 
 /// Returns `true` if a load on this edge can move the body: supports do not fix the whole edge.
@@ -86,15 +106,25 @@ fn distance_to_edge(mesh: &Mesh, name: &str, at: Vector2<f64>) -> Option<f64> {
 }
 
 /// Returns the point of a side at rest that is nearest to `at`, m.
-pub(crate) fn nearest_on_side(mesh: &Mesh, side: &Segment, at: Vector2<f64>) -> Vector2<f64> {
+fn nearest_on_side(mesh: &Mesh, side: &Segment, at: Vector2<f64>) -> Vector2<f64> {
     let [a, b] = side.ends().map(|node| mesh.node(node));
     a + (b - a) * ((at - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
 }
 
+/// Returns the point of the outline that is nearest to a rest position, m, or else that of the beam's axis, if it is within
+/// a distance, m, or else the position; rounded.
+pub(crate) fn snapped(system: &System, outline: &[Segment], at: Vector2<f64>, within: f64) -> Vector2<f64> {
+    let is_close = |point: &Vector2<f64>| (point - at).norm() <= within;
+    let feet = outline.iter().map(|side| nearest_on_side(system.mesh(), side, at));
+    let foot = feet.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm())).filter(is_close);
+    let axis = || system.beam().map(|beam| bent(beam, straightened(beam, at)[0], 0.0)).filter(is_close);
+    rounded(system, foot.or_else(axis).unwrap_or(at))
+}
+
 /// Returns a support that is put at a place by hand.
-pub(crate) fn support_by_hand(mesh: &Mesh, place: Place, fix: &[Axis]) -> Support {
-    let at_point = acts_at_point(mesh, &place);
-    Support { at_point, ..Support::new(place, fix) }
+pub(crate) fn support_by_hand(system: &System, place: Place, fix: &[Axis]) -> Support {
+    let width = width_by_hand(system, &place);
+    Support { at_point: width > 0.0, width, ..Support::new(place, fix) }
 }
 
 /// Returns the entries that add an object at a point, or a moment on an edge. A node within `near`, m, is held itself.
@@ -108,10 +138,10 @@ fn additions(
     let mesh = system.mesh();
     let node = mesh.node(mesh.nearest_node(at));
     let held = if (node - at).norm() <= near { node } else { rounded(system, at) };
-    let support = support_by_hand(mesh, held.into(), &[Axis::X, Axis::Y]);
+    let support = support_by_hand(system, held.into(), &[Axis::X, Axis::Y]);
     let held = support.place.clone();
     let [usual, _] = force_range(present, &scene.material, system);
-    let force = force_by_hand(mesh, rounded(system, at).into(), [0.0, -usual]);
+    let force = force_by_hand(system, rounded(system, at).into(), [0.0, -usual]);
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(support))),

@@ -9,7 +9,7 @@ use crate::app::diagnosis::Errors;
 use crate::app::session::{Session, has_mesh_of};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::arrow::ForceArrows;
-use crate::app::viewport::base::Bases;
+use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
@@ -323,6 +323,13 @@ impl BodyView {
         }
     }
 
+    /// Returns `true` if the user has moved the view so that it does not have the whole body.
+    pub(crate) fn misses_body(&self) -> bool {
+        let projection = self.projection();
+        let is_out = |point: &Vector2<f64>| !self.rect.contains(projection.point(*point));
+        self.camera.is_moved() && self.body.points().iter().any(is_out)
+    }
+
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
     /// the background.
     fn bases<'a>(&'a self, content: &Content<'a>) -> Option<Bases<'a>> {
@@ -366,6 +373,7 @@ impl BodyView {
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
+        let at = menu::snapped(system, &content.session.geometry().boundary, at, CLOSE / self.camera().scale);
         let present = OpeningLoads::of(scene);
         menu::show(response, (scene, system), (at, NEAR / self.camera().scale), present)
     }
