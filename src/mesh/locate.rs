@@ -45,17 +45,19 @@ impl Mesh {
 
     fn locate_among<'a>(
         &self,
-        mut elements: impl Iterator<Item = (usize, &'a [u32])>,
+        elements: impl Iterator<Item = (usize, &'a [u32])>,
         positions: &[Vector2<f64>],
         at: Vector2<f64>,
     ) -> Option<MaterialPoint> {
-        elements.find_map(|(element, nodes)| {
-            if !is_in_box(nodes, positions, at, 0.0) {
-                return None;
-            }
+        elements.filter(|(_, nodes)| is_in_box(nodes, positions, at, 0.0)).find_map(|(element, nodes)| {
             let place = self.invert(nodes, positions, at)?;
             ((self.entry().cell.depth)(place) >= -SLACK).then_some(MaterialPoint { element, at: place })
         })
+    }
+
+    /// Returns `true` if an element may have points of [`Self::points_over`].
+    pub(crate) fn is_near(&self, element: usize, at: Vector2<f64>, length: f64) -> bool {
+        self.elements().nth(element).is_some_and(|nodes| is_in_box(nodes, &self.nodes, at, 0.5 * length))
     }
 
     /// Returns the points of a length, m, of the body's outline around a rest position, or of the horizontal line through
@@ -92,19 +94,18 @@ impl Mesh {
 
     /// Returns the parts of a length, m, of an outline around a point of it: nodes of sides with the range of their
     /// parameter, −1 to 1. The outline ends at corners. `None` for a point that does not lie on it.
-    fn pieces_of_outline(&self, outline: Vec<Segment>, at: Vector2<f64>, length: f64) -> Option<Vec<Piece>> {
+    fn pieces_of_outline(&self, outline: Vec<Segment>, at: Vector2<f64>, length: f64) -> Option<Vec<LinePart>> {
         /// Distance from a side, relative to its length, that counts as on it.
         const ON: f64 = 1e-3;
         /// Cosine of the largest angle between two sides of one smooth line, 30°.
         const SMOOTH: f64 = 0.866;
         let rest = |side: &Segment| -> Vec<Vector2<f64>> { side.nodes().iter().map(|&n| self.node(n)).collect() };
         let chord = |side: &Segment| self.node(side.ends()[1]) - self.node(side.ends()[0]);
-        // The parameter of the point on a side.
         let parameter = |side: &Segment| {
             let (nodes, chord) = (rest(side), chord(side));
             let xi = 2.0 * (at - nodes[0]).dot(&chord) / chord.norm_squared() - 1.0;
-            let on_side: Vector2<f64> = nodes.iter().zip(lagrange(nodes.len(), xi)).map(|(x, (n, _))| x * n).sum();
-            let is_on = xi.abs() <= 1.0 + ON && chord.perp(&(at - on_side)).abs() <= ON * chord.norm_squared();
+            let foot: Vector2<f64> = nodes.iter().zip(lagrange(nodes.len(), xi)).map(|(x, (n, _))| x * n).sum();
+            let is_on = xi.abs() <= 1.0 + ON && chord.perp(&(at - foot)).abs() <= ON * chord.norm_squared();
             is_on.then_some(xi.clamp(-1.0, 1.0))
         };
         let found = outline.iter().filter_map(|side| Some((side, parameter(side)?)));
@@ -112,13 +113,11 @@ impl Mesh {
         let slope = |side: &Segment| (chord(side).y / chord(side).norm()).abs();
         let (first, xi) = found.min_by(|(a, _), (b, _)| slope(a).total_cmp(&slope(b)))?;
         let mut pieces = Vec::new();
-        for end in [0, 1] {
-            // From the point to this end of the outline.
+        for (end, limit) in [(0, -1.0), (1, 1.0_f64)] {
             let (mut side, mut start, mut left) = (*first, xi, 0.5 * length);
             loop {
                 let nodes = rest(&side);
                 let whole: f64 = side_weights(&nodes).iter().sum();
-                let limit = if end == 1 { 1.0 } else { -1.0 };
                 let stop = start + limit * (2.0 * left / whole).min((limit - start).abs());
                 pieces.push((nodes, [start.min(stop), start.max(stop)]));
                 left -= 0.5 * whole * (stop - start).abs();
@@ -126,7 +125,7 @@ impl Mesh {
                     next.ends()[1 - end] == side.ends()[end]
                         && chord(next).dot(&chord(&side)) > SMOOTH * chord(next).norm() * chord(&side).norm()
                 };
-                match outline.iter().find(goes_on).filter(|_| left > SLACK * length) {
+                match outline.iter().find(goes_on).filter(|next| left > SLACK * length && *next != first) {
                     Some(next) => (side, start) = (*next, -limit),
                     None => break,
                 }
@@ -136,7 +135,7 @@ impl Mesh {
     }
 
     /// Returns the parts of a length, m, of the horizontal line around a point, between the sides that cross it.
-    fn pieces_of_line(&self, sides: &[Segment], at: Vector2<f64>, length: f64) -> Vec<Piece> {
+    fn pieces_of_line(&self, sides: &[Segment], at: Vector2<f64>, length: f64) -> Vec<LinePart> {
         let [low, high] = [at.x - 0.5 * length, at.x + 0.5 * length];
         let crossings = sides.iter().filter_map(|side| {
             let [p, q] = side.ends().map(|node| self.node(node));
@@ -231,7 +230,7 @@ impl Mesh {
 }
 
 /// Nodes of a line with a range of its parameter, −1 to 1.
-type Piece = (Vec<Vector2<f64>>, [f64; 2]);
+type LinePart = (Vec<Vector2<f64>>, [f64; 2]);
 
 /// Returns `true` if a position is in the bounding box of an element's nodes, or nearer to it than `within`, m.
 fn is_in_box(nodes: &[u32], positions: &[Vector2<f64>], at: Vector2<f64>, within: f64) -> bool {

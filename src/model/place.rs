@@ -153,8 +153,7 @@ impl Support {
 
     /// Returns `true` if both fix the same unknowns, whatever displacements they prescribe.
     pub(crate) fn fixes_as(&self, other: &Self) -> bool {
-        let of = |own: &Self| (own.place.clone(), own.at_point, own.width, own.fix.clone());
-        of(self) == of(other)
+        (&self.place, self.at_point, self.width, &self.fix) == (&other.place, other.at_point, other.width, &other.fix)
     }
 
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
@@ -461,10 +460,10 @@ enum ActsOn {
 impl ActsOn {
     /// Returns the keys of a place at `at`; without meaning on an edge. A width says that the point is meant.
     fn of(at_point: bool, width: f64, at: Option<[f64; 2]>) -> (Self, f64) {
-        match at_point && at.is_some() {
-            true if width == 0.0 => (Self::Point, 0.0),
-            true => (Self::Node, width),
-            false => (Self::Node, 0.0),
+        match at {
+            Some(_) if at_point && width == 0.0 => (Self::Point, 0.0),
+            Some(_) if at_point => (Self::Node, width),
+            _ => (Self::Node, 0.0),
         }
     }
 

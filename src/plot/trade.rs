@@ -42,12 +42,10 @@ pub fn study(study: &Study) -> Drawing {
         drawing.items.push(DrawingItem::Text(Text { color: INK, ..label }));
     }
     let place = |m: &Measurement| [x.place(m.milliseconds), y.place(error(m))];
-    let mut front: Vec<&Measurement> = measured.iter().copied().filter(|m| m.pareto).collect();
-    front.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
-    drawing.line(front.into_iter().map(place).collect(), INK, solid(WIDTH));
+    drawing.line(study.front().into_iter().map(place).collect(), INK, solid(WIDTH));
     for m in measured {
-        let name = m.setting.stepping.map_or(m.setting.method.id(), |stepping| stepping.integrator.id());
-        let shape = mark(place(m), m.setting.element, color(name, false), if m.pareto { 5.5 } else { 3.5 });
+        let shape =
+            mark(place(m), m.setting.element, color(m.setting.series(), false), if m.pareto { 5.5 } else { 3.5 });
         let is_faint = if moves { m.setting.method == MethodKind::Linear } else { !m.converged };
         let opacity = if is_faint { 0.45 } else { 1.0 };
         drawing.add(Shape { opacity, title: m.setting.to_string(), ..shape });

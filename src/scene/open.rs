@@ -249,7 +249,8 @@ impl Scene {
     }
 }
 
-/// Sets `a.0.b=value` in the table; returns the reason if the assignment cannot be applied. A value that is not TOML is taken as a string, so that quotes can be left out.
+/// Sets `a.0.b=value` in the table; returns the reason if the assignment cannot be applied. A value that is not TOML is
+/// taken as a string, so that quotes can be left out.
 fn assign(table: &mut Table, assignment: &str) -> Result<(String, Value), String> {
     let (key, text) = assignment.split_once('=').ok_or("expected PATH=VALUE")?;
     let (key, text) = (key.trim(), text.trim());

@@ -73,9 +73,8 @@ pub(super) fn beyond_nodes(
 ) -> Wrench {
     let mut sum = Wrench::default();
     for (support, force) in problem.supports().point_forces(&balance.residual) {
-        if let Place::At(at) = support.place {
-            shape.add_point_load(cut, (at, support.width), force, middle, &mut sum);
-        }
+        let Place::At(at) = support.place else { continue };
+        shape.add_point_load(cut, (at, support.width), force, middle, &mut sum);
     }
     if let Some(spring) = problem.mouse_spring() {
         shape.add_material_load(cut, spring.point(), balance.mouse_spring, middle, &mut sum);
@@ -154,7 +153,8 @@ impl PlacedMesh<'_> {
         middle: Vector2<f64>,
         sum: &mut Wrench,
     ) {
-        for (point, share) in self.mesh.points_over(at.into(), width).into_iter().flatten() {
+        let is_near = cut.elements.iter().any(|&element| self.mesh.is_near(element, at.into(), width));
+        for (point, share) in is_near.then(|| self.mesh.points_over(at.into(), width)).flatten().into_iter().flatten() {
             self.add_material_load(cut, point, force * share, middle, sum);
         }
     }

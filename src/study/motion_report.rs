@@ -10,32 +10,26 @@ use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::scene::MethodKind;
 
-/// Study of a motion with its reference.
-pub(super) struct MotionReport<'a> {
-    pub study: &'a Study,
-    pub reference: &'a MotionReference,
-}
-
-impl MotionReport<'_> {
+impl Study {
     /// Returns each measurement with its time stepping and figures.
-    fn rows(&self) -> impl Iterator<Item = (&Measurement, Stepping, &MotionFigures)> {
-        self.study.measurements.iter().filter_map(|m| Some((m, m.setting.stepping?, m.motion.as_ref()?)))
+    fn motions(&self) -> impl Iterator<Item = (&Measurement, Stepping, &MotionFigures)> {
+        self.measurements.iter().filter_map(|m| Some((m, m.setting.stepping?, m.motion.as_ref()?)))
     }
 
     /// Formats the study as CSV. `solves` is the number per step or stage, 0 to iterate to the tolerance; `resolved` is
     /// `true` if the sum of the error's parts, `error_bound_percent`, is above the reference's own error;
     /// `at_most_percent` includes it. Motions that did not finish have no error.
-    pub fn table(&self) -> String {
+    pub(super) fn motion_table(&self, reference: &MotionReference) -> String {
         let mut text = String::from(
             "element,cells_along,cells_across,dofs,integrator,method,time_step_s,solves,ending,ms_per_simulated_second,error_percent,rms_error_percent,discretization_percent,integration_percent,model_percent,error_bound_percent,resolved,energy_drift_percent,energy,steps_taken,solves_taken,factorizations,pareto,at_most_percent,undecided\n",
         );
-        for ((m, stepping, motion), undecided) in self.rows().zip(self.study.undecided()) {
+        for ((m, stepping, motion), undecided) in self.motions().zip(self.undecided()) {
             let [along, across] = m.setting.cells.unwrap_or([0, 0]);
             let error = m.error.map_or_else(
                 || ",,,,,,".to_owned(),
                 |e| {
                     let parts = [e.total, motion.rms_percent, e.discretization, e.iteration, e.model, e.bound()];
-                    let resolved = e.bound() > self.reference.error_percent;
+                    let resolved = e.bound() > reference.error_percent;
                     format!("{},{resolved}", parts.map(|v| format!("{v:e}")).join(","))
                 },
             );
@@ -56,19 +50,18 @@ impl MotionReport<'_> {
                 motion.counts.solves,
                 motion.counts.factorizations,
                 m.pareto,
-                m.error.map_or_else(String::new, |_| format!("{:e}", self.study.error_bound(m)))
+                m.error.map_or_else(String::new, |_| format!("{:e}", self.error_bound(m)))
             );
         }
         text
     }
 
     /// Formats a summary for display: reference, Pareto front, results in real time, and energy behaviour.
-    pub fn summary(&self) -> String {
-        let Self { study, reference } = self;
+    pub(super) fn motion_summary(&self, reference: &MotionReference) -> String {
         let mut text = format!(
             "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
              {:.4} m,\nagainst {}\n",
-            study.scene,
+            self.scene,
             number(round(reference.duration())),
             reference.size,
             reference
@@ -84,36 +77,35 @@ impl MotionReport<'_> {
         text.push_str(
             "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
         );
-        study.add_front(&mut text, |m, ErrorSplit { total, discretization, iteration, model }| {
-            let bound = study.error_bound(m);
+        self.add_front(&mut text, |m, ErrorSplit { total, discretization, iteration, model }| {
+            let bound = self.error_bound(m);
             let [rms, drift] = m.motion.map_or([0.0; 2], |motion| [motion.rms_percent, motion.drift_percent]);
             let parts = format!("{total:11.4} {rms:11.4} {discretization:12.4} {iteration:11.4} {model:14.4}");
             format!("{:12.3} {bound:12.4} {parts} {drift:11.4}", m.milliseconds)
         });
-        self.costs(&mut text);
-        self.steps(&mut text);
-        self.auto(&mut text);
-        self.unfinished(&mut text);
+        self.add_motion_costs(&mut text);
+        self.add_steps(reference, &mut text);
+        self.add_auto(&mut text);
+        self.add_unfinished(&mut text);
         text
     }
 
     /// Adds the cost of given errors with every integrator.
-    fn costs(&self, text: &mut String) {
-        let study = self.study;
+    fn add_motion_costs(&self, text: &mut String) {
         let integrator_of = |m: &Measurement| m.setting.stepping.map(|stepping| stepping.integrator);
-        study.add_costs(text, |text, percent| {
-            let within = study.within(percent);
+        self.add_costs(text, |text, percent| {
+            let within = self.within(percent);
             for integrator in INTEGRATORS {
                 let own = within.iter().find(|m| integrator_of(m) == Some(integrator.kind));
                 let cost = own.map_or_else(|| "not reached".to_owned(), |m| cost_text(m));
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         });
-        if let Claim::NotKnown { .. } = Claim::of_study(study, 1.0) {
+        if let Claim::NotKnown { .. } = Claim::of_study(self, 1.0) {
             text.push('\n');
             return;
         }
-        let close = study.within(1.0);
+        let close = self.within(1.0);
         let real = close.first().filter(|m| m.milliseconds <= REAL_TIME);
         let cost = real.map_or_else(
             || match close.first() {
@@ -131,15 +123,15 @@ impl MotionReport<'_> {
     }
 
     /// Adds the effect of the time step on error and energy, on the scene's mesh.
-    fn steps(&self, text: &mut String) {
+    fn add_steps(&self, reference: &MotionReference, text: &mut String) {
         let _ = writeln!(
             text,
             "by time step, newton on {}: error of the time steps, %; energy drift, % of the largest kinetic energy; \
              time per simulated second, ms",
-            mesh_text(self.reference.element, self.reference.own_mesh)
+            mesh_text(reference.element, reference.own_mesh)
         );
-        let own = (self.reference.element, self.reference.own_mesh, MethodKind::Newton);
-        for (m, stepping, motion) in self.rows() {
+        let own = (reference.element, reference.own_mesh, MethodKind::Newton);
+        for (m, stepping, motion) in self.motions() {
             let Setting { element, cells, method, iterations, .. } = m.setting;
             if (element, cells, method) != own {
                 continue;
@@ -160,11 +152,11 @@ impl MotionReport<'_> {
     }
 
     /// Adds the savings of `auto` compared with `newton`.
-    fn auto(&self, text: &mut String) {
-        let autos = self.rows().filter(|(m, ..)| m.setting.method == MethodKind::Auto);
+    fn add_auto(&self, text: &mut String) {
+        let autos = self.motions().filter(|(m, ..)| m.setting.method == MethodKind::Auto);
         let pairs = autos.filter_map(|(auto, _, figures)| {
             let setting = Setting { method: MethodKind::Newton, ..auto.setting };
-            let (newton, _, of_newton) = self.rows().find(|(m, ..)| m.setting == setting)?;
+            let (newton, _, of_newton) = self.motions().find(|(m, ..)| m.setting == setting)?;
             let farther = auto.error?.bound() - newton.error?.bound();
             let [all, few] = [of_newton, figures].map(|motion| motion.counts.factorizations as f64);
             let factors = few / all.max(1.0);
@@ -190,12 +182,12 @@ impl MotionReport<'_> {
     }
 
     /// Adds the settings without an error, and the reason.
-    fn unfinished(&self, text: &mut String) {
+    fn add_unfinished(&self, text: &mut String) {
         for (ending, label) in [
             (Ending::Stopped, "stopped before the end"),
             (Ending::CutShort, "stopped early: too many steps to the end"),
         ] {
-            let those: Vec<_> = self.rows().filter(|(.., motion)| motion.ending == ending).collect();
+            let those: Vec<_> = self.motions().filter(|(.., motion)| motion.ending == ending).collect();
             if !those.is_empty() {
                 let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
             }
@@ -203,7 +195,7 @@ impl MotionReport<'_> {
                 let _ = writeln!(text, "    {} ({:.0} ms per simulated second)", m.setting, m.milliseconds);
             }
         }
-        let gained = self.rows().filter(|(.., motion)| motion.energy() == EnergyBehaviour::Gained);
+        let gained = self.motions().filter(|(.., motion)| motion.energy() == EnergyBehaviour::Gained);
         let most = gained.max_by(|(.., a), (.., b)| a.drift_percent.total_cmp(&b.drift_percent));
         if let Some((m, _, motion)) = most {
             let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", motion.drift_percent, m.setting);

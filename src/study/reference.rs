@@ -172,13 +172,14 @@ enum Missing {
 }
 
 impl Missing {
-    /// Returns the reason for a displacement with this bound of its error, m, if it has no reference; `largest` is the
-    /// largest displacement of the body, m.
-    fn of(displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Self {
+    /// Returns the reason for a displacement of a scene with this bound of its error, m, if it has no reference; `largest`
+    /// is the largest displacement of the body, m.
+    fn of(scene: &Scene, displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Self {
         /// Displacement relative to the largest one that is only rounding error.
         const ROUNDING: f64 = 1e-9;
         match error {
             _ if displacement.norm() <= ROUNDING * largest => Self::AtRest,
+            _ if scene.acts_on_points() => Self::Point,
             None => Self::NoBound,
             Some(_) => Self::LargeBound,
         }
@@ -249,10 +250,7 @@ impl Reference {
         let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
         let mut reference = Self {
             probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
-            missing: match solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(u, error, largest)) {
-                Missing::NoBound | Missing::LargeBound if scene.acts_on_points() => Missing::Point,
-                missing => missing,
-            },
+            missing: solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(scene, u, error, largest)),
             linear: first_probe(linear).ok(),
             moved,
             folds,

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use super::claim::Claim;
-use super::motion_report::MotionReport;
 use super::trade::{ErrorSplit, Measurement, Study, StudyReference};
 use super::tune::Tuning;
 use crate::method::METHODS;
@@ -17,7 +16,7 @@ impl Study {
     pub fn table(&self) -> String {
         match &self.reference {
             StudyReference::Rest(_) => self.table_at_rest(),
-            StudyReference::Motion(reference) => MotionReport { study: self, reference }.table(),
+            StudyReference::Motion(reference) => self.motion_table(reference),
         }
     }
 
@@ -27,7 +26,7 @@ impl Study {
     pub fn summary(&self) -> String {
         match &self.reference {
             StudyReference::Rest(_) => self.summary_at_rest(),
-            StudyReference::Motion(reference) => MotionReport { study: self, reference }.summary(),
+            StudyReference::Motion(reference) => self.motion_summary(reference),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 27_500),
+    ("app", &["src/app"], 27_460),
     ("study", &["src/study"], 7_651),
     ("model", &["src/model", "src/scene"], 3_537),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
@@ -20,13 +20,13 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
-    ("mesh", &["src/mesh"], 1_963),
-    ("plot", &["src/plot"], 819),
+    ("mesh", &["src/mesh"], 1_962),
+    ("plot", &["src/plot"], 817),
     ("the rest of src", &["src"], 5_153),
     ("tests", &["tests"], 21_553),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_673;
+const SRC: usize = 64_650;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 

@@ -165,20 +165,20 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 /// Shows the name and the description of the scene, and the buttons that open, save and copy.
 pub(super) fn keep(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
     type Part = fn(&mut Scene) -> &mut String;
-    let parts: [(&str, Part); 2] = [("Name", |scene| &mut scene.name), ("Description", |scene| &mut scene.about)];
-    for (label, part) in parts {
-        let mut edited = Box::new(scene.clone());
+    let parts: [(&str, &String, Part); 2] =
+        [("Name", &scene.name, |scene| &mut scene.name), ("Description", &scene.about, |scene| &mut scene.about)];
+    for (label, own, part) in parts {
         let id = Id::unique((label, "of the scene"));
         // The text while it is typed.
         let typed: Option<String> = ui.data(|data| data.get_temp(id));
-        let own = tr(part(&mut edited)).to_owned();
-        let mut text = typed.unwrap_or_else(|| own.clone());
+        let mut text = typed.unwrap_or_else(|| tr(own).to_owned());
         let field = |ui: &mut Ui| {
             let name = ui.label(tr(label));
             ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).labelled_by(name.id)
         };
         let response = ui.horizontal(field).inner;
-        if response.lost_focus() && text != own {
+        if response.lost_focus() && text != tr(own) {
+            let mut edited = Box::new(scene.clone());
             part(&mut edited).clone_from(&text);
             actions.push(Action::Edit(label, edited));
         }

@@ -28,9 +28,15 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Drop a file", "Open it"),
 ];
 
-/// Headings of the groups of keys, each with the first key of its group.
-const GROUPS: [(&str, &str); 5] =
-    [("Space", "Run"), ("F", "View"), ("L", "Drawers and modes"), ("S", "Files"), ("Ctrl+Z", "Edits")];
+/// Headings of the groups of rows, each with the first row of its group.
+const GROUPS: [(&str, &str); 6] = [
+    ("Drag an arrow's tip", "Mouse, and the control with the focus"),
+    ("Space", "Run"),
+    ("F", "View"),
+    ("L", "Drawers and modes"),
+    ("S", "Files"),
+    ("Ctrl+Z", "Edits"),
+];
 
 /// Scrolls by the keys of the list.
 fn scroll_by_keys(ui: &egui::Ui) {
@@ -73,14 +79,8 @@ pub(crate) fn show(ctx: &Context, open: &mut bool) {
             scroll_by_keys(ui);
             let heading = |of: &str| GROUPS.iter().find(|(first, _)| *first == of).map(|(_, heading)| *heading);
             let of_shortcuts = shortcuts().map(|shortcut| (shortcut.text(), shortcut.does, heading(&shortcut.text())));
-            let of_gestures = MOUSE.iter().chain(FOCUS_KEYS).enumerate();
-            let of_gestures = of_gestures.map(|(i, (gesture, does))| {
-                (
-                    tr(gesture).to_owned(),
-                    *does,
-                    if i == 0 { Some("Mouse, and the control with the focus") } else { None },
-                )
-            });
+            let of_gestures = MOUSE.iter().chain(FOCUS_KEYS);
+            let of_gestures = of_gestures.map(|(gesture, does)| (tr(gesture).to_owned(), *does, heading(gesture)));
             let rows = of_gestures.chain(of_shortcuts);
             let list = egui::Grid::new("shortcuts").num_columns(2).max_col_width(0.6 * size.x);
             list.spacing([16.0, 2.0]).striped(true).show(ui, |ui| {

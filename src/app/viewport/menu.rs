@@ -127,7 +127,7 @@ pub(crate) fn support_by_hand(system: &System, place: Place, fix: &[Axis]) -> Su
     Support { at_point: width > 0.0, width, ..Support::new(place, fix) }
 }
 
-/// Returns the entries that add an object at a point, or a moment on an edge. A node within `near`, m, is held itself.
+/// Returns the entries that add an object at a rounded point, or a moment on an edge. A node within `near`, m, is held itself.
 fn additions(
     scene: &Scene,
     system: &System,
@@ -137,16 +137,16 @@ fn additions(
 ) -> Vec<MenuEntry> {
     let mesh = system.mesh();
     let node = mesh.node(mesh.nearest_node(at));
-    let held = if (node - at).norm() <= near { node } else { rounded(system, at) };
+    let held = if (node - at).norm() <= near { node } else { at };
     let support = support_by_hand(system, held.into(), &[Axis::X, Axis::Y]);
     let held = support.place.clone();
     let [usual, _] = force_range(present, &scene.material, system);
-    let force = force_by_hand(system, rounded(system, at).into(), [0.0, -usual]);
+    let force = force_by_hand(system, at.into(), [0.0, -usual]);
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(support))),
         ("Add a probe here", with_probe(scene, system, at)),
-        ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, at))))),
+        ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, at)))),
     ]
     .map(|(text, scene)| (tr(text).to_owned(), scene))
     .to_vec();

@@ -117,8 +117,8 @@ pub(crate) struct BodyView {
     card: Option<PointCard>,
     /// Choices of the user on the cards of points.
     card_choice: CardChoice,
-    /// Material point whose menu was opened.
-    menu: Option<MaterialPoint>,
+    /// Rest position of the point whose menu was opened, m.
+    menu: Option<Vector2<f64>>,
     body: BodyMesh,
     /// Factor of the drawn displacement.
     magnification: f64,
@@ -369,13 +369,14 @@ impl BodyView {
                 let outline = &content.session.geometry().boundary;
                 content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera().scale)
             };
-            self.menu = self.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
+            let clicked = self.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
+            let (system, outline) = (content.simulation().system(), &content.session.geometry().boundary);
+            let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
+            self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera().scale));
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
-        let at = probe::place(system.mesh(), system.mesh().nodes(), self.menu?)?;
-        let at = menu::snapped(system, &content.session.geometry().boundary, at, CLOSE / self.camera().scale);
         let present = OpeningLoads::of(scene);
-        menu::show(response, (scene, system), (at, NEAR / self.camera().scale), present)
+        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera().scale), present)
     }
 
     /// Returns the loads of the last frame's arrows.

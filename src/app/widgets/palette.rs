@@ -116,13 +116,17 @@ impl Palette {
 
     /// Returns the colour of a method, which is the same for body, legend and plots.
     pub(crate) fn method(&self, method: MethodKind) -> Color32 {
-        let [r, g, b] = color(method.id(), self.dark);
-        Color32::from_rgb(r, g, b)
+        self.series(method.id())
     }
 
     /// Returns the colour of an integrator.
     pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
-        let [r, g, b] = color(integrator.id(), self.dark);
+        self.series(integrator.id())
+    }
+
+    /// Returns the colour of a method or an integrator, by its identifier.
+    pub(crate) fn series(&self, id: &str) -> Color32 {
+        let [r, g, b] = color(id, self.dark);
         Color32::from_rgb(r, g, b)
     }
 

@@ -60,7 +60,7 @@ pub(super) fn study(
     let reference = MotionReference::new(scene, extent, &|progress| {
         observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
     })?;
-    let studied = Studied { scene, samples: Samples::of(scene, plan)?, plan };
+    let studied = Studied { scene, samples: reference.samples(), plan };
     let meshes = MeshPlan::all(scene, extent);
     let own = |mesh: &MeshPlan, observe: Observer<'_>| Meshed::new(studied, mesh, observe);
     let meshed = all_done(parallel::map(&meshes, own, |done| {

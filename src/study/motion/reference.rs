@@ -78,7 +78,12 @@ impl MotionReference {
     /// Returns the studied time, s.
     #[must_use]
     pub fn duration(&self) -> f64 {
-        self.interval * self.path.len() as f64
+        self.samples().duration()
+    }
+
+    /// Returns the sampling times of the path.
+    pub(super) fn samples(&self) -> Samples {
+        Samples { interval: self.interval, count: self.path.len() as u32 }
     }
 
     /// Refuses a scene without a motion.

@@ -50,7 +50,7 @@ impl StepStudy {
     /// [`StudyError`].
     pub fn new(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         let reference = MotionReference::new(scene, Extent::Quick, observe)?;
-        let samples = Samples::of(scene, Extent::Quick.plan())?;
+        let samples = reference.samples();
         let system = system_of(scene)?;
         let steps = Extent::Quick.plan().reference_steps();
         let exact = fine_path(scene, MethodKind::Newton, &system, samples, steps, observe)?;

@@ -1,32 +1,10 @@
 //! Measurements of a study as the mode Budget shows them: the time of a motion is that of a frame.
 
-use egui::Color32;
-
 use crate::app::diagnosis::drift_text;
 use crate::app::language::{count, fill, percent, tr};
 use crate::app::session::clock::FRAMES;
-use crate::app::widgets::palette::Palette;
 use crate::format::{engineering, three_digits};
-use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
-use crate::scene::{ElementKind, IntegratorKind, MethodKind};
 use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
-
-/// Group of settings drawn with the same colour and shape: method or integrator, and element.
-pub(crate) type Group = (MethodKind, Option<IntegratorKind>, ElementKind);
-
-/// Returns the group of a measurement; the methods of an integrator are drawn alike.
-pub(crate) fn group(m: &Measurement) -> Group {
-    let integrator = m.setting.stepping.map(|stepping| stepping.integrator);
-    (if integrator.is_some() { MethodKind::Newton } else { m.setting.method }, integrator, m.setting.element)
-}
-
-pub(crate) fn group_color((method, integrator, _): Group, palette: &Palette) -> Color32 {
-    integrator.map_or_else(|| palette.method(method), |integrator| palette.integrator(integrator))
-}
-
-pub(crate) fn group_name((method, integrator, element): Group) -> String {
-    format!("{} {}", element.id(), tr(integrator.map_or(method.id(), IntegratorKind::id)))
-}
 
 /// Returns every setting whose error was measured.
 pub(crate) fn choices(study: &Study) -> Vec<Measurement> {
@@ -55,11 +33,6 @@ pub(crate) fn nearest(study: &Study, demand: Demand) -> Vec<Measurement> {
     let accurate = in_time.into_iter().min_by(|a, b| a.error_percent().total_cmp(&b.error_percent()));
     let fast = meeting(study, Demand { max_time_ms: None, ..demand }).first().copied();
     accurate.filter(|m| m.error.is_some()).into_iter().chain(fast).collect()
-}
-
-/// Returns the error of a setting in the plot, percent.
-pub(crate) fn drawn_error(study: &Study, m: &Measurement) -> f64 {
-    study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR)
 }
 
 /// Returns the fastest of these settings whose iteration converges when it runs on.

@@ -13,9 +13,7 @@ use egui_plot::{
 
 use crate::app::action::Action;
 use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
-use crate::app::modes::budget::measured::{
-    Group, choices, drawn_error, fastest, frame_ms, group, group_color, group_name, meeting, nearest, parts,
-};
+use crate::app::modes::budget::measured::{choices, fastest, frame_ms, meeting, nearest, parts};
 use crate::app::modes::budget::study_task::{BackgroundStudy, StudyState};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
@@ -390,7 +388,8 @@ fn decade_text(mark: GridMark) -> String {
 
 /// Returns the position of a setting in the plot: the logarithms of time and error.
 fn place(study: &Study, m: &Measurement) -> [f64; 2] {
-    [frame_ms(m).max(f64::MIN_POSITIVE).log10(), drawn_error(study, m).log10()]
+    let error = study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR);
+    [frame_ms(m).max(f64::MIN_POSITIVE).log10(), error.log10()]
 }
 
 /// Shows the key of colours and shapes above the plot, which has no room for a legend; that of the shapes where it is not
@@ -482,7 +481,9 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .show(ui, |plot| {
-            let mut groups: Vec<Group> = Vec::new();
+            // Settings with the same colour and shape.
+            let group = |m: &Measurement| (m.setting.series(), m.setting.element);
+            let mut groups = Vec::new();
             for group in budget.choices.iter().map(group) {
                 if !groups.contains(&group) {
                     groups.push(group);
@@ -493,12 +494,13 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             }
             // Larger errors are drawn at the edge, as outlines.
             let is_off = |m: &Measurement| error(m) > LARGEST_ERROR;
-            for of in groups {
+            for (series, element) in groups {
                 for off in [false, true] {
-                    let own = budget.choices.iter().filter(|m| group(m) == of && is_off(m) == off);
-                    let (shape, _) = marker(of.2);
-                    let points = Points::new(group_name(of), own.map(place).collect::<Vec<_>>());
-                    plot.points(points.color(group_color(of, &palette)).shape(shape).radius(3.5).filled(!off));
+                    let own = budget.choices.iter().filter(|m| group(m) == (series, element) && is_off(m) == off);
+                    let (shape, _) = marker(element);
+                    let name = format!("{} {}", element.id(), tr(series));
+                    let points = Points::new(name, own.map(place).collect::<Vec<_>>());
+                    plot.points(points.color(palette.series(series)).shape(shape).radius(3.5).filled(!off));
                 }
             }
             let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
