@@ -2,9 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::Invalid;
-use super::{check, limits};
-
 /// Time integration settings of a dynamic scene. [`Scene::moving`](crate::Scene::moving) sets integrator and time
 /// step.
 ///
@@ -103,23 +100,6 @@ pub struct Pulse {
     pub duration: f64,
 }
 
-impl DynamicsSettings {
-    pub(super) fn validate(&self) -> Result<(), Invalid> {
-        check("dynamics.time_step", limits::TIME_STEP, self.time_step)?;
-        check("dynamics.duration", limits::DURATION, self.duration)?;
-        check("dynamics.iterations", limits::STEP_ITERATIONS, f64::from(self.iterations))?;
-        check("dynamics.damping.mass", limits::MASS_DAMPING, self.damping.mass)?;
-        check("dynamics.damping.stiffness", limits::STIFFNESS_DAMPING, self.damping.stiffness)
-    }
-}
-
-impl Start {
-    pub(super) fn validate(&self) -> Result<(), Invalid> {
-        check("start.velocity", limits::SPEED, self.velocity[0].hypot(self.velocity[1]))?;
-        check("start.spin", limits::SPIN, self.spin)
-    }
-}
-
 impl Pulse {
     /// Returns the factor of the load at a time, s.
     ///
@@ -165,10 +145,5 @@ impl Pulse {
     #[must_use]
     pub fn end(&self) -> f64 {
         self.start + self.duration
-    }
-
-    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        check(&format!("{key}.pulse.start"), limits::PULSE_START, self.start)?;
-        check(&format!("{key}.pulse.duration"), limits::PULSE_DURATION, self.duration)
     }
 }

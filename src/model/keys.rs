@@ -98,7 +98,7 @@ pub const KEYS: &[Key] = keys! {
         "Cells along and across: at most 250,000 in all, and at most 100,000 times as long as high or as high as long.";
     "beam.element": Choice(ELEMENTS), Default(r#""t3""#), r#""q4""#,
         "Element of every cell. A cell is one quadrilateral (q4), or is cut into two triangles (t3, t6).";
-    "beam.rise": Number(limits::RISE), Default("0.0"), "0.2",
+    "beam.rise": Number(Limit::new("m", -1e6, 1e6)), Default("0.0"), "0.2",
         "Rise of the axis in the middle of the span, along a parabola from end to end: a shallow arch, free of stress.";
     "beam.diagonals": Choice(&["alternating", "same"]), Default(r#""alternating""#), r#""same""#,
         "Cut of the cells into triangles: cell (i, j) from lower left to upper right where i + j is even, else from upper left to lower right; or every cell from lower left to upper right.";
@@ -109,7 +109,7 @@ pub const KEYS: &[Key] = keys! {
         "Path of a file in the format MSH 4.1, ASCII, relative to the scene file. Its physical curves name the edges. If there is no such file, ../meshes/clip.msh, bracket.msh and cook.msh there are those of the built-in scenes, and a warning says so.";
     "mesh.element": Choice(ELEMENTS), Optional("the element of the file"), r#""t6""#,
         "Element type. Nodes in the middle of sides are added or left out; triangles and quadrilaterals are not exchanged.";
-    "mesh.scale": Number(limits::MESH_SCALE), Optional("1: the file is in metres"), "0.001",
+    "mesh.scale": Number(Limit::new("m", 1e-9, 1e6)), Optional("1: the file is in metres"), "0.001",
         "Metres per unit of the file: 0.001 reads a file in millimetres.";
 
     "material": Table, Required("the table [material]"), "",
@@ -162,9 +162,9 @@ pub const KEYS: &[Key] = keys! {
         "Moment, counter-clockwise.";
     "load.pulse": Table, Optional("a constant load"), "{ start = 0.2, duration = 0.1 }",
         "Makes the load act for a time: times sin²(π (t − start)/duration) during the pulse, and 0 otherwise. The load is the peak; its impulse is half of load times duration. Dynamic scenes only.";
-    "load.pulse.start": Number(limits::PULSE_START), Required(""), "0.2",
+    "load.pulse.start": Number(Limit::new("s", -1e6, 1e6)), Required(""), "0.2",
         "Start of the pulse.";
-    "load.pulse.duration": Number(limits::PULSE_DURATION), Required(""), r#""100 ms""#,
+    "load.pulse.duration": Number(Limit::new("s", 1e-9, 1e6)), Required(""), r#""100 ms""#,
         "Duration of the pulse.";
 
     "probe": Tables, Default("[]"), "",
@@ -187,9 +187,9 @@ pub const KEYS: &[Key] = keys! {
         "Settings of the solver.";
     "solver.method": Choice(&["linear", "warped", "newton", "auto"]), Default(r#""newton""#), r#""warped""#,
         "linear: linear theory. warped: the article's iteration. newton: Newton's method with the exact tangent. auto: one of these, by an estimate of its error, which max_error_percent limits.";
-    "solver.tolerance": Number(limits::TOLERANCE), Default("1e-8"), "1e-10",
+    "solver.tolerance": Number(Limit::new("", 1e-14, 0.1)), Default("1e-8"), "1e-10",
         "Unbalanced force, relative to the sum of all forces of elements, below which a solve has converged.";
-    "solver.max_iterations": Integer(limits::MAX_ITERATIONS), Default("1000"), "50",
+    "solver.max_iterations": Integer(Limit::new("", 1.0, 100_000.0)), Default("1000"), "50",
         "Linear solves after which a solve has failed.";
     "solver.accept_after": Integer(limits::ACCEPT_AFTER), Default("0"), "3",
         "Iterations after which the result is accepted without convergence (status accepted, exit code 0); 0: never. Static scenes only.";
@@ -204,7 +204,7 @@ pub const KEYS: &[Key] = keys! {
         "Time step h. For a pulse at most a twentieth of its duration, for a vibration at most a twentieth of its period.";
     "dynamics.duration": Number(limits::DURATION), Default("10.0"), "2.0",
         "Time after which a run without a window ends.";
-    "dynamics.iterations": Integer(limits::STEP_ITERATIONS), Default("1"), "0",
+    "dynamics.iterations": Integer(Limit::new("", 0.0, 100.0)), Default("1"), "0",
         "Solves per stage of a time step; 0: until solver.tolerance is met.";
     "dynamics.damping": Table, Optional("no damping"), "{ mass = 0.1, stiffness = 0.001 }",
         "Rayleigh damping. Rigid rotation is not damped by stiffness.";
@@ -215,8 +215,8 @@ pub const KEYS: &[Key] = keys! {
 
     "start": Table, Optional("Optional"), "",
         "Initial velocities. Dynamic scenes only.";
-    "start.velocity": Vector(limits::SPEED), Default("[0.0, 0.0]"), "[1.0, 0.0]",
+    "start.velocity": Vector(Limit::new("m/s", 0.0, 1e6)), Default("[0.0, 0.0]"), "[1.0, 0.0]",
         "Velocity of the body.";
-    "start.spin": Number(limits::SPIN), Default("0.0"), r#""90 °/s""#,
+    "start.spin": Number(Limit::new("rad/s", -1e6, 1e6)), Default("0.0"), r#""90 °/s""#,
         "Angular velocity about the centre of mass, counter-clockwise.";
 };

@@ -1,4 +1,4 @@
-//! Ranges of all numbers of a scene, used for scene files, `--set` and the sliders.
+//! Ranges of numbers: those that the window, the commands and the list of keys share.
 
 use thiserror::Error;
 
@@ -34,7 +34,7 @@ impl From<&OutOfRange> for Sentence {
 }
 
 impl Limit {
-    const fn new(unit: &'static str, min: f64, max: f64) -> Self {
+    pub(super) const fn new(unit: &'static str, min: f64, max: f64) -> Self {
         Self { unit, min, max }
     }
 
@@ -63,8 +63,6 @@ impl Limit {
 pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
 /// Beam height.
 pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
-/// Rise of an arch.
-pub const RISE: Limit = Limit::new("m", -1e6, 1e6);
 /// Cells along one direction.
 pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Total number of cells; limited by the memory of the factorization (about a million unknowns).
@@ -93,12 +91,6 @@ pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
 pub const WIDTH: Limit = Limit::new("m", 0.0, 1e6);
 /// Prescribed rotation of a support.
 pub const ROTATION: Limit = Limit::new("rad", -100.0, 100.0);
-/// Metres per unit of a mesh file.
-pub const MESH_SCALE: Limit = Limit::new("m", 1e-9, 1e6);
-/// Relative residual at which a solve has converged.
-pub const TOLERANCE: Limit = Limit::new("", 1e-14, 0.1);
-/// Largest number of iterations per solve.
-pub const MAX_ITERATIONS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Iterations after which a result is accepted without convergence; 0 for never.
 pub const ACCEPT_AFTER: Limit = Limit::new("", 0.0, 100_000.0);
 /// Requested largest error.
@@ -111,17 +103,7 @@ pub const PLAYBACK_SPEED: Limit = Limit::new("", 1e-6, 1e6);
 pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
 /// Duration of a headless run.
 pub const DURATION: Limit = Limit::new("s", 1e-9, 1e6);
-/// Solves per time step.
-pub const STEP_ITERATIONS: Limit = Limit::new("", 0.0, 100.0);
 /// Mass-proportional factor α of Rayleigh damping.
 pub const MASS_DAMPING: Limit = Limit::new("1/s", 0.0, 1e6);
 /// Stiffness-proportional factor β of Rayleigh damping.
 pub const STIFFNESS_DAMPING: Limit = Limit::new("s", 0.0, 1e6);
-/// A speed.
-pub const SPEED: Limit = Limit::new("m/s", 0.0, 1e6);
-/// An angular velocity.
-pub const SPIN: Limit = Limit::new("rad/s", -1e6, 1e6);
-/// Start of a pulse.
-pub const PULSE_START: Limit = Limit::new("s", -1e6, 1e6);
-/// Duration of a pulse.
-pub const PULSE_DURATION: Limit = Limit::new("s", 1e-9, 1e6);

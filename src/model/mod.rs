@@ -12,6 +12,7 @@ mod error;
 pub mod keys;
 pub mod limits;
 mod place;
+mod table;
 pub mod units;
 
 pub use build::{LoadId, SupportId};
@@ -19,6 +20,9 @@ pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, ReadError, SceneError};
 pub use limits::OutOfRange;
 pub use place::{Axis, Load, Place, Probe, SectionLine, Support, TableError};
+pub(crate) use table::{check, missing};
+#[cfg(feature = "cli")]
+pub(crate) use table::{keys_of, name_of};
 
 use crate::format::number;
 use crate::sentence::sentence;
@@ -277,26 +281,37 @@ impl Scene {
     /// The first invalid key and the expected value.
     pub fn validate(&self) -> Result<(), Invalid> {
         match (&self.beam, &self.mesh) {
-            (Some(beam), None) => beam.validate()?,
-            (None, Some(mesh)) => mesh.scale.map_or(Ok(()), |scale| check("mesh.scale", limits::MESH_SCALE, scale))?,
+            (Some(_), None) | (None, Some(_)) => {}
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
             (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
         }
-        self.validate_all_but_geometry()
+        check(&self.table()?)?;
+        self.beam.as_ref().map_or(Ok(()), Beam::validate)?;
+        self.validate_choices()
     }
 
     /// Checks as [`Self::validate`], but not the geometry; for a scene on a mesh given by the caller.
     pub(crate) fn validate_all_but_geometry(&self) -> Result<(), Invalid> {
+        let mut table = self.table()?;
+        table.retain(|key, _| !["beam", "mesh"].contains(&key));
+        check(&table)?;
+        self.validate_choices()
+    }
+
+    fn table(&self) -> Result<toml::Table, Invalid> {
+        toml::Table::try_from(self).map_err(|error| Invalid::new("scene", error.to_string()))
+    }
+
+    /// Checks everything but the kinds and ranges of [`keys::KEYS`].
+    fn validate_choices(&self) -> Result<(), Invalid> {
         if self.name.trim().is_empty() {
             return Err(Invalid::new("name", "expected a title, got an empty string"));
         }
-        check("material.young", limits::YOUNG, self.material.young)?;
-        check("material.poisson", self.material.plane.poisson_limit(), self.material.poisson)?;
-        check("material.density", limits::DENSITY, self.material.density)?;
-        check("material.thickness", limits::THICKNESS, self.material.thickness)?;
+        let poisson = self.material.plane.poisson_limit().check(self.material.poisson);
+        poisson.map_err(|e| Invalid::new("material.poisson", &e))?;
         let dynamic = self.analysis == Analysis::Dynamic;
         if self.supports.is_empty() && !dynamic {
-            return Err(Invalid::new("support", "expected at least one [[support]], got none"));
+            return Err(Invalid::new("support", sentence!("expected at least one support, got none")));
         }
         if dynamic && self.material.density == 0.0 {
             return Err(Invalid::new(
@@ -316,36 +331,24 @@ impl Scene {
             }
         }
         for (i, load) in self.loads.iter().enumerate() {
-            let key = format!("load.{i}");
-            load.validate(&key)?;
             if load.pulse().is_some() && !dynamic {
                 return Err(Invalid::new(
-                    format!("{key}.pulse"),
+                    format!("load.{i}.pulse"),
                     "expected analysis = \"dynamic\", or no pulse: a pulse acts for a time",
                 ));
             }
         }
         for (i, probe) in self.probes.iter().enumerate() {
-            probe.place.validate(&format!("probe.{i}"))?;
             if let Some(first) = self.probes[..i].iter().position(|other| other.name == probe.name) {
                 let message = format!("expected a unique name, got \"{}\", which probe.{first} has", probe.name);
                 return Err(Invalid::new(format!("probe.{i}.name"), message));
             }
         }
-        for (i, line) in self.sections.iter().enumerate() {
-            line.validate(&format!("section.{i}"))?;
-        }
-        check("solver.tolerance", limits::TOLERANCE, self.solver.tolerance)?;
-        check("solver.max_iterations", limits::MAX_ITERATIONS, f64::from(self.solver.max_iterations))?;
-        check("solver.accept_after", limits::ACCEPT_AFTER, f64::from(self.solver.accept_after))?;
         if dynamic && self.solver.accept_after != 0 {
             let message = "expected analysis = \"static\", or 0: in a dynamic scene, dynamics.iterations limits the solves per \
                  stage";
             return Err(Invalid::new("solver.accept_after", message));
         }
-        check("solver.max_error_percent", limits::MAX_ERROR_PERCENT, self.solver.max_error_percent)?;
-        self.dynamics.validate()?;
-        self.start.validate()?;
         let given = |key, is_default: bool| {
             let message = "expected analysis = \"dynamic\" in a scene with this table";
             if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
@@ -355,22 +358,11 @@ impl Scene {
     }
 }
 
-/// Checks a value, and names its key if it is out of range.
-fn check(key: &str, limit: limits::Limit, value: f64) -> Result<(), Invalid> {
-    limit.check(value).map_err(|e| Invalid::new(key, &e))
-}
-
 /// Largest ratio of the sides of a cell; beyond it rounding errors dominate the element stiffness.
 const MAX_CELL_ASPECT: f64 = 1e5;
 
 impl Beam {
     fn validate(&self) -> Result<(), Invalid> {
-        check("beam.length", limits::LENGTH, self.length)?;
-        check("beam.height", limits::HEIGHT, self.height)?;
-        check("beam.rise", limits::RISE, self.rise)?;
-        for cells in self.cells {
-            check("beam.cells", limits::CELLS, f64::from(cells))?;
-        }
         let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
         limits::TOTAL_CELLS.check(total).map_err(|OutOfRange { limit, got }| {
             let [low, high] = limit.ends();

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::{check, is_default, limits};
+use super::is_default;
 use crate::format::{number, six_digits};
 use crate::sentence::Sentence;
 
@@ -100,13 +100,6 @@ impl Place {
             Self::At(at) => (None, Some(at)),
         }
     }
-
-    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        match self {
-            Self::Edge(_) => Ok(()),
-            Self::At(at) => at.iter().try_for_each(|&v| check(&format!("{key}.at"), limits::COORDINATE, v)),
-        }
-    }
 }
 
 /// Support: nodes or a point that are fixed, or moved along a prescribed displacement.
@@ -157,21 +150,17 @@ impl Support {
     }
 
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        self.place.validate(key)?;
-        check(&format!("{key}.width"), limits::WIDTH, self.width)?;
         if self.fix.is_empty() {
             return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
         }
         let refuse = |name: &str, message: Sentence| Err(Invalid::new(format!("{key}.{name}"), message));
         for (axis, word, value) in [(Axis::X, "x", self.displacement[0]), (Axis::Y, "y", self.displacement[1])] {
-            limits::COORDINATE.check(value).or_else(|e| refuse("displacement", (&e).into()))?;
             if value != 0.0 && !self.fix.contains(&axis) {
                 let message =
                     format!("expected 0 along {word}, which this support does not fix, got {}", number(value));
                 return refuse("displacement", message.into());
             }
         }
-        limits::ROTATION.check(self.turn).or_else(|e| refuse("turn", (&e).into()))?;
         if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
             return refuse("turn", "expected edge = \"…\" for this support: a single node cannot be rotated".into());
         }
@@ -208,12 +197,13 @@ pub struct Probe {
 
 /// Straight line through a body at rest, along which it is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "SectionTable", into = "SectionTable")]
+#[serde(deny_unknown_fields)]
 pub struct SectionLine {
     /// Rest position of a point of the line, m.
     pub at: Vector2<f64>,
     /// Direction of the line's normal, rad, counter-clockwise from the x axis. The normal points to the part of the
     /// body in front of the line.
+    #[serde(skip_serializing_if = "is_default", default)]
     pub angle: f64,
 }
 
@@ -227,11 +217,6 @@ impl SectionLine {
     /// Returns the unit tangent at rest: the normal, rotated counter-clockwise by 90°.
     pub(crate) fn tangent(&self) -> Vector2<f64> {
         Vector2::new(-self.angle.sin(), self.angle.cos())
-    }
-
-    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        Place::At(self.at.into()).validate(key)?;
-        check(&format!("{key}.angle"), limits::ROTATION, self.angle)
     }
 }
 
@@ -313,24 +298,6 @@ impl Load {
     pub fn is_moment(&self) -> bool {
         matches!(self, Self::Moment { .. })
     }
-
-    pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        if let Some(pulse) = self.pulse() {
-            pulse.validate(key)?;
-        }
-        let check = |name: &str, limit, value| check(&format!("{key}.{name}"), limit, value);
-        match self {
-            Self::Force { place, width, force, .. } => {
-                place.validate(key)?;
-                check("width", limits::WIDTH, *width)?;
-                check("force", limits::FORCE, force[0].hypot(force[1]))
-            }
-            Self::Moment { moment, .. } => check("moment", limits::MOMENT, *moment),
-            Self::Gravity { acceleration, .. } => {
-                check("acceleration", limits::ACCELERATION, acceleration[0].hypot(acceleration[1]))
-            }
-        }
-    }
 }
 
 // Tables as written in TOML. `#[serde(tag)]` and `#[serde(flatten)]` are not used, because they lose the line of an
@@ -395,26 +362,6 @@ impl From<Probe> for ProbeTable {
     fn from(probe: Probe) -> Self {
         let (edge, at) = probe.place.keys();
         Self { name: probe.name, edge, at }
-    }
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SectionTable {
-    at: [f64; 2],
-    #[serde(skip_serializing_if = "is_default", default)]
-    angle: f64,
-}
-
-impl From<SectionTable> for SectionLine {
-    fn from(SectionTable { at, angle }: SectionTable) -> Self {
-        Self { at: at.into(), angle }
-    }
-}
-
-impl From<SectionLine> for SectionTable {
-    fn from(SectionLine { at, angle }: SectionLine) -> Self {
-        Self { at: at.into(), angle }
     }
 }
 

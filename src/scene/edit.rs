@@ -4,9 +4,10 @@
 use toml::{Table, Value};
 use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, TableLike, Value as Written};
 
-use super::keys::{KEYS, Key, KeyKind, Need};
+use super::keys::{Key, KeyKind, Need};
 use super::{Scene, SceneError, units};
 use crate::mesh::Mesh;
+use crate::model::{keys_of, name_of};
 
 /// Byte order mark, which some editors put before a text in UTF-8.
 const MARK: char = '\u{feff}';
@@ -53,11 +54,10 @@ fn as_written(scene: &Scene, before: &Scene) -> Scene {
     scene
 }
 
-/// Changes the keys of a table that differ between two scenes; `path` is its place in [`KEYS`].
+/// Changes the keys of a table that differ between two scenes; `path` is its place in the list of keys.
 fn edit_table(table: &mut dyn TableLike, path: &str, before: &Table, after: &Table) {
-    let is_in = |key: &&Key| key.path.rsplit_once('.').map_or("", |(table, _)| table) == path;
-    for key in KEYS.iter().filter(is_in) {
-        let name = key.path.rsplit('.').next().unwrap_or_default();
+    for key in keys_of(path) {
+        let name = name_of(key);
         // Scenes are written without some keys that have their default value.
         let default = default_of(key);
         let (before, after) = (before.get(name).or(default.as_ref()), after.get(name));

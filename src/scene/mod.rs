@@ -1,15 +1,13 @@
 //! Scenes: TOML descriptions of a beam, its material, supports, loads and probes.
 //!
-//! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`limits`] and every name
+//! Unknown keys are rejected with their line. [`Scene::validate`] checks every number against [`keys::KEYS`] and every name
 //! against the existing ones; its errors contain the expected value.
 
 #[cfg(feature = "cli")]
 mod edit;
-mod kinds;
 mod mesh;
 mod open;
 pub mod registry;
-mod required;
 
 #[cfg(feature = "cli")]
 pub use edit::edited;

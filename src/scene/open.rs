@@ -9,7 +9,8 @@ use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::mesh::read_mesh;
-use super::{Invalid, ReadError, Scene, SceneError, kinds, registry, required, units};
+use super::{Invalid, ReadError, Scene, SceneError, registry, units};
+use crate::model::{check, missing};
 
 /// Largest accepted scene file, bytes; checked before reading.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -176,28 +177,23 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let text = plain.as_ref();
     let syntax = |e: toml::de::Error| {
         let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
-        match toml::from_str(text).ok().and_then(required::missing) {
+        match toml::from_str(text).ok().and_then(|table| missing(&table, e.message())) {
             Some(invalid) => SceneError::Invalid { file, line, invalid },
             None => SceneError::Syntax { file, line, message: syntax_message(text, &e) },
         }
     };
     let mut table: Table = toml::from_str(text).map_err(syntax)?;
-    if let Some(invalid) = kinds::wrong_kind(&table) {
-        return Err(located(text, file, invalid));
-    }
+    check(&table).map_err(|invalid| located(text, file, invalid))?;
     // Read the file without assignments first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     for assignment in assignments {
         let failed = |message: String| SceneError::Set { assignment: assignment.clone(), message };
         let (key, value) = assign(&mut table, assignment).map_err(failed)?;
-        if let Some(invalid) = kinds::wrong_kind(&table) {
-            return Err(failed(match same_key(&key, &invalid.key) {
-                true => invalid.message(),
-                false => invalid.to_string(),
-            }));
-        }
+        check(&table).map_err(|invalid| {
+            failed(if same_key(&key, &invalid.key) { invalid.message() } else { invalid.to_string() })
+        })?;
         scene = Scene::deserialize_table(&table).map_err(|e| {
-            let missing = required::missing(table.clone()).map(|invalid| invalid.to_string());
+            let missing = missing(&table, e.message()).map(|invalid| invalid.to_string());
             let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
             failed(format!("{message} (got {key} = {value})"))
         })?;

@@ -3,15 +3,12 @@
 //! `UPDATE_DOCS=1 cargo test --test commands docs` rewrites the generated parts: `assets/scene.schema.json`, and in the documents
 //! the text between `<!-- generated: NAME -->` and `<!-- end -->`.
 
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::common::files::rust_files;
 use crate::common::{scene_ids, stdout, succeeds_in, warpbeam};
-use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, de};
 use serde_json::{Value, json};
 use warpbeam::Scene;
 use warpbeam::app::{FOCUS_KEYS, MOUSE, every_shortcut};
@@ -186,167 +183,6 @@ fn check_part(file: &str, name: &str, expected: &str) {
 
 // Keys of a scene.
 
-/// Type of a value that the reader of scenes expects at a key.
-#[derive(Clone, Debug, PartialEq)]
-enum Leaf {
-    Struct(&'static [&'static str]),
-    Enum(&'static [&'static str]),
-    Float,
-    Integer,
-    Text,
-}
-
-/// Value that the reader of scenes expects at a key; `list` and `pair` if it is a list of these.
-#[derive(Clone, Debug, PartialEq)]
-struct Shape {
-    leaf: Leaf,
-    list: bool,
-    pair: bool,
-}
-
-/// Deserializer that leads the reader of scenes along a path, and notes the type it expects at the end.
-#[derive(Clone, Copy)]
-struct Walk<'a> {
-    path: &'a [&'a str],
-    found: &'a RefCell<Option<Leaf>>,
-    list: &'a RefCell<[bool; 2]>,
-}
-
-impl Walk<'_> {
-    fn end<T>(&self, leaf: Leaf) -> Result<T, de::value::Error> {
-        assert!(self.path.is_empty(), "{leaf:?} before {:?}", self.path);
-        *self.found.borrow_mut() = Some(leaf);
-        Err(de::Error::custom("the end of the path"))
-    }
-}
-
-macro_rules! leaves {
-    ($($function:ident => $leaf:expr),*) => {
-        $(fn $function<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {
-            self.end($leaf)
-        })*
-    };
-}
-
-impl<'de> Deserializer<'de> for Walk<'_> {
-    type Error = de::value::Error;
-
-    leaves! {
-        deserialize_f32 => Leaf::Float, deserialize_f64 => Leaf::Float,
-        deserialize_u8 => Leaf::Integer, deserialize_u16 => Leaf::Integer, deserialize_u32 => Leaf::Integer,
-        deserialize_u64 => Leaf::Integer, deserialize_i32 => Leaf::Integer, deserialize_i64 => Leaf::Integer,
-        deserialize_str => Leaf::Text, deserialize_string => Leaf::Text
-    }
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Self::Error> {
-        if self.path.is_empty() { self.end(Leaf::Struct(fields)) } else { visitor.visit_map(self) }
-    }
-
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        variants: &'static [&'static str],
-        _: V,
-    ) -> Result<V::Value, Self::Error> {
-        self.end(Leaf::Enum(variants))
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Self::Error> {
-        visitor.visit_some(self)
-    }
-
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Self::Error> {
-        self.list.borrow_mut()[0] |= self.path.is_empty();
-        visitor.visit_seq(self)
-    }
-
-    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Self::Error> {
-        self.list.borrow_mut()[1] |= self.path.is_empty();
-        visitor.visit_seq(self)
-    }
-
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {
-        unreachable!("a value of any type at {:?}", self.path)
-    }
-
-    serde::forward_to_deserialize_any! {
-        bool i8 i16 char bytes byte_buf unit unit_struct newtype_struct map tuple_struct identifier ignored_any
-    }
-}
-
-impl<'de> MapAccess<'de> for Walk<'_> {
-    type Error = de::value::Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Self::Error> {
-        seed.deserialize(self.path[0].into_deserializer()).map(Some)
-    }
-
-    fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Self::Error> {
-        seed.deserialize(Walk { path: &self.path[1..], ..*self })
-    }
-}
-
-impl<'de> SeqAccess<'de> for Walk<'_> {
-    type Error = de::value::Error;
-
-    fn next_element_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, Self::Error> {
-        seed.deserialize(*self).map(Some)
-    }
-}
-
-/// Returns the value that the reader of scenes expects at a path.
-fn accepted(path: &[&str]) -> Shape {
-    let (found, list) = (RefCell::new(None), RefCell::new([false; 2]));
-    let _ = Scene::deserialize(Walk { path, found: &found, list: &list }).unwrap_err();
-    let [list, pair] = list.into_inner();
-    let leaf = found.into_inner().unwrap_or_else(|| panic!("the reader does not know {path:?}"));
-    Shape { leaf, list, pair }
-}
-
-/// Adds every path below `path` that the reader accepts.
-fn accepted_paths(path: &[&str], paths: &mut BTreeSet<String>) {
-    let Leaf::Struct(fields) = accepted(path).leaf else { return };
-    for field in fields {
-        let inner = [path, &[field]].concat();
-        paths.insert(inner.join("."));
-        accepted_paths(&inner, paths);
-    }
-}
-
-#[test]
-fn the_list_of_keys_is_that_of_the_reader() {
-    let mut paths = BTreeSet::new();
-    accepted_paths(&[], &mut paths);
-    let listed: BTreeSet<_> = KEYS.iter().map(|key| key.path.to_owned()).collect();
-    assert_eq!(listed.len(), KEYS.len(), "a key is listed twice");
-    let missing: Vec<_> = paths.difference(&listed).collect();
-    assert!(missing.is_empty(), "not in `KEYS` of src/model/keys.rs: {missing:?}");
-    let unknown: Vec<_> = listed.difference(&paths).collect();
-    assert!(unknown.is_empty(), "in `KEYS`, but the reader refuses them: {unknown:?}");
-    for key in KEYS {
-        let shape = accepted(&key.path.split('.').collect::<Vec<_>>());
-        let (list, pair) = match key.kind {
-            KeyKind::Tables | KeyKind::Choices(_) => (true, false),
-            KeyKind::Pair(_) | KeyKind::Vector(_) | KeyKind::IntegerPair(_) => (false, true),
-            _ => (false, false),
-        };
-        assert_eq!((shape.list, shape.pair), (list, pair), "{}", key.path);
-        let fits = match (key.kind, &shape.leaf) {
-            (KeyKind::Choice(known) | KeyKind::Choices(known), Leaf::Enum(accepted)) => known == *accepted,
-            (KeyKind::Table | KeyKind::Tables, Leaf::Struct(_)) | (KeyKind::Text, Leaf::Text) => true,
-            (KeyKind::Number(_) | KeyKind::Pair(_) | KeyKind::Vector(_), Leaf::Float) => true,
-            (KeyKind::Integer(_) | KeyKind::IntegerPair(_), Leaf::Integer) => true,
-            _ => false,
-        };
-        assert!(fits, "{}: {:?} is listed, {:?} is read", key.path, key.kind, shape.leaf);
-    }
-}
-
 /// Scene at rest with every kind of load, support, probe and section.
 const AT_REST: &str = "name = \"A\"\n[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\n[material]\nyoung = 1e6\n\
     poisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[support]]\nat = [10.0, 0.0]\nfix = [\"y\"]\n\
@@ -437,6 +273,11 @@ fn every_example_and_every_default_of_a_key_is_right() {
         if !key.example.is_empty() {
             let read = read_with(key, Some(key.example));
             assert!(read.is_ok(), "{} = {}: {read:?}", key.path, key.example);
+        }
+        if let KeyKind::Choice(known) = key.kind {
+            let reads =
+                |value: &&&str| !read_with(key, Some(&format!("\"{value}\""))).is_err_and(|e| e.contains("variant"));
+            assert!(known.iter().all(|value| reads(&value)), "{}: {known:?}", key.path);
         }
         let left_out = read_with(key, None);
         match key.need {

@@ -12,7 +12,7 @@ use crate::files::rust_files;
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_460),
     ("study", &["src/study"], 7_651),
-    ("model", &["src/model", "src/scene"], 3_537),
+    ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
     ("simulation", &["src/simulation"], 2_819),
     ("assembly", &["src/assembly"], 3_045),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_553),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_650;
+const SRC: usize = 64_493;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 240;
 

@@ -1,0 +1,143 @@
+//! Tables of a scene against the list of keys: kinds and ranges of their values, and keys that are missing.
+
+use toml::{Table, Value};
+
+use super::error::Invalid;
+use super::keys::{KEYS, Key, KeyKind, Need};
+use super::{OutOfRange, units};
+use crate::sentence::{Sentence, sentence};
+
+/// Checks that every key of a scene is in [`KEYS`], and its value of the kind and in the range that are said there. The
+/// parser checks the types of numbers.
+///
+/// # Errors
+/// The first other key, as in `--set`, or key with another value.
+pub(crate) fn check(table: &Table) -> Result<(), Invalid> {
+    check_table(table, "", "")
+}
+
+/// Checks the keys of a table: `parent` is its place in [`KEYS`], `place` the one with indices.
+fn check_table(table: &Table, parent: &str, place: &str) -> Result<(), Invalid> {
+    table.iter().try_for_each(|(name, value)| {
+        let join = |prefix: &str| if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
+        let (path, place) = (join(parent), join(place));
+        let Some(key) = KEYS.iter().find(|key| key.path == path) else {
+            let known: Vec<&str> = keys_of(parent).map(name_of).collect();
+            return Err(Invalid::new(place, format!("unknown key, expected one of {}", known.join(", "))));
+        };
+        let checked = match expected(key, value) {
+            Some(expected) => Err(format!("expected {expected}, got {}", shown(value)).into()),
+            None => check_range(key.kind, value).map_err(|e| Sentence::from(&e)),
+        };
+        checked.map_err(|message| Invalid::new(place.as_str(), message))?;
+        match value {
+            Value::Table(table) => check_table(table, &path, &place),
+            Value::Array(items) => items.iter().enumerate().try_for_each(|(i, item)| match item {
+                Value::Table(table) => check_table(table, &path, &format!("{place}.{i}")),
+                _ => Ok(()),
+            }),
+            _ => Ok(()),
+        }
+    })
+}
+
+/// Checks the numbers of a value, of a vector its length.
+fn check_range(kind: KeyKind, value: &Value) -> Result<(), OutOfRange> {
+    let items = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
+    let mut numbers = items.iter().filter_map(|value| value.as_float().or(value.as_integer().map(|n| n as f64)));
+    match kind {
+        KeyKind::Vector(limit) => limit.check(numbers.fold(0.0, f64::hypot)),
+        KeyKind::Number(limit) | KeyKind::Pair(limit) | KeyKind::Integer(limit) | KeyKind::IntegerPair(limit) => {
+            numbers.try_for_each(|number| limit.check(number))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Returns the expected value if the given one is of another kind.
+fn expected(key: &Key, value: &Value) -> Option<String> {
+    let list = |what: &str| format!("{what}, as in {}", key.example);
+    match (key.kind, value) {
+        (KeyKind::Table, Value::Table(_)) => None,
+        (KeyKind::Table, _) if key.example.is_empty() => Some(format!("a table, as in {}", example(key.path))),
+        (KeyKind::Table, _) => Some(list("a table")),
+        (KeyKind::Tables, Value::Array(items)) if items.iter().all(Value::is_table) => None,
+        (KeyKind::Tables, _) => Some(format!("[[{}]], one for each", key.path)),
+        (KeyKind::Pair(_) | KeyKind::Vector(_) | KeyKind::IntegerPair(_), Value::Array(items)) if items.len() == 2 => {
+            None
+        }
+        (KeyKind::Pair(_) | KeyKind::Vector(_) | KeyKind::IntegerPair(_), _) => Some(list("a list of two numbers")),
+        (KeyKind::Choice(known), Value::String(text)) if known.contains(&text.as_str()) => None,
+        (KeyKind::Choice(known), _) => Some(one_of(known)),
+        (KeyKind::Choices(known), Value::Array(items)) => {
+            let is_known = |item: &Value| item.as_str().is_some_and(|text| known.contains(&text));
+            (!items.iter().all(is_known)).then(|| list(&format!("a list of {}", one_of(known))))
+        }
+        (KeyKind::Choices(_), _) => Some(list("a list")),
+        (KeyKind::Text, Value::String(_)) | (KeyKind::Number(_) | KeyKind::Integer(_), _) => None,
+        (KeyKind::Text, _) => Some(list("a text")),
+    }
+}
+
+/// Formats the choices: `"x" or "y"`.
+fn one_of(known: &[&str]) -> String {
+    let quoted: Vec<String> = known.iter().map(|text| format!("\"{text}\"")).collect();
+    match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+/// Returns a table with the examples of its keys: `{ start = 0.2, duration = 0.1 }`.
+fn example(path: &str) -> String {
+    let keys: Vec<String> = keys_of(path).map(|key| format!("{} = {}", name_of(key), key.example)).collect();
+    format!("{{ {} }}", keys.join(", "))
+}
+
+/// Formats a value for a message; a table by its kind.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Table(_) => "a table".to_owned(),
+        Value::Array(items) if items.iter().any(Value::is_table) => "a list of tables".to_owned(),
+        value => value.to_string(),
+    }
+}
+
+/// Returns the keys of a table by its place, which is empty for the scene.
+pub(crate) fn keys_of(path: &str) -> impl Iterator<Item = &'static Key> {
+    KEYS.iter().filter(move |key| key.path.rsplit_once('.').map_or("", |(table, _)| table) == path)
+}
+
+/// Returns the name of a key in its table.
+pub(crate) fn name_of(key: &Key) -> &'static str {
+    key.path.rsplit('.').next().unwrap_or_default()
+}
+
+/// Returns the required key that a table lacks, if the parser's message says so.
+pub(crate) fn missing(table: &Table, message: &str) -> Option<Invalid> {
+    let field = message.strip_prefix("missing field `")?.strip_suffix('`')?;
+    let scene = Value::Table(table.clone());
+    // The parser checks the keys of the scene itself last.
+    let (outer, inner): (Vec<&Key>, Vec<&Key>) = KEYS.iter().partition(|key| !key.path.contains('.'));
+    inner.into_iter().chain(outer).filter(|key| name_of(key) == field).find_map(|key| {
+        let Need::Required(description) = key.need else { return None };
+        let parts: Vec<&str> = key.path.split('.').collect();
+        let place = place_without(&scene, &parts)?;
+        let expected = units::quantity_of(key.path).unwrap_or_else(|| description.into());
+        Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
+    })
+}
+
+/// Returns the path, as in `--set`, of the first table that exists but lacks the key.
+fn place_without(value: &Value, key: &[&str]) -> Option<String> {
+    match (value, key) {
+        (Value::Array(items), _) => {
+            items.iter().enumerate().find_map(|(i, item)| Some(format!("{i}.{}", place_without(item, key)?)))
+        }
+        (Value::Table(table), [last]) => (!table.contains_key(*last)).then(|| (*last).to_owned()),
+        (Value::Table(table), [first, rest @ ..]) => {
+            Some(format!("{first}.{}", place_without(table.get(*first)?, rest)?))
+        }
+        _ => None,
+    }
+}
