@@ -124,14 +124,6 @@ pub(super) enum Command {
     #[cfg(feature = "app")]
     #[command(after_help = EXIT_CODES)]
     Gpu(AdapterArgs),
-    /// Print shell completions.
-    #[command(after_help = "bash: warpbeam completions bash > ~/.local/share/bash-completion/completions/warpbeam")]
-    Completions {
-        /// Shell.
-        shell: clap_complete::Shell,
-    },
-    /// Print the manual page: `warpbeam man | man -l -`.
-    Man,
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,5 @@
-//! Commands `run`, `scenes`, `solve`, `curve`, `section`, `study`, `limits`, `tune`, `extremes`, `shot`, `record`, `gpu`,
-//! `completions` and `man`; without the feature `app`, those that need no window and no GPU.
+//! Commands `run`, `scenes`, `solve`, `curve`, `section`, `study`, `limits`, `tune`, `extremes`, `shot`, `record` and `gpu`;
+//! without the feature `app`, those that need no window and no GPU.
 //!
 //! Exit codes: 0 done and converged, 1 ran but did not converge, was interrupted or gained energy from its integrator,
 //! 2 bad input or usage, a result that could not be written, or a defect of the program, 3 no graphics adapter.
@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory as _, Parser};
 
 use self::args::{Cli, Command};
 use crate::assembly::{Problem, System, SystemError};
@@ -29,7 +29,6 @@ mod driver;
 mod explorer;
 mod json;
 mod limits;
-mod manual;
 mod outputs;
 mod progress;
 #[cfg(feature = "app")]
@@ -101,6 +100,11 @@ fn guarded(run: impl FnOnce() -> ExitCode) -> ExitCode {
     code
 }
 
+/// Returns the definition of the command line.
+pub fn command() -> clap::Command {
+    Cli::command()
+}
+
 /// Runs the command given by the process arguments.
 pub fn main() -> ExitCode {
     guarded(run)
@@ -140,8 +144,6 @@ fn run() -> ExitCode {
         Some(Command::Record(args)) => record::record(args),
         #[cfg(feature = "app")]
         Some(Command::Gpu(args)) => window::gpu(args.adapter.as_deref()),
-        Some(Command::Completions { shell }) => manual::completions(shell),
-        Some(Command::Man) => manual::man(),
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");

@@ -391,20 +391,6 @@ fn paths_are_any_bytes() {
 }
 
 #[test]
-fn completions_and_the_man_page_have_every_command() {
-    let words = ["solve", "no-certificate", "extremes"];
-    for shell in ["bash", "zsh", "fish"] {
-        let script = stdout(&warpbeam(&["completions", shell]));
-        assert!(words.iter().all(|word| script.contains(word)), "{shell}");
-    }
-    let page = stdout(&warpbeam(&["man"]));
-    for word in [".TH warpbeam", "COMMAND SOLVE", "COMMAND EXTREMES", "no\\-certificate", "Exit codes", "NAME_v_x"] {
-        assert!(page.contains(word), "{word}: {page}");
-    }
-    assert_eq!(warpbeam(&["completions", "dos"]).status.code(), Some(2));
-}
-
-#[test]
 fn without_a_display_run_reports_it_and_writes_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     for args in [&[][..], &["run", "stretch"]] {

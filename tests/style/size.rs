@@ -16,7 +16,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
     ("simulation", &["src/simulation"], 2_819),
     ("assembly", &["src/assembly"], 3_045),
-    ("cli", &["src/cli"], 2_630),
+    ("cli", &["src/cli"], 2_570),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
@@ -26,9 +26,9 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_553),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_493;
+const SRC: usize = 64_433;
 /// Largest number of crates of the program on Linux.
-const CRATES: usize = 240;
+const CRATES: usize = 237;
 
 /// Says what to do if `actual` is more than `most`, or at least 3 % less.
 fn problem(name: &str, actual: usize, most: usize) -> Option<String> {
