@@ -149,14 +149,12 @@ pub(crate) struct MethodReport {
     pub load_steps: u32,
     /// Number of linear solves of the last iteration.
     pub solves: u32,
-    /// Length of the last step relative to the one before: below 1 the iteration contracts.
-    pub step_ratio: Option<f64>,
     /// Counts of the solves and factorizations that were skipped; `None` for methods that skip none.
     pub auto_report: Option<AutoReport>,
 }
 
 impl MethodReport {
-    const DEFAULT: Self = Self { load_steps: 1, solves: 1, step_ratio: None, auto_report: None };
+    const DEFAULT: Self = Self { load_steps: 1, solves: 1, auto_report: None };
 }
 
 /// Solution method: a policy over the steps of [`crate::step`]. It may have internal state; a new one starts at rest.

@@ -5,7 +5,7 @@
 //!
 //! Large rotations of supports are applied in parts, one iteration each, and the load with them.
 
-use super::status::{StallDetector, StepLengths};
+use super::status::StallDetector;
 use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
@@ -25,14 +25,13 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
 #[derive(Clone, Debug)]
 pub struct Warped {
     stall: StallDetector,
-    steps: StepLengths,
     load_factor: f64,
     load_steps: u32,
 }
 
 impl Default for Warped {
     fn default() -> Self {
-        Self { stall: StallDetector::default(), steps: StepLengths::default(), load_factor: 1.0, load_steps: 1 }
+        Self { stall: StallDetector::default(), load_factor: 1.0, load_steps: 1 }
     }
 }
 
@@ -50,7 +49,7 @@ impl Method for Warped {
     }
 
     fn report(&self) -> MethodReport {
-        MethodReport { load_steps: self.load_steps, step_ratio: self.steps.ratio(), ..MethodReport::DEFAULT }
+        MethodReport { load_steps: self.load_steps, ..MethodReport::DEFAULT }
     }
 
     fn plan(&mut self, it: &mut Iteration<'_>, _: &Criteria) -> Result<Operation, IterationError> {
@@ -67,8 +66,7 @@ impl Method for Warped {
         Ok(Operation::Factorize)
     }
 
-    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
-        step.into_iter().for_each(|step| self.steps.stepped(step));
+    fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, _: Option<f64>) -> Verdict {
         if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
             return Verdict::Continue;
         }

@@ -70,12 +70,6 @@ impl Equilibrium<'_> {
         self.search.method.path_events().filter(|_| self.search.outcome.status.is_success())
     }
 
-    /// Returns the length of the last step relative to the one before: below 1 the iteration contracts.
-    #[must_use]
-    pub fn step_ratio(self) -> Option<f64> {
-        self.search.method.report().step_ratio
-    }
-
     /// Returns a copy of the search, for display while the search itself goes on elsewhere. It has no work memory; that
     /// is allocated if the copy is itself continued.
     #[must_use]

@@ -100,6 +100,14 @@ pub struct FigureSeries {
     pub points: Vec<FigurePoint>,
 }
 
+impl FigureSeries {
+    /// Returns a series that stretches the picture.
+    #[must_use]
+    pub fn new(name: String, ink: Ink, mark: Mark, points: Vec<FigurePoint>) -> Self {
+        Self { name, ink, mark, may_leave: false, points }
+    }
+}
+
 /// A row of the table beside a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureRow {
@@ -107,12 +115,10 @@ pub struct FigureRow {
     pub name: String,
     /// Colour.
     pub ink: Ink,
-    /// Line or mark.
+    /// Line or mark; that of a status without result, such as `diverged`, is a cross.
     pub mark: Mark,
     /// Present value with its unit; may be empty.
     pub value: String,
-    /// `true` if the value is a status without result, such as `diverged`.
-    pub is_bad: bool,
 }
 
 /// Series over two of their quantities, and a table of present values.

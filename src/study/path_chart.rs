@@ -75,17 +75,12 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
         pieces(path, &points).into_iter().map(|(points, piece)| piece.series(points, render)).collect();
     series.extend(bifurcations(path, &points, render));
     let last = points.last().map(|point| FigurePoint { is_present: true, ..point.clone() });
-    series.push(FigureSeries {
-        name: render(&sentence!("the scene")),
-        ink: Ink::Scene,
-        mark: Mark::Disc,
-        may_leave: false,
-        points: last.into_iter().collect(),
-    });
+    let name = render(&sentence!("the scene"));
+    series.push(FigureSeries::new(name, Ink::Scene, Mark::Disc, last.into_iter().collect()));
     let mut rows: Vec<FigureRow> = Vec::new();
     for FigureSeries { name, ink, mark, .. } in &series {
         if !rows.iter().any(|row| row.name == *name) {
-            rows.push(FigureRow { name: name.clone(), ink: *ink, mark: *mark, value: String::new(), is_bad: false });
+            rows.push(FigureRow { name: name.clone(), ink: *ink, mark: *mark, value: String::new() });
         }
     }
     Figure { title: format!("{}: load path", path.scene), quantities, axes, series, head: Default::default(), rows }
@@ -144,7 +139,7 @@ impl PathLine {
             Self::Unstable => ("unstable", Ink::Unstable, Mark::Dashes),
             Self::Jump => ("it jumps", Ink::Unstable, Mark::Dots),
         };
-        FigureSeries { name: render(&name.into()), ink, mark, may_leave: false, points }
+        FigureSeries::new(render(&name.into()), ink, mark, points)
     }
 }
 
@@ -187,13 +182,8 @@ fn bifurcations<'a>(
         let next = path.states.iter().position(|s| s.factor > bifurcation.factor)?;
         let (from, to) = (points.get(next.checked_sub(1)?)?, points.get(next)?);
         let middle = from.values.iter().zip(&to.values).map(|(a, b)| Some(0.5 * ((*a)? + (*b)?))).collect();
-        Some(FigureSeries {
-            name: render(&bifurcation.label()),
-            ink: Ink::Unstable,
-            mark: Mark::Disc,
-            may_leave: false,
-            points: vec![FigurePoint { values: middle, ..FigurePoint::default() }],
-        })
+        let points = vec![FigurePoint { values: middle, ..FigurePoint::default() }];
+        Some(FigureSeries::new(render(&bifurcation.label()), Ink::Unstable, Mark::Disc, points))
     })
 }
 

@@ -93,15 +93,9 @@ fn stress_of(
         let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[component];
         (0..BEAM_POINTS).map(|k| (Some(stress(along(k))), along(k))).collect()
     };
-    let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| FigureSeries {
-        name: render(&name.into()),
-        ink,
-        mark,
-        may_leave: false,
-        points: points
-            .into_iter()
-            .map(|(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() })
-            .collect(),
+    let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| {
+        let at = |(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() };
+        FigureSeries::new(render(&name.into()), ink, mark, points.into_iter().map(at).collect())
     };
     let method = Ink::Method(scene.solver.method);
     let mut series =
@@ -162,7 +156,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
                 FigureQuantity::new(name.clone(), unit),
             ],
             axes: [0, 1],
-            series: vec![FigureSeries { name, ink, mark: Mark::Line, may_leave: false, points: points.collect() }],
+            series: vec![FigureSeries::new(name, ink, Mark::Line, points.collect())],
             rows: largest.into_iter().collect(),
             ..Figure::default()
         }
@@ -171,7 +165,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
 }
 
 fn row(name: String, ink: Ink, mark: Mark, value: String) -> FigureRow {
-    FigureRow { name, ink, mark, value, is_bad: false }
+    FigureRow { name, ink, mark, value }
 }
 
 #[cfg(test)]

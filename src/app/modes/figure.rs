@@ -238,7 +238,7 @@ fn show_row(ui: &mut Ui, row: &FigureRow) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
     let painter = ui.painter();
     paint_mark(ui, rect.left_center() + vec2(8.0, 0.0), row.mark, color(&palette, row.ink));
-    let ink = if row.is_bad { palette.error } else { palette.text };
+    let ink = if row.mark == Mark::Cross { palette.error } else { palette.text };
     let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, &row.value, FontId::proportional(SMALL), ink);
     let room = (right.left() - rect.left() - MARK - 8.0).max(0.0);
     let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(BODY), palette.text);

@@ -269,7 +269,7 @@ impl Method for Auto {
 
     fn report(&self) -> MethodReport {
         let report = self.newton.as_ref().map_or(MethodReport::DEFAULT, Method::report);
-        MethodReport { step_ratio: self.lengths.ratio(), auto_report: Some(self.report), ..report }
+        MethodReport { auto_report: Some(self.report), ..report }
     }
 
     fn path_events(&self) -> Option<PathEvents> {

@@ -187,7 +187,6 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         ink: series.ink,
         mark: series.mark,
         value: value(series).unwrap_or_default(),
-        is_bad: series.mark == Mark::Cross,
     };
     let load = engineering(three_digits(full), unit);
     Figure {
