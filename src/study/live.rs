@@ -59,25 +59,15 @@ impl LiveReference {
 
     /// Returns the reference solution of a scene under another load; `None` if it is not found soon.
     pub(crate) fn follow(&mut self, scene: &Scene) -> Option<Reference> {
-        let scene_of_levels = self.with_loads_of(scene);
-        let mut left = if self.is_started { MOST_WORK } else { FIRST_WORK };
-        self.is_started = false;
-        for level in &mut self.levels {
-            level.change_scene(&scene_of_levels).ok()?;
-            while *level.status() == Status::Running {
-                let before = level.iterations();
-                level.step();
-                let work = level.system().dofs() * level.iterations().saturating_sub(before).max(1) as usize;
-                left = left.checked_sub(work)?;
-            }
-            let is_sound = *level.status() == Status::Converged
-                && level.system().elements().smallest_area_ratio(level.displacement()) > 0.0;
-            if !is_sound {
-                return None;
-            }
+        let own = self.with_loads_of(scene);
+        let goes_on = std::mem::replace(&mut self.is_started, false);
+        if !(goes_on && self.solve(&own, MOST_WORK)) {
+            // Far from the last load.
+            self.levels.iter_mut().for_each(Simulation::reset);
+            self.solve(&own, FIRST_WORK).then_some(())?;
         }
         self.is_started = true;
-        self.linear.change_scene(&scene_of_levels.with_method(MethodKind::Linear)).ok()?;
+        self.linear.change_scene(&own.with_method(MethodKind::Linear)).ok()?;
         self.linear.solve();
         let [.., _, finest] = self.levels.as_slice() else { return None };
         let solutions: Vec<_> = self.levels.iter().map(probes_of).collect();
@@ -86,6 +76,23 @@ impl LiveReference {
         let probes = coarse.iter().zip(fine).map(|(coarse, fine)| fine + (fine - coarse) / 3.0);
         let solved: Vec<_> = probes.zip(errors(&solutions, self.own.acts_on_points())).collect();
         Some(Reference::of_finest(scene, finest, &solved, &self.linear, self.moved.clone(), false))
+    }
+
+    /// Solves every level under the loads of a scene; returns `false` if that takes more than `left` unknowns times
+    /// iterations, or a level has no sound solution.
+    fn solve(&mut self, scene: &Scene, mut left: usize) -> bool {
+        self.levels.iter_mut().all(|level| {
+            let mut goes_on = level.change_scene(scene).is_ok();
+            while goes_on && *level.status() == Status::Running {
+                let before = level.iterations();
+                level.step();
+                let work = level.system().dofs() * level.iterations().saturating_sub(before).max(1) as usize;
+                goes_on = left >= work;
+                left = left.saturating_sub(work);
+            }
+            *level.status() == Status::Converged
+                && level.system().elements().smallest_area_ratio(level.displacement()) > 0.0
+        })
     }
 
     /// Returns the scene of the solutions with the loads of `scene`.
@@ -110,4 +117,21 @@ fn key(scene: &Scene) -> Scene {
         beam.cells = [1, 1];
     }
     scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Far from the last load, the solutions start from rest.
+    #[test]
+    fn a_load_that_jumps_has_a_reference() {
+        let source = crate::scene::Source { name: "incline".into(), assignments: Vec::new() };
+        let mut scene = crate::scene::open(&source).unwrap();
+        let mut live = LiveReference::new(&scene).unwrap();
+        for factor in [1.0, -0.9, -1.1, -1.0, -0.5] {
+            scene.scale_loads(factor);
+            assert!(live.follow(&scene).is_some(), "{factor}");
+        }
+    }
 }
