@@ -218,8 +218,10 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
         return (text, true);
     }
     let mut add = |part: String| {
-        text.push_str(" · ");
-        text.push_str(&part);
+        if remedy.is_none_or(|remedy| remedy.text != sentence(&part)) {
+            text.push_str(" · ");
+            text.push_str(&part);
+        }
     };
     let inside_out = input.quality.is_inside_out(simulation);
     if inside_out {
@@ -247,8 +249,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     }
     notes_on_mesh(simulation).iter().for_each(|note| add(said(note)));
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
-        let is_new = |text: &String| remedy.is_none_or(|remedy| remedy.text != sentence(text));
-        path.claims().map(|claim| said(&claim)).filter(is_new).for_each(&mut add);
+        path.claims().map(|claim| said(&claim)).for_each(&mut add);
     }
     let is_critical = input.path.and_then(|path| path.critical).is_some_and(|critical| critical.factor <= 1.0);
     (text, inside_out || is_critical || runs_away(input) || stability(simulation) == Some(false))
@@ -432,6 +433,11 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         scene.dynamics.integrator = IntegratorKind::TrBdf2;
         let offer = fill!("Use %{integrator}", integrator = IntegratorKind::TrBdf2.id());
         return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action: Action::Edit("Integrator", scene) });
+    }
+    let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
+    if is_free && input.quality.is_inside_out(simulation) {
+        let text = sentence(tr("inverted elements"));
+        return Some(Remedy { text, offer: tr("Reset").to_owned(), action: Action::Reset });
     }
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         return None;

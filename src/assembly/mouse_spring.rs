@@ -7,10 +7,12 @@ use crate::mesh::MaterialPoint;
 
 /// Elongation beyond which the force is capped, relative to the body's size.
 const REACH: f64 = 0.25;
+/// Largest force, relative to E times thickness times the size of the held element: with 0.5, throws can invert it.
+const STRAIN: f64 = 0.4;
 
 /// Mouse spring: a damped spring from a material point at x to the pointer at p. Its force k (p − x + τ (ṗ − ẋ)), with
 /// stiffness k, N/m, and delay τ, s, is capped smoothly (Huber 1964), so that its tangent is never negative and no
-/// pointer motion exerts more force than a time step can handle.
+/// pointer motion exerts more force than a time step and the held element can handle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MouseSpring {
     point: MaterialPoint,
@@ -34,9 +36,18 @@ struct Path {
 }
 
 impl MouseSpring {
+    /// Returns the largest force on a point that its element carries without being inverted, N; `axial` is E times
+    /// thickness, N/m.
+    pub(crate) fn strength(system: &System, point: MaterialPoint, axial: f64) -> f64 {
+        let (mesh, weights) = (system.mesh(), system.mesh().weights(point).unwrap_or_default());
+        let places: Vec<_> = weights.iter().map(|&(node, _)| mesh.node(node)).collect();
+        STRAIN * axial * mesh.entry().nodal_areas(&places).iter().sum::<f64>().sqrt()
+    }
+
     /// Returns a spring at a point of a body, whose target is the point's rest position until [`Self::lead`] is called;
-    /// `None` if there is no such point. `stiffness` is k, N/m; `delay` is τ, s: damper over spring constant.
-    pub(crate) fn new(system: &System, point: MaterialPoint, stiffness: f64, delay: f64) -> Option<Self> {
+    /// `None` if there is no such point. `stiffness` is k, N/m; `delay` is τ, s: damper over spring constant; `most` is the
+    /// largest force, N.
+    pub(crate) fn new(system: &System, point: MaterialPoint, stiffness: f64, delay: f64, most: f64) -> Option<Self> {
         let mesh = system.mesh();
         let weights = mesh.weights(point)?;
         let nodes: Vec<u32> = weights.iter().map(|&(node, _)| node).collect();
@@ -48,7 +59,7 @@ impl MouseSpring {
             rest,
             stiffness,
             delay,
-            reach: REACH * system.size(),
+            reach: (REACH * system.size()).min(most / stiffness),
             path: Path { points: [rest; 2], times: [0.0; 2] },
             target: rest,
             target_velocity: Vector2::zeros(),
@@ -97,6 +108,11 @@ impl MouseSpring {
         // The velocity is still nonzero at the very end, because time steps use the past interval.
         let moves = within > 0.0 && time <= end;
         self.target_velocity = if moves { (to - from) / within } else { Vector2::zeros() };
+    }
+
+    /// Halves the largest force.
+    pub(crate) fn slip(&mut self) {
+        self.reach *= 0.5;
     }
 
     /// Interpolates a nodal field at the point.
@@ -172,18 +188,12 @@ impl MouseSpring {
         matrix.add_blocks(&self.slots, &self.weights, &(Matrix2::identity() * (factor * self.stiffness)));
     }
 
-    /// Adds the derivative of minus the force with respect to the displacement, N/m, times `factor`; `rate`, 1/s, is
-    /// the derivative of the velocity with respect to the displacement.
+    /// Adds the secant of minus the force with respect to the displacement, N/m, times `factor`; `rate`, 1/s, is the
+    /// derivative of the velocity with respect to the displacement. Below the cap it is the derivative, which vanishes along
+    /// the pull beyond: steps with it would overshoot.
     pub(crate) fn add_stiffness(&self, u: Vector2<f64>, v: Vector2<f64>, rate: f64, factor: f64, matrix: &mut Matrix) {
-        let pull = self.pull(u, v, self.delay);
-        let length = pull.norm();
-        let huber = if length <= self.reach {
-            Matrix2::identity()
-        } else {
-            let direction = pull / length;
-            (Matrix2::identity() - direction * direction.transpose()) * (self.reach / length)
-        };
-        let factor = factor * self.stiffness * (1.0 + self.delay * rate);
-        matrix.add_blocks(&self.slots, &self.weights, &(huber * factor));
+        let part = (self.reach / self.pull(u, v, self.delay).norm()).min(1.0);
+        let factor = factor * part * self.stiffness * (1.0 + self.delay * rate);
+        matrix.add_blocks(&self.slots, &self.weights, &(Matrix2::identity() * factor));
     }
 }

@@ -457,18 +457,23 @@ impl Simulation {
     /// ```
     ///
     /// The stiffness of the spring is the larger of two values: the one at which the body's mass on the spring vibrates
-    /// at 5 Hz, and ten times the body's stiffness at the point; its force is capped at an elongation of a quarter of
-    /// the body's size.
+    /// at 5 Hz, and ten times the body's stiffness at the point. Its force is capped at an elongation of a quarter of the
+    /// body's size, in a motion also at 0.4 E times thickness times the size of the element, so that no throw inverts it.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
         let Body { scene, problem, state } = &mut self.body;
         let mass = Mass::new(problem.system(), scene.material.area_density()).total();
+        let axial = scene.material.young * scene.material.thickness;
+        let most = match self.process {
+            Process::Search(_) => f64::INFINITY,
+            Process::Motion(_) => MouseSpring::strength(problem.system(), point, axial),
+        };
         let omega = std::f64::consts::TAU * SPRING_FREQUENCY;
         let mut stiffness = mass * omega * omega;
         if let Some(compliance) = compliance(problem, state, point) {
             stiffness = stiffness.max(SPRING_FIRMNESS / compliance);
         }
         let delay = 2.0 * SPRING_DAMPING * (mass / stiffness).sqrt();
-        let Some(mut spring) = MouseSpring::new(problem.system(), point, stiffness, delay) else { return false };
+        let Some(mut spring) = MouseSpring::new(problem.system(), point, stiffness, delay, most) else { return false };
         spring.lead(spring.position(&state.displacement), state.time, 0.0);
         *problem.mouse_spring_mut() = Some(spring);
         self.pulled(false);

@@ -17,6 +17,8 @@ use crate::timings::Timings;
 
 /// Largest number of halvings of a step before the motion stops.
 const MAX_HALVINGS: u32 = 10;
+/// Number of halvings of a step beyond which a grab that pulls too hard slips.
+const FIRM: u32 = 2;
 /// Largest displacement, in sizes of the body; beyond, strains have lost half of their digits.
 const FARTHEST: f64 = 1e6;
 /// Fraction of a step that counts as rounding error of the time.
@@ -241,6 +243,11 @@ impl TimeStepping {
                     if halvings == MAX_HALVINGS || gives_up {
                         self.stopped = Some(self.reason(error, part));
                         break;
+                    }
+                    if halvings >= FIRM
+                        && let Some(spring) = body.problem.mouse_spring_mut()
+                    {
+                        spring.slip();
                     }
                     self.counts.halvings += 1;
                     halvings += 1;

@@ -10,12 +10,12 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 27_460),
+    ("app", &["src/app"], 27_465),
     ("study", &["src/study"], 7_665),
     ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
-    ("simulation", &["src/simulation"], 2_819),
-    ("assembly", &["src/assembly"], 3_045),
+    ("simulation", &["src/simulation"], 2_825),
+    ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_570),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),

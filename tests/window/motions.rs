@@ -1,7 +1,7 @@
 //! Tests of motions in the window: colours, time line, speed, and self-intersecting bodies.
 
 use crate::common::lab::*;
-use crate::common::{ids_of, scene_ids};
+use crate::common::{ids_of, scene_ids, scene_with};
 use warpbeam::scene::Analysis;
 use warpbeam::{IntegratorKind, LoadId, State};
 
@@ -37,7 +37,7 @@ fn press_line(ui: &mut Ui, part: f32) {
 /// It returns to the values of the motion: it narrows smoothly, but not while paused.
 #[test]
 fn the_range_of_colours_relaxes_after_a_hard_pull() {
-    let mut ui = open("jelly");
+    let mut ui = open_of("jelly", scene_with("jelly", &["load.0.acceleration=[0, -2]"]));
     let width = |ui: &Ui| ui.state().frame().range[1] - ui.state().frame().range[0];
     ui.run_steps(60);
     let at_first = width(&ui);
@@ -226,4 +226,12 @@ fn the_view_of_an_exploded_motion_comes_back() {
     assert!(time(&ui) < 2.0, "it starts again");
     let scale = ui.camera().scale;
     assert!(scale > 0.3 * before, "{scale} px/m, before {before}");
+}
+
+/// The button stands beside the status, and in the toolbar.
+#[test]
+fn a_body_inside_out_offers_a_reset() {
+    let mut ui = open_of("jelly", scene_with("jelly", &["load.0.acceleration=[0, -400]"]));
+    ui.wait_until("an inverted element", |ui: &Ui| ui.says("Inverted elements."));
+    assert_eq!((ui.query_all_by_label("Reset").count(), ui.says("· inverted")), (2, false));
 }
