@@ -371,6 +371,20 @@ pub fn in_view(lab: &Lab, place: Vector2<f64>) -> Pos2 {
     lab.view_rect().center() + vec2(x as f32, y as f32)
 }
 
+/// Returns two texts in the view of which one covers the other.
+pub fn covered_text(ui: &Ui) -> Option<[String; 2]> {
+    let view = ui.state().view_rect();
+    let texts = shapes(ui).into_iter().filter_map(|shape| match shape {
+        egui::Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect().shrink(1.0))),
+        _ => None,
+    });
+    let texts: Vec<(String, Rect)> = texts.filter(|(_, at)| view.contains_rect(*at)).collect();
+    let pairs = texts.iter().enumerate().flat_map(|(i, a)| texts[..i].iter().map(move |b| (a, b)));
+    // Semibold texts are drawn twice.
+    let mut covered = pairs.filter(|(a, b)| a.1.intersects(b.1) && a.0 != b.0);
+    covered.next().map(|(a, b)| [a.0.clone(), b.0.clone()])
+}
+
 /// Returns all painted shapes, including nested ones.
 pub fn shapes(ui: &Ui) -> Vec<egui::Shape> {
     fn flatten(shape: &egui::Shape, found: &mut Vec<egui::Shape>) {

@@ -112,7 +112,8 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
     }
 }
 
-/// To the border in every direction and back, body and arrow are in view, and the force follows from the pointer alone.
+/// To the border in every direction and back, body and arrow are in view, no label covers another, and the force follows
+/// from the pointer alone.
 #[test]
 fn a_dragged_body_stays_in_view() {
     let sizes = [[1280.0, 800.0], [960.0, 600.0], [800.0, 900.0], [640.0, 480.0]];
@@ -136,6 +137,7 @@ fn a_dragged_body_stays_in_view() {
             let places = ui.state().frame().positions.iter().map(|place| in_view(ui.state(), *place));
             let outside = places.chain([ui.tip()]).map(|at| view.signed_distance_to_pos(at)).fold(-1e9, f32::max);
             assert!(outside <= 0.0, "{case:?}, {step}: body or arrow leave the view by {outside}");
+            assert_eq!(covered_text(&ui), None, "{case:?}, {step}");
             let [before, now] = [*forces.entry(step).or_insert(ui.force()), ui.force()].map(Vector2::from);
             assert!((now - before).norm() <= 1e-3 * now.norm(), "{case:?}, {step}: {now} {before}");
         }

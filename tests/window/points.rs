@@ -296,6 +296,7 @@ fn a_new_beam_has_an_error_and_a_name() {
     ui.event(egui::Event::Text(" of mine".into()));
     ui.key(Key::Enter);
     assert_eq!(ui.scene().name, "New beam of mine");
+    assert_eq!(covered_text(&ui), None);
     ui.undo();
     ui.undo();
     assert_eq!(ui.scene().name, scene("cantilever").name, "undo leads back to the scene before");

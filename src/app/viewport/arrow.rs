@@ -1,12 +1,12 @@
 //! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
-use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, pos2, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, vec2};
 use nalgebra::Vector2;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
-use crate::app::widgets::text::{boxed_text, text_size};
+use crate::app::widgets::text::Labels;
 use crate::assembly::System;
 use crate::format::{engineering, round_down, three_digits};
 use crate::mesh::Mesh;
@@ -260,17 +260,12 @@ impl Arrow {
         }
     }
 
-    /// Paints the arrow with its force next to it, beside the colour bar `legend`, as an outline if the body does not
-    /// have this load.
-    pub(crate) fn paint(
-        &self,
-        painter: &Painter,
-        color: Color32,
-        visuals: &Visuals,
-        (is_hot, is_outline): (bool, bool),
-        legend: Option<Rect>,
-    ) {
-        let direction = self.vector.normalized();
+    /// Paints the arrow with its force next to it, as an outline if the body does not have this load.
+    pub(crate) fn paint(&self, labels: &mut Labels<'_>, color: Color32, (is_hot, is_outline): (bool, bool)) {
+        /// Size of the areas along the arrow that stay free of labels, and distance between them, points.
+        const GRIP: Vec2 = Vec2::splat(8.0);
+        const STEP: f32 = 12.0;
+        let (painter, direction) = (labels.painter, self.vector.normalized());
         let is_stub = self.magnitude == 0.0;
         let faint = if is_stub && !is_hot { color.gamma_multiply(0.55) } else { color };
         let tip = if is_outline {
@@ -278,31 +273,17 @@ impl Arrow {
         } else {
             paint_arrow(painter, self.from, self.vector, faint)
         };
-        self.paint_break(painter, faint, visuals);
-        paint_grip(painter, tip - direction * 6.0, faint, is_hot);
+        self.paint_break(painter, faint, labels.visuals);
+        let grip = tip - direction * 6.0;
+        paint_grip(painter, grip, faint, is_hot);
         let view = painter.clip_rect();
-        if !view.contains(self.from) && !view.contains(tip) {
-            return;
+        if view.contains(self.from) || view.contains(tip) {
+            let along = (0..).map(|i| STEP * i as f32).take_while(|length| *length < self.vector.length());
+            let places = along.map(|length| self.from + direction * length).chain([grip]);
+            labels.taken.extend(places.map(|at| Rect::from_center_size(at, GRIP)));
+            let (anchor, at) = label_place(tip, direction);
+            labels.add(at, anchor, &engineering(self.magnitude, "N"), faint);
         }
-        let label = engineering(self.magnitude, "N");
-        let (mut anchor, mut at) = label_place(tip, direction);
-        let size = text_size(painter, &label);
-        if let Some(legend) = legend.filter(|legend| legend.intersects(anchor.anchor_size(at, size).expand(4.0))) {
-            let is_on_top = legend.center().y < view.center().y;
-            (anchor, at) = match is_on_top {
-                true => (Align2::LEFT_TOP, pos2(tip.x + 12.0, legend.bottom() + 8.0)),
-                false => (Align2::LEFT_BOTTOM, pos2(tip.x + 12.0, legend.top() - 8.0)),
-            };
-        }
-        // There is no room beyond the tip of a short arrow at the border.
-        if !view.contains_rect(anchor.anchor_size(at, size)) {
-            let beside = [(Align2::LEFT_CENTER, 16.0), (Align2::RIGHT_CENTER, -16.0)];
-            let mut beside =
-                beside.map(|(anchor, right)| (anchor, tip - direction * 8.0 + vec2(right, 0.0))).into_iter();
-            (anchor, at) =
-                beside.find(|(anchor, at)| view.contains_rect(anchor.anchor_size(*at, size))).unwrap_or((anchor, at));
-        }
-        boxed_text(painter, at, anchor, &label, visuals, faint, 200.0);
     }
 
     /// Paints the dragged arrow at the position where its tip was grabbed.

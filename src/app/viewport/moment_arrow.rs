@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, Visuals, vec2};
+use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 
 use crate::app::viewport::arrow::{Arrow, MIN_SPAN, paint_grip, power_of_ten_above};
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads, STRAIGHT};
-use crate::app::widgets::text::boxed_text;
+use crate::app::widgets::text::Labels;
 use crate::assembly::System;
 use crate::format::{engineering, round_down, three_digits};
 use crate::scene::Material;
@@ -124,13 +124,12 @@ impl MomentArrow {
     /// not have this load.
     pub(crate) fn paint(
         &self,
-        painter: &Painter,
+        labels: &mut Labels<'_>,
         color: Color32,
-        visuals: &Visuals,
         (is_hot, is_outline): (bool, bool),
         forces: &[Arrow],
     ) {
-        let sweep = self.sweep();
+        let (painter, sweep) = (labels.painter, self.sweep());
         let faint = if self.moment == 0.0 && !is_hot { color.gamma_multiply(0.55) } else { color };
         let (end, along) = self.paint_arrow(painter, faint, if is_outline { 1.0 } else { 3.0 });
         paint_grip(painter, end + along * 3.0, faint, is_hot);
@@ -141,7 +140,7 @@ impl MomentArrow {
             true => (-1.0, Align2::CENTER_BOTTOM),
             false => (1.0, Align2::CENTER_TOP),
         };
-        boxed_text(painter, self.center + vec2(0.0, side * below), anchor, &label, visuals, faint, 200.0);
+        labels.add(self.center + vec2(0.0, side * below), anchor, &label, faint);
     }
 
     /// Paints the arc with a line of this width, points, and its head; returns the end of the arc and its direction.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::text::{boxed_text, text_size};
+use crate::app::widgets::text::Labels;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
@@ -88,16 +88,16 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     }
     outlines(painter, rect, overlay, &palette);
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
-    key(painter, rect, overlay, &palette, visuals);
+    let key = key(painter, rect, overlay, &palette, visuals);
     let legend = legend(painter, rect, overlay, &palette, visuals);
-    on_body(painter, rect, overlay, visuals, legend);
+    let mut labels = Labels { painter, visuals, taken: key.into_iter().chain(legend).collect() };
+    on_body(&mut labels, rect, overlay);
     scale_bar(painter, rect, &overlay.camera, &palette);
     if let Some((spring, force)) = overlay.mouse_spring {
-        pull(painter, &Projection { camera: overlay.camera, rect }, overlay, spring, force, visuals);
+        pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay, spring, force);
     }
     if let Some((note, color)) = overlay.note {
-        let at = rect.center_top() + vec2(0.0, 46.0);
-        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 48.0);
+        labels.add(rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP, note, color);
     }
 }
 
@@ -113,10 +113,10 @@ pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
-    on_body(painter, rect, overlay, visuals, None);
+    let mut labels = Labels { painter, visuals, taken: Vec::new() };
+    on_body(&mut labels, rect, overlay);
     if let Some((note, color)) = overlay.note {
-        let at = rect.center_top() + vec2(0.0, 8.0);
-        boxed_text(painter, at, Align2::CENTER_TOP, note, visuals, color, rect.width() - 24.0);
+        labels.add(rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, note, color);
     }
 }
 
@@ -168,10 +168,9 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     }
 }
 
-/// Paints supports, loads, probes and sections; labels of forces, and the arrow of gravity, are beside the colour bar
-/// `legend`.
-fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals, legend: Option<Rect>) {
-    let palette = Palette::new(visuals);
+/// Paints supports, loads, probes and sections.
+fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
+    let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let projection = Projection { camera: overlay.camera, rect };
     if let Some(edge) = &overlay.options.edge {
         for segment in edge_segments(&projection, overlay, edge) {
@@ -194,12 +193,11 @@ fn on_body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visua
         if is_tiny(overlay.options, rect.size()) {
             return;
         }
-        loads(painter, &projection, overlay, &palette, visuals, legend);
-        weights(painter, rect, overlay, &palette, visuals);
-        moved_supports(painter, &projection, overlay, &palette, visuals);
-        let named: Vec<(Pos2, &str)> = named_probes(&projection, overlay).collect();
-        probes(painter, &named, visuals);
-        sections(painter, &projection, overlay, &named, &palette, visuals);
+        loads(labels, &projection, overlay, &palette);
+        weights(labels, rect, overlay, &palette);
+        moved_supports(labels, &projection, overlay, &palette);
+        probes(labels, &projection, overlay);
+        sections(labels, &projection, overlay, &palette);
     }
 }
 
@@ -217,24 +215,12 @@ fn edge_segments<'a>(
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
-fn sections(
-    painter: &Painter,
-    projection: &Projection,
-    overlay: &Overlay<'_>,
-    named: &[(Pos2, &str)],
-    palette: &Palette,
-    visuals: &Visuals,
-) {
+fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
-    let is_roomy = has_legend(projection.rect.size());
-    if overlay.sections.is_empty() {
-        return;
-    }
-    let name = |&(at, name): &(Pos2, &str)| PROBE_ANCHOR.anchor_size(at + PROBE_NAME, text_size(painter, name));
-    let mut taken: Vec<Rect> = named.iter().map(name).collect();
+    let (is_roomy, painter) = (has_legend(projection.rect.size()), labels.painter);
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
         let [from, to] = [0, 1].map(|i| projection.point(end(i)));
@@ -280,40 +266,20 @@ fn sections(
             (false, 1) => continue,
             (false, _) => (i + 1).to_string(),
         };
-        // A label moves up from one that it would cover.
-        let size = text_size(painter, &label);
-        let mut at = end + outward * (OUTSIDE + 12.0);
-        let place = |at| anchor.anchor_size(at, size).expand(4.0);
-        while taken.iter().any(|other: &Rect| other.intersects(place(at))) {
-            at.y -= size.y + 8.0;
-        }
-        taken.push(place(at));
-        boxed_text(painter, at, anchor, &label, visuals, color, 320.0);
+        labels.add(end + outward * (OUTSIDE + 12.0), anchor, &label, color);
     }
 }
 
-/// Position of the name of a probe beside its point, and its anchor.
-const PROBE_NAME: Vec2 = vec2(8.0, -4.0);
-const PROBE_ANCHOR: Align2 = Align2::LEFT_BOTTOM;
-
-/// Returns the positions of the probes at points, with their names. Those of edges are at the arrows of the loads, as a
-/// rule.
-fn named_probes<'a>(projection: &Projection, overlay: &Overlay<'a>) -> impl Iterator<Item = (Pos2, &'a str)> {
-    let mesh = overlay.system.mesh();
-    let drawn = move |at: [f64; 2]| probe::place(mesh, overlay.positions, mesh.locate(at.into())?);
-    overlay.scene.probes.iter().filter_map(move |own| match own.place {
-        Place::At(at) => Some((projection.point(drawn(at)?), tr(&own.name))),
-        Place::Edge(_) => None,
-    })
-}
-
-/// Marks the probes at points, with their names.
-fn probes(painter: &Painter, named: &[(Pos2, &str)], visuals: &Visuals) {
+/// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
+fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
     const RADIUS: f32 = 3.5;
-    let color = visuals.strong_text_color();
-    for &(at, name) in named {
-        painter.circle(at, RADIUS, visuals.extreme_bg_color, Stroke::new(1.5, color));
-        boxed_text(painter, at + PROBE_NAME, PROBE_ANCHOR, name, visuals, color, 160.0);
+    let (mesh, color) = (overlay.system.mesh(), labels.visuals.strong_text_color());
+    let drawn = |at: [f64; 2]| probe::place(mesh, overlay.positions, mesh.locate(at.into())?);
+    for own in &overlay.scene.probes {
+        let Place::At(at) = own.place else { continue };
+        let Some(at) = drawn(at).map(|at| projection.point(at)) else { continue };
+        labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
+        labels.add(at + vec2(8.0, -4.0), Align2::LEFT_BOTTOM, tr(&own.name), color);
     }
 }
 
@@ -364,17 +330,16 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
 
 /// Paints the mouse spring from the body to the pointer, with its force.
 fn pull(
-    painter: &Painter,
+    labels: &mut Labels<'_>,
     projection: &Projection,
     overlay: &Overlay<'_>,
     spring: &MouseSpring,
     force: Vector2<f64>,
-    visuals: &Visuals,
 ) {
     /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
-    let palette = Palette::new(visuals);
+    let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let mesh = overlay.system.mesh();
     let weights = mesh.weights(spring.point()).unwrap_or_default();
     let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.positions[n as usize] * w).sum();
@@ -388,10 +353,10 @@ fn pull(
         // Straight ends with a zigzag between them.
         let along = vector / length;
         let across = vec2(-along.y, along.x) * COIL;
-        let moment_arrows = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
-        let pitch = (length - 2.0 * PITCH) / moment_arrows as f32;
+        let coils = (((length - 2.0 * PITCH) / PITCH).floor()).min(40.0) as u32;
+        let pitch = (length - 2.0 * PITCH) / coils as f32;
         let mut points = vec![from, from + along * PITCH];
-        points.extend((0..moment_arrows).map(|i| {
+        points.extend((0..coils).map(|i| {
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
             from + along * (PITCH + pitch * (i as f32 + 0.5)) + across * side
         }));
@@ -401,7 +366,7 @@ fn pull(
         painter.line_segment([from, to], stroke);
     }
     let label = engineering(three_digits(force.norm()), "N");
-    boxed_text(painter, to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, visuals, palette.mouse_spring, 200.0);
+    labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring);
 }
 
 /// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
@@ -458,14 +423,8 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-fn loads(
-    painter: &Painter,
-    projection: &Projection,
-    overlay: &Overlay<'_>,
-    palette: &Palette,
-    visuals: &Visuals,
-    legend: Option<Rect>,
-) {
+fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+    let (painter, visuals) = (labels.painter, labels.visuals);
     let Overlay { scene, system, positions, time, .. } = *overlay;
     let of =
         |scene| ForceArrows { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
@@ -483,10 +442,10 @@ fn loads(
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     let arrows = forces.arrows(projection);
     for arrow in &arrows {
-        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline), legend);
+        arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline));
     }
     for arrow in forces.moment_arrows(projection) {
-        arrow.paint(painter, palette.load, visuals, (is_hot(arrow.load), is_outline), &arrows);
+        arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline), &arrows);
     }
     if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);
@@ -494,7 +453,7 @@ fn loads(
 }
 
 /// Paints the arrows of gravity in a corner, under a colour bar that ends `below` points from the top.
-fn weights(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow, which shows the direction only, and its shortest length in a low view, points.
     const WEIGHT: f32 = 58.0;
     const SHORTEST: f32 = 18.0;
@@ -510,20 +469,14 @@ fn weights(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palet
         // An arrow that points up begins where one that points down ends.
         let vector = direction * WEIGHT.min(rect.height() - TOP - UNDER).max(SHORTEST);
         let from = rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
-        let tip = arrow::paint_arrow(painter, from, vector, palette.load);
+        let tip = arrow::paint_arrow(labels.painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
-        boxed_text(painter, tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, visuals, palette.load, 200.0);
+        labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load);
     }
 }
 
 /// Paints the reaction of every moving support as an arrow.
-fn moved_supports(
-    painter: &Painter,
-    projection: &Projection,
-    overlay: &Overlay<'_>,
-    palette: &Palette,
-    visuals: &Visuals,
-) {
+fn moved_supports(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
     for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
@@ -536,14 +489,14 @@ fn moved_supports(
         // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
         let from = if pushes { middle - direction * REACTION } else { middle };
-        let tip = arrow::paint_arrow(painter, from, direction * REACTION, palette.support);
+        let tip = arrow::paint_arrow(labels.painter, from, direction * REACTION, palette.support);
         let tail = if pushes { from } else { tip };
         let (anchor, away) = match (pushes, direction.y > 0.0) {
             (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
             (true, false) | (false, true) => (Align2::CENTER_TOP, 6.0),
         };
         let label = engineering(reaction.force.norm(), "N");
-        boxed_text(painter, tail + vec2(0.0, away), anchor, &label, visuals, palette.support, 200.0);
+        labels.add(tail + vec2(0.0, away), anchor, &label, palette.support);
     }
 }
 
@@ -636,12 +589,12 @@ pub(crate) fn magnified(factor: f64) -> String {
     fill!("displacement × %{factor}", factor = number(three_digits(factor)))
 }
 
-/// Paints the line key with the error of each solution.
-fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) {
+/// Paints the line key with the error of each solution, and returns its area.
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Option<Rect> {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     if rect.width() < KEY_WIDTH {
-        return;
+        return None;
     }
     let values = |word: &str, error: Option<f64>, area: Option<f64>| {
         let error = error.map(|error| format!("  {}", percent(error))).unwrap_or_default();
@@ -704,6 +657,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         }
         painter.galley(left + vec2(indent(mark), -0.5 * galley.size().y), galley, palette.text);
     }
+    Some(frame)
 }
 
 /// Space between the left side of the view and the scale bar, points.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Vec2, Visuals, vec2};
+use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Vec2, Visuals, pos2, vec2};
 
 use crate::app::widgets::palette::BODY;
 
@@ -33,9 +33,37 @@ pub(crate) fn boxed_text(
     painter.galley(rect.min, galley, color);
 }
 
-/// Returns the size of a text on a box in one line.
-pub(crate) fn text_size(painter: &Painter, text: &str) -> Vec2 {
-    painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::PLACEHOLDER).size()
+/// Texts on boxes in the view of a painter; none covers another one or a taken area.
+pub(crate) struct Labels<'a> {
+    pub painter: &'a Painter,
+    pub visuals: &'a Visuals,
+    pub taken: Vec<Rect>,
+}
+
+impl Labels<'_> {
+    /// Paints a text at its place, or at the nearest free one beside what is there.
+    pub(crate) fn add(&mut self, at: Pos2, anchor: Align2, text: &str, color: Color32) {
+        const WIDTH: f32 = 320.0;
+        /// Space between a text and the border of its box, and between a text and what is beside it, points.
+        const BOX: f32 = 4.0;
+        const GAP: f32 = 2.5 * BOX;
+        let Self { painter, visuals, taken } = self;
+        let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, WIDTH);
+        let (size, view) = (galley.size(), painter.clip_rect().shrink(2.0 * BOX));
+        let inside = |corner: Pos2| Rect::from_min_size(corner.clamp(view.min, (view.max - size).max(view.min)), size);
+        let wanted = anchor.anchor_size(at, size).min;
+        let beside = taken.iter().flat_map(|other| {
+            let [before, after] = [other.min - size - Vec2::splat(GAP), other.max + Vec2::splat(GAP)];
+            [before, after].into_iter().flat_map(|to| [pos2(to.x, wanted.y), pos2(wanted.x, to.y)])
+        });
+        let is_free = |rect: &Rect| taken.iter().all(|other| !other.expand(BOX).intersects(rect.expand(BOX)));
+        let distance = |rect: &Rect| rect.min.distance_sq(wanted);
+        let free = std::iter::once(wanted).chain(beside).map(inside).filter(is_free);
+        let rect = free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_else(|| inside(wanted));
+        painter.rect_filled(rect.expand(BOX), BOX, visuals.extreme_bg_color.gamma_multiply(0.85));
+        painter.galley(rect.min, galley, color);
+        taken.push(rect);
+    }
 }
 
 /// Paints semibold text with a font that has only one weight: drawn twice, 0.45 points apart.
