@@ -13,7 +13,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_441),
     ("study", &["src/study"], 7_665),
     ("model", &["src/model", "src/scene"], 3_380),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_563),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_559),
     ("simulation", &["src/simulation"], 2_825),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_570),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 817),
     ("the rest of src", &["src"], 5_153),
-    ("tests", &["tests"], 21_553),
+    ("tests", &["tests"], 21_453),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_433;
+const SRC: usize = 64_440;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -518,6 +518,23 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     assert!(open_of("cantilever").query_by_label("Move y").is_none(), "its supports are fixed");
 }
 
+/// They are there again when one returns, and are undone then; chosen once more, the scene is opened anew.
+#[test]
+fn a_built_in_scene_keeps_its_edits() {
+    let mut ui = open("article");
+    ui.type_into("Force", "20 kN");
+    let edited = ui.scene().clone();
+    pick(&mut ui, "Scene", "bridge");
+    pick(&mut ui, "Scene", "article");
+    assert_eq!(*ui.scene(), edited);
+    (0..3).for_each(|_| ui.undo());
+    assert_eq!(*ui.scene(), scene("article"));
+    (0..3).for_each(|_| ui.chord(Modifiers::COMMAND, Key::Y));
+    assert_eq!(*ui.scene(), edited);
+    pick(&mut ui, "Scene", "article");
+    assert_eq!(*ui.scene(), scene("article"));
+}
+
 #[test]
 fn every_scene_and_element_can_be_chosen() {
     let mut ui = open("article");

@@ -40,7 +40,7 @@ use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
-use crate::sentence::Sentence;
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Reference, SolveFromRest, StudyError, is_known_unstable};
@@ -102,6 +102,7 @@ pub(crate) enum EditError {
 impl From<&EditError> for Sentence {
     fn from(error: &EditError) -> Self {
         match error {
+            EditError::Scene(error @ SceneError::Syntax { .. }) => sentence!("not a scene: %{error}", error),
             EditError::Scene(error) => error.into(),
             EditError::Simulation(error) => error.into(),
         }
@@ -400,8 +401,16 @@ impl Session {
                 self.name_edit(label);
             }
             Edit::Open(source) => {
-                let document = Document::open(source)?;
-                let scene = document.original.clone();
+                // Edits of a built-in scene are kept with it; where it is the present one, it is opened anew.
+                let is_kept = source.built_in().is_some() && source != before.document.source;
+                let kept = self.undo.last_of(&source).filter(|_| is_kept).cloned();
+                let Version { document, scene } = match kept {
+                    Some(version) => version,
+                    None => {
+                        let document = Document::open(source)?;
+                        Version { scene: document.original.clone(), document }
+                    }
+                };
                 self.replace(document, scene)?;
                 self.record(before, None);
             }

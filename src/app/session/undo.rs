@@ -97,6 +97,11 @@ impl UndoHistory {
         past.chain(self.future.iter_mut().rev().take_while(is_same))
     }
 
+    /// Returns the last version of a document before the present one.
+    pub(crate) fn last_of(&self, source: &Source) -> Option<&Version> {
+        self.past.iter().rev().find(|version| version.document.source == *source)
+    }
+
     /// Returns the number of steps that can be undone.
     pub(crate) fn depth(&self) -> usize {
         self.past.len()
