@@ -11,7 +11,7 @@ use crate::scene::units;
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
-    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input. Default: article.
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input. Default: cantilever.
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub set: SetArgs,
