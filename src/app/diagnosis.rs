@@ -131,9 +131,7 @@ fn notes_on_mesh(simulation: &Simulation) -> Vec<Sentence> {
 
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
-///
-/// `is_raw` is `true` if the field is drawn as it is in the elements: its largest strain is not the recovered one.
-pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Option<String> {
+pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
     if !input.simulation.status().is_success() || input.simulation.motion().is_some() {
         return None;
     }
@@ -142,8 +140,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Optio
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
     let strain = input.quality.max_strain;
-    let strained =
-        strain_warning(strain).filter(|_| !is_raw).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
     let known = errors.own.zip(input.reference.and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
     let from_rest = errors.from_rest.map(|error| fill!("from rest %{error}", error = percent(error)));

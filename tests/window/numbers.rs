@@ -104,7 +104,7 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     let u = [0, 1].map(|i| number(&probe["u"][i]).unwrap());
     assert_eq!(shown.row(&format!("{name} Δx, Δy")), engineering_pair(u, "m"), "{what}");
     let mesh_error = format!("{} (estimate)", percent(number(&json["mesh_error_percent"]).unwrap()));
-    assert_eq!(shown.row("Mesh error"), mesh_error, "{what}");
+    assert_eq!(shown.row("Error in energy"), mesh_error, "{what}");
     let strain = engineering(three_digits(100.0 * number(&json["max_strain"]).unwrap()), "%");
     let stress = &json["max_von_mises"];
     let stress = match number(&stress["value"]) {
@@ -167,7 +167,7 @@ fn numbers_are_those_of_solve() {
                 let rho = rho.map_or_else(|| "ρ \u{2013}".to_owned(), |rho| format!("ρ {} ", rho_text(rho)));
                 let seen = shown.starting_with("ρ ").unwrap();
                 assert!(!seen.contains("per iteration"), "{what}: {seen} is not that of the body that is drawn");
-                assert!(seen.starts_with(&rho) && shown.row("Mesh error") == "\u{2013}", "{what}: {seen}, {rho}");
+                assert!(seen.starts_with(&rho) && shown.row("Error in energy") == "\u{2013}", "{what}: {seen}, {rho}");
                 assert!(shown.starting_with("Converged").is_none(), "{what}: {:?}", shown.0);
                 diverged += 1;
             }

@@ -82,7 +82,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
         names.iter().map(|name| if shown.has(name) { shown.row(name).to_owned() } else { String::new() }).collect()
     };
     let details = |ui: &Ui| rows(ui, &["tip Δx, Δy", "Energy", "Equilibrium", "Iterations", "ρ"]);
-    let quality = |ui: &Ui| rows(ui, &["Mesh error", "Stress", "Strain"]);
+    let quality = |ui: &Ui| rows(ui, &["Error in energy", "Stress", "Strain"]);
     let (before, quality_before) = (details(&ui), quality(&ui));
     assert!(quality_before[1].contains("797 kPa"), "{quality_before:?}");
     assert!(before[0].ends_with(" m") && before[1].ends_with("kJ"), "{before:?}");

@@ -9,7 +9,7 @@ use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, 
 use crate::app::action::Action;
 use crate::app::diagnosis::Errors;
 use crate::app::language::{spaced, tr};
-use crate::app::view_options::ViewOptions;
+use crate::app::view_options::{Mode, ViewOptions};
 use crate::app::viewport::arrow::DOWN;
 use crate::app::widgets::buttons::choice;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale, show_message};
@@ -101,6 +101,9 @@ pub(super) fn show(
         if !input.scene.about.is_empty() {
             let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
             ui.add(egui::Label::new(about).wrap());
+        }
+        if view.mode == Mode::Compare {
+            ui.small(tr("Each pane has its own method, element and mesh."));
         }
         ui.add_space(4.0);
         method(ui, input, state, actions);

@@ -144,7 +144,7 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
                the nodes";
-    row("Mesh error", text, tip);
+    row("Error in energy", text, tip);
     let text = match quality.largest_stress.filter(|_| known) {
         Some((stress, at)) => {
             let (stress, at) = (engineering(three_digits(stress), "Pa"), engineering_pair(at.into(), "m"));

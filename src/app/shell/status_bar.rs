@@ -48,7 +48,7 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match input.simulation.motion() {
             Some(_) => of_motion(&palette, input).into(),
-            None => of_solve(&palette, input, errors, view.raw),
+            None => of_solve(&palette, input, errors),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let drawer = Drawer::of(input.scene);
@@ -80,7 +80,7 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     });
 }
 
-fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: bool) -> Vec<BarNumber> {
+fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
     let simulation = input.simulation;
     let solve = input.from_rest.filter(|_| simulation.status().is_success());
     // While a load is dragged, a longer solve is not repeated.
@@ -90,10 +90,10 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors, is_raw: boo
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
     let sought = input.reference_progress.filter(|_| errors.own.is_none());
-    let doubt = doubt(input, errors, is_raw);
+    let doubt = doubt(input, errors);
     let is_without_reference = is_without_reference(input);
     // The error from rest is in the colour, and is no doubt if it is small.
-    let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }, is_raw).is_some();
+    let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }).is_some();
     let color = match error_color(palette, errors.worst()) {
         color if is_doubtful && color == palette.good => palette.warning,
         color => color,
@@ -222,16 +222,18 @@ struct Texts {
 impl Texts {
     fn of(ui: &Ui, palette: &Palette, entry: &BarNumber, wide: bool) -> Self {
         let painter = ui.painter();
-        let small =
-            |text: &str| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), palette.secondary);
+        let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
+        // A remark about a number that needs attention needs it too.
+        let is_marked = [palette.warning, palette.error].contains(&entry.color);
+        let remark_color = if is_marked { entry.color } else { palette.secondary };
         let number = painter.layout_no_wrap(entry.value.clone(), FontId::proportional(HEADLINE), entry.color);
         Self {
-            title: small(tr(entry.name)),
+            title: small(tr(entry.name), palette.secondary),
             // A minimum width keeps what follows in place when the number of digits changes.
             number_width: number.size().x.max(if wide { 62.0 } else { 0.0 }),
             number,
             has_bar: wide && entry.ratio.is_some(),
-            remark: (!entry.word.is_empty()).then(|| small(&entry.word)),
+            remark: (!entry.word.is_empty()).then(|| small(&entry.word, remark_color)),
         }
     }
 

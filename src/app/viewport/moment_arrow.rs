@@ -115,11 +115,6 @@ impl MomentArrow {
         three_digits(nearest.copysign(moment))
     }
 
-    /// Paints the arrow of the moment on a body that is not in the state that was asked for, without a handle.
-    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32) {
-        self.paint_arrow(painter, color, 3.0);
-    }
-
     /// Paints the arrow with its moment below it, or above it if one of these force arrows is below; thin if the body does
     /// not have this load.
     pub(crate) fn paint(
@@ -144,7 +139,7 @@ impl MomentArrow {
     }
 
     /// Paints the arc with a line of this width, points, and its head; returns the end of the arc and its direction.
-    fn paint_arrow(&self, painter: &Painter, color: Color32, width: f32) -> (Pos2, Vec2) {
+    pub(crate) fn paint_arrow(&self, painter: &Painter, color: Color32, width: f32) -> (Pos2, Vec2) {
         const HEAD: f32 = 11.0;
         let sweep = self.sweep();
         self.paint_arc(painter, sweep, Stroke::new(width, color));

@@ -248,7 +248,7 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
             }
         }
         if moment.abs() > least * overlay.system.size() {
-            MomentArrow::new(0, middle, moment, moment.abs()).paint_body_load(painter, color);
+            MomentArrow::new(0, middle, moment, moment.abs()).paint_arrow(painter, color, 3.0);
         }
         // The label is at the upper end, outside the body.
         let (end, below) = if from.y <= to.y { (from, to) } else { (to, from) };
@@ -432,12 +432,9 @@ fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>
     let forces = of(overlay.wanted.unwrap_or(scene));
     let is_outline = overlay.wanted.is_some();
     if is_outline {
-        for own in of(scene).arrows(projection) {
-            own.paint_body_load(painter, palette.load, visuals);
-        }
-        for own in of(scene).moment_arrows(projection) {
-            own.paint_body_load(painter, palette.load);
-        }
+        let (arrows, moments) = (of(scene).arrows(projection), of(scene).moment_arrows(projection));
+        arrows.iter().for_each(|own| own.paint_body_load(painter, palette.load, visuals));
+        moments.into_iter().for_each(|own| _ = own.paint_arrow(painter, palette.load, 3.0));
     }
     let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     let arrows = forces.arrows(projection);

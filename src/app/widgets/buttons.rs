@@ -33,10 +33,12 @@ pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str
     const WIDE: f32 = 52.0;
     const GAP: f32 = 5.0;
     const PADDING: f32 = 8.0;
+    const WORD: f32 = 38.0; // of Run and Pause, so that nothing moves
     let font = FontId::proportional(BODY);
+    let least = if matches!(icon, Icon::Play | Icon::Pause) { WORD } else { 0.0 };
     let side = if icon == Icon::Language { WIDE } else { SIDE };
     let galley = word.map(|word| ui.painter().layout_no_wrap(word.to_owned(), font, egui::Color32::PLACEHOLDER));
-    let width = galley.as_ref().map_or(side, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x);
+    let width = galley.as_ref().map_or(side, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x.max(least));
     let (rect, response) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::click());
     let style = ui.style().interact_selectable(&response, chosen);
     ui.painter().rect(rect, style.corner_radius, style.weak_bg_fill, style.bg_stroke, StrokeKind::Inside);
@@ -47,7 +49,7 @@ pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str
     };
     paint(ui.painter(), icon, center, color);
     if let Some(galley) = galley {
-        let at = pos2(rect.right() - PADDING - galley.size().x, rect.center().y - 0.5 * galley.size().y);
+        let at = pos2(rect.left() + PADDING + 14.0 + GAP, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, color);
     }
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), chosen, name));

@@ -19,7 +19,8 @@ use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{number, prefix, six_digits, three_digits};
 use crate::plot::{ScaledAxis, rating_color};
-use crate::scene::{Analysis, Load, Scene};
+use crate::scene::{Analysis, Beam, Load, Scene};
+use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
@@ -121,7 +122,10 @@ impl LimitMap {
         if let Some(done) = progress {
             ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
         }
-        let axis = limits::axis(&base);
+        let mut axis = limits::axis(&base);
+        if let Some(Beam { cells: [n, m], .. }) = &base.beam {
+            axis.name = sentence!("%{load} on %{n} × %{m} cells", load = axis.name, n = *n, m = *m);
+        }
         // A low window scrolls.
         let least = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
