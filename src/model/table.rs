@@ -18,22 +18,22 @@ pub(crate) fn check(table: &Table) -> Result<(), Invalid> {
 
 /// Checks the keys of a table: `parent` is its place in [`KEYS`], `place` the one with indices.
 fn check_table(table: &Table, parent: &str, place: &str) -> Result<(), Invalid> {
+    let known: Vec<&Key> = keys_of(parent).collect();
     table.iter().try_for_each(|(name, value)| {
-        let join = |prefix: &str| if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
-        let (path, place) = (join(parent), join(place));
-        let Some(key) = KEYS.iter().find(|key| key.path == path) else {
-            let known: Vec<&str> = keys_of(parent).map(name_of).collect();
-            return Err(Invalid::new(place, format!("unknown key, expected one of {}", known.join(", "))));
+        let place = || if place.is_empty() { name.clone() } else { format!("{place}.{name}") };
+        let Some(key) = known.iter().find(|key| name_of(key) == name) else {
+            let known: Vec<&str> = known.iter().map(|key| name_of(key)).collect();
+            return Err(Invalid::new(place(), format!("unknown key, expected one of {}", known.join(", "))));
         };
         let checked = match expected(key, value) {
             Some(expected) => Err(format!("expected {expected}, got {}", shown(value)).into()),
             None => check_range(key.kind, value).map_err(|e| Sentence::from(&e)),
         };
-        checked.map_err(|message| Invalid::new(place.as_str(), message))?;
+        checked.map_err(|message| Invalid::new(place(), message))?;
         match value {
-            Value::Table(table) => check_table(table, &path, &place),
+            Value::Table(table) => check_table(table, key.path, &place()),
             Value::Array(items) => items.iter().enumerate().try_for_each(|(i, item)| match item {
-                Value::Table(table) => check_table(table, &path, &format!("{place}.{i}")),
+                Value::Table(table) => check_table(table, key.path, &format!("{}.{i}", place())),
                 _ => Ok(()),
             }),
             _ => Ok(()),

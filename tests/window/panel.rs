@@ -518,7 +518,7 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
     assert!(open_of("cantilever").query_by_label("Move y").is_none(), "its supports are fixed");
 }
 
-/// They are there again when one returns, and are undone then; chosen once more, the scene is opened anew.
+/// A built-in scene has its edits when the user returns to it, and opens without them when it is chosen once more.
 #[test]
 fn a_built_in_scene_keeps_its_edits() {
     let mut ui = open("article");

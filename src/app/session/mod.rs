@@ -401,7 +401,7 @@ impl Session {
                 self.name_edit(label);
             }
             Edit::Open(source) => {
-                // Edits of a built-in scene are kept with it; where it is the present one, it is opened anew.
+                // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
                 let is_kept = source.built_in().is_some() && source != before.document.source;
                 let kept = self.undo.last_of(&source).filter(|_| is_kept).cloned();
                 let Version { document, scene } = match kept {

@@ -282,7 +282,7 @@ impl Arrow {
             let places = along.map(|length| self.from + direction * length).chain([grip]);
             labels.taken.extend(places.map(|at| Rect::from_center_size(at, GRIP)));
             let (anchor, at) = label_place(tip, direction);
-            labels.add(at, anchor, &engineering(self.magnitude, "N"), faint);
+            labels.add(at, anchor, &engineering(self.magnitude, "N"), faint, 200.0);
         }
     }
 

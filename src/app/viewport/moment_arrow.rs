@@ -135,7 +135,7 @@ impl MomentArrow {
             true => (-1.0, Align2::CENTER_BOTTOM),
             false => (1.0, Align2::CENTER_TOP),
         };
-        labels.add(self.center + vec2(0.0, side * below), anchor, &label, faint);
+        labels.add(self.center + vec2(0.0, side * below), anchor, &label, faint, 200.0);
     }
 
     /// Paints the arc with a line of this width, points, and its head; returns the end of the arc and its direction.

@@ -97,7 +97,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay, spring, force);
     }
     if let Some((note, color)) = overlay.note {
-        labels.add(rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP, note, color);
+        labels.add(rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP, note, color, rect.width() - 48.0);
     }
 }
 
@@ -116,7 +116,7 @@ pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals
     let mut labels = Labels { painter, visuals, taken: Vec::new() };
     on_body(&mut labels, rect, overlay);
     if let Some((note, color)) = overlay.note {
-        labels.add(rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, note, color);
+        labels.add(rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, note, color, rect.width() - 24.0);
     }
 }
 
@@ -266,7 +266,7 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
             (false, 1) => continue,
             (false, _) => (i + 1).to_string(),
         };
-        labels.add(end + outward * (OUTSIDE + 12.0), anchor, &label, color);
+        labels.add(end + outward * (OUTSIDE + 12.0), anchor, &label, color, 320.0);
     }
 }
 
@@ -279,7 +279,7 @@ fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_
         let Place::At(at) = own.place else { continue };
         let Some(at) = drawn(at).map(|at| projection.point(at)) else { continue };
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
-        labels.add(at + vec2(8.0, -4.0), Align2::LEFT_BOTTOM, tr(&own.name), color);
+        labels.add(at + vec2(8.0, -4.0), Align2::LEFT_BOTTOM, tr(&own.name), color, 160.0);
     }
 }
 
@@ -366,7 +366,7 @@ fn pull(
         painter.line_segment([from, to], stroke);
     }
     let label = engineering(three_digits(force.norm()), "N");
-    labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring);
+    labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring, 200.0);
 }
 
 /// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
@@ -449,7 +449,7 @@ fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>
     }
 }
 
-/// Paints the arrows of gravity in a corner, under a colour bar that ends `below` points from the top.
+/// Paints the arrows of gravity in a corner.
 fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow, which shows the direction only, and its shortest length in a low view, points.
     const WEIGHT: f32 = 58.0;
@@ -468,7 +468,7 @@ fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: 
         let from = rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
         let tip = arrow::paint_arrow(labels.painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
-        labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load);
+        labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load, 200.0);
     }
 }
 
@@ -493,7 +493,7 @@ fn moved_supports(labels: &mut Labels<'_>, projection: &Projection, overlay: &Ov
             (true, false) | (false, true) => (Align2::CENTER_TOP, 6.0),
         };
         let label = engineering(reaction.force.norm(), "N");
-        labels.add(tail + vec2(0.0, away), anchor, &label, palette.support);
+        labels.add(tail + vec2(0.0, away), anchor, &label, palette.support, 200.0);
     }
 }
 

@@ -24,13 +24,7 @@ pub(crate) fn boxed_text(
     color: Color32,
     width: f32,
 ) {
-    let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
-    let view = painter.clip_rect().shrink(8.0);
-    let wanted = anchor.anchor_size(at, galley.size());
-    let corner = wanted.min.clamp(view.min, (view.max - galley.size()).max(view.min));
-    let rect = Rect::from_min_size(corner, galley.size());
-    painter.rect_filled(rect.expand(4.0), 4.0, visuals.extreme_bg_color.gamma_multiply(0.85));
-    painter.galley(rect.min, galley, color);
+    Labels { painter, visuals, taken: Vec::new() }.add(at, anchor, text, color, width);
 }
 
 /// Texts on boxes in the view of a painter; none covers another one or a taken area.
@@ -41,25 +35,24 @@ pub(crate) struct Labels<'a> {
 }
 
 impl Labels<'_> {
-    /// Paints a text at its place, or at the nearest free one beside what is there.
-    pub(crate) fn add(&mut self, at: Pos2, anchor: Align2, text: &str, color: Color32) {
-        const WIDTH: f32 = 320.0;
+    /// Paints a text, in lines up to this width, at its place, or at the nearest free one beside what is there.
+    pub(crate) fn add(&mut self, at: Pos2, anchor: Align2, text: &str, color: Color32, width: f32) {
         /// Space between a text and the border of its box, and between a text and what is beside it, points.
         const BOX: f32 = 4.0;
         const GAP: f32 = 2.5 * BOX;
         let Self { painter, visuals, taken } = self;
-        let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, WIDTH);
+        let galley = painter.layout(text.to_owned(), FontId::proportional(BODY), color, width.max(40.0));
         let (size, view) = (galley.size(), painter.clip_rect().shrink(2.0 * BOX));
         let inside = |corner: Pos2| Rect::from_min_size(corner.clamp(view.min, (view.max - size).max(view.min)), size);
-        let wanted = anchor.anchor_size(at, size).min;
+        let own = inside(anchor.anchor_size(at, size).min);
         let beside = taken.iter().flat_map(|other| {
             let [before, after] = [other.min - size - Vec2::splat(GAP), other.max + Vec2::splat(GAP)];
-            [before, after].into_iter().flat_map(|to| [pos2(to.x, wanted.y), pos2(wanted.x, to.y)])
+            [before, after].into_iter().flat_map(|to| [pos2(to.x, own.min.y), pos2(own.min.x, to.y)])
         });
         let is_free = |rect: &Rect| taken.iter().all(|other| !other.expand(BOX).intersects(rect.expand(BOX)));
-        let distance = |rect: &Rect| rect.min.distance_sq(wanted);
-        let free = std::iter::once(wanted).chain(beside).map(inside).filter(is_free);
-        let rect = free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_else(|| inside(wanted));
+        let distance = |rect: &Rect| rect.min.distance_sq(own.min);
+        let nearest = || beside.map(inside).filter(is_free).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let rect = Some(own).filter(is_free).or_else(nearest).unwrap_or(own);
         painter.rect_filled(rect.expand(BOX), BOX, visuals.extreme_bg_color.gamma_multiply(0.85));
         painter.galley(rect.min, galley, color);
         taken.push(rect);
