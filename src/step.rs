@@ -1,4 +1,4 @@
-//! The step of the warped stiffness method: the code that every frame executes (Müller and Gross 2004).
+//! The step of the warped stiffness method, which a frame repeats until the forces balance (Müller and Gross 2004).
 //!
 //! An element maps its nodes from X to x with the gradient F = R S (eqs. 37 to 39 of the article), R a rotation and S
 //! the stretch. S − I is the strain, so that a rotation costs no energy. Rotated back by R, the element is one of linear
@@ -18,7 +18,7 @@
 //! the next step begins with its matrix.
 //!
 //! The [methods](crate::method) decide which matrix is factorized, under which part of the load, and when the state is
-//! the result. Time steps share [`LinearSystem`] and [`Problem::linearize`].
+//! the result. A time step of a motion has stages of its own, which share [`LinearSystem`] and [`Problem::linearize`].
 
 use nalgebra::{Matrix2, Vector2};
 

@@ -84,18 +84,9 @@ pub(crate) enum Action {
 }
 
 impl Action {
-    /// Returns `true` if the action exists here.
+    /// Returns `true` if the action exists here: only a web page has links.
     pub(crate) fn is_available(&self) -> bool {
-        self.exists_on(IS_PAGE)
-    }
-
-    /// Returns `true` if the action exists on a web page (`true`) or a desktop (`false`): only a page has
-    /// links.
-    pub(crate) fn exists_on(&self, page: bool) -> bool {
-        match self {
-            Self::CopyLink => page,
-            _ => true,
-        }
+        IS_PAGE || !matches!(self, Self::CopyLink)
     }
 }
 

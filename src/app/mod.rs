@@ -38,7 +38,6 @@ pub use shell::help::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 #[doc(hidden)]
-pub use shell::shortcuts::every_shortcut;
 pub use view_options::Magnification;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;

@@ -17,10 +17,43 @@ pub(crate) enum Mode {
     Learn,
     /// Two to four settings side by side under one load.
     Compare,
-    /// Mode with a plot of the error of measured settings against their time, and the settings within limits of both.
-    Budget,
-    /// Loads up to which each method and element holds.
-    Limits,
+    /// Range and cost of methods and elements, and the load curve.
+    Measure,
+}
+
+/// Tab of [`Mode::Measure`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum MeasureTab {
+    /// Loads up to which each method and element holds; of a motion, time steps.
+    #[default]
+    HowFar,
+    /// Error of measured settings against their time, and the settings within limits of both.
+    HowFast,
+    /// Load curve of a scene at rest.
+    LoadCurve,
+}
+
+impl MeasureTab {
+    /// Returns the tabs of a scene: a motion has no load curve.
+    pub(crate) fn of(scene: &Scene) -> &'static [Self] {
+        match scene.analysis {
+            Analysis::Static => &[Self::HowFar, Self::HowFast, Self::LoadCurve],
+            Analysis::Dynamic => &[Self::HowFar, Self::HowFast],
+        }
+    }
+
+    /// Returns the name of the tab and a description of its content.
+    pub(crate) fn text(self) -> (&'static str, &'static str) {
+        match self {
+            Self::HowFar => {
+                ("How far", "The loads up to which each method and element is within 1 % and 5 %, and converges (M)")
+            }
+            Self::HowFast => {
+                ("How fast", "Error against time on this machine, and the fastest setting within limits (B)")
+            }
+            Self::LoadCurve => ("Load curve", "The displacement while the load grows (L)"),
+        }
+    }
 }
 
 /// Entry of a mode in the toolbar.
@@ -44,14 +77,9 @@ pub(crate) const MODES: &[ModeEntry] = &[
         about: "Methods, integrators, elements and meshes side by side under one load (K)",
     },
     ModeEntry {
-        mode: Mode::Budget,
-        name: "Budget",
-        about: "Error against time on this machine, and the fastest setting within limits (B)",
-    },
-    ModeEntry {
-        mode: Mode::Limits,
-        name: "Limits",
-        about: "The loads up to which each method and element is within 1 % and 5 %, and converges (M)",
+        mode: Mode::Measure,
+        name: "Measure",
+        about: "How far each method holds and how fast it is, measured on this machine, and the load curve",
     },
 ];
 
@@ -108,8 +136,8 @@ pub(crate) enum Toggle {
     Why,
     /// A mode; toggling the current mode returns to [`Mode::Explore`].
     Mode(Mode),
-    /// Load curve in [`Mode::Limits`].
-    Curve,
+    /// A tab of [`Mode::Measure`]; toggling the visible one returns to [`Mode::Explore`].
+    Tab(MeasureTab),
     Drawer(Drawer),
 }
 
@@ -193,8 +221,8 @@ pub(crate) struct ViewOptions {
     pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
-    /// `true` if Limits shows the load curve in place of the strips.
-    pub curve: bool,
+    /// Tab of Measure.
+    pub tab: MeasureTab,
     /// Quantities of the load curve; `None` means the default ones.
     pub curve_plot: Option<CurvePlot>,
     /// `true` if bars and panel are drawn; images may omit them.
@@ -227,7 +255,7 @@ impl Default for ViewOptions {
             mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
-            curve: false,
+            tab: MeasureTab::default(),
             curve_plot: None,
             bars: true,
             panel: true,
@@ -262,10 +290,11 @@ impl ViewOptions {
                 self.mode = if self.mode == mode { Mode::Explore } else { mode };
                 self.why = false;
             }
-            Toggle::Curve if self.mode == Mode::Limits && self.curve => {
-                (self.mode, self.curve) = (Mode::Explore, false)
+            Toggle::Tab(tab) => {
+                let open = self.mode == Mode::Measure && self.tab == tab;
+                (self.mode, self.tab) = (if open { Mode::Explore } else { Mode::Measure }, tab);
+                self.why = false;
             }
-            Toggle::Curve => (self.mode, self.curve) = (Mode::Limits, true),
             // Plots are shown in Explore only: opening one from another mode switches to it.
             Toggle::Drawer(drawer) => {
                 let open = self.plots() == Some(drawer);
@@ -279,9 +308,10 @@ impl ViewOptions {
         self.drawer.filter(|_| self.mode == Mode::Explore)
     }
 
-    /// Returns `true` if the load curve of the scene is visible.
-    pub(crate) fn shows_curve(&self, scene: &Scene) -> bool {
-        self.mode == Mode::Limits && self.curve && scene.analysis == Analysis::Static
+    /// Returns the tab of Measure that is visible.
+    pub(crate) fn measured(&self, scene: &Scene) -> Option<MeasureTab> {
+        let tab = if MeasureTab::of(scene).contains(&self.tab) { self.tab } else { MeasureTab::HowFar };
+        (self.mode == Mode::Measure).then_some(tab)
     }
 
     /// Returns `true` if the panel is visible.

@@ -63,14 +63,13 @@ pub(super) struct ShotArgs {
     #[arg(long, conflicts_with = "curve")]
     pub sections: bool,
     /// Add the plot of error against time, measured now.
-    #[arg(long, conflicts_with_all = ["curve", "sections"])]
+    #[arg(long, conflicts_with_all = ["curve", "sections", "learn"])]
     pub study: bool,
     /// Add the map of the loads up to which each method and element holds, or of the time steps up to which each
-    /// integrator does, as the window's Limits mode shows it.
+    /// integrator does, as the window's mode Measure shows them.
     #[arg(long, conflicts_with_all = ["curve", "sections", "study", "learn", "motion", "compare"])]
     pub limits: bool,
-    /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene. With
-    /// --study the last one contains its table.
+    /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene.
     #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "sections", "motion"])]
     pub learn: Option<u8>,
     /// For a dynamic scene: add the plot of its energy, and show the same motion with other integrators side by side.

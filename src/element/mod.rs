@@ -230,7 +230,7 @@ pub struct MatrixSum<'a> {
 pub struct PointStress {
     /// Rotation R.
     pub rotation: Rotation<Lanes>,
-    /// Trace of the strain S − I.
+    /// Trace of the strain S − I, by which the geometric stiffness G grows.
     pub trace: Lanes,
     /// First Piola–Kirchhoff stress R T, times the thickness, N/m.
     pub stress: Matrix2<Lanes>,

@@ -8,10 +8,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::common::files::rust_files;
-use crate::common::{scene_ids, succeeds_in, warpbeam};
+use crate::common::{scene, scene_ids, succeeds_in, warpbeam};
 use serde_json::{Value, json};
 use warpbeam::Scene;
-use warpbeam::app::{FOCUS_KEYS, MOUSE, every_shortcut};
 use warpbeam::scene::keys::{KEYS, Key, KeyKind, Need};
 use warpbeam::scene::limits::Limit;
 use warpbeam::scene::registry;
@@ -557,23 +556,13 @@ fn the_reference_of_commands_is_current() {
 }
 
 #[test]
-fn the_reference_of_shortcuts_is_current() {
-    let mut text = String::from("| key | action |\n|---|---|\n");
-    for (key, does, [desktop, page]) in every_shortcut() {
-        let place = match (desktop, page) {
-            (true, false) => " (not on a web page)",
-            (false, true) => " (on a web page only)",
-            _ => "",
-        };
-        let _ = writeln!(text, "| `{key}` | {does}{place} |");
+fn the_gallery_is_current() {
+    let mut text = String::from("| scene | | |\n|---|---|---|\n");
+    for id in scene_ids() {
+        let scene = scene(id);
+        let _ = writeln!(text, "| `{id}` | ![{}](../../assets/scenes/{id}.png) | {} |", scene.name, scene.about);
     }
-    for (title, rows) in [("key", FOCUS_KEYS), ("pointer", MOUSE)] {
-        let _ = write!(text, "\n| {title} | action |\n|---|---|\n");
-        for (name, does) in rows {
-            let _ = writeln!(text, "| {name} | {does} |");
-        }
-    }
-    check_part("docs/reference/shortcuts.md", "shortcuts", text.trim_end());
+    check_part("docs/guide/gallery.md", "gallery", text.trim_end());
 }
 
 /// Returns the first cell of every row of the tables in a section of a document, each code span in it for itself.

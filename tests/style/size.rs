@@ -10,13 +10,13 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 27_434),
+    ("app", &["src/app"], 27_413),
     ("study", &["src/study"], 7_665),
     ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_559),
     ("simulation", &["src/simulation"], 2_825),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_570),
+    ("cli", &["src/cli"], 2_569),
     ("dynamics", &["src/dynamics"], 2_041),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_433;
+const SRC: usize = 64_411;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

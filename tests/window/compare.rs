@@ -273,7 +273,7 @@ fn compare_fits_small_windows() {
             let is_large = place.width() >= 260.0 && place.height() >= 90.0;
             assert!(window.contains_rect(place) && is_large, "{size:?}: {place:?}");
         }
-        let names = ["Explore", "Compare", "Budget", "linear | warped | newton", "t3 | t6 | q4", "+ Pane", "Panel"];
+        let names = ["Explore", "Compare", "Measure", "linear | warped | newton", "t3 | t6 | q4", "+ Pane", "Panel"];
         ui.contains(names);
         let rects: Vec<_> = names.iter().map(|name| ui.get_by_label(name).rect()).collect();
         for (i, rect) in rects.iter().enumerate() {

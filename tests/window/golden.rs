@@ -1,4 +1,4 @@
-//! Compares the whole window with golden pictures: Explore, each card of Learn, Compare, Budget and Limits; some with another
+//! Compares the whole window with golden pictures: Explore, each card of Learn, Compare and Measure; some with another
 //! theme or language. The tests of each mode check the displayed numbers.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test window golden` redraws the pictures; look at them before committing.
@@ -104,7 +104,7 @@ fn limits() {
     golden("limits", &mut lab, &[DARK, LIGHT], &[TIME]);
 }
 
-/// Budget is drawn before any measurement, because measured times differ from run to run.
+/// How fast is drawn before any measurement, because measured times differ from run to run.
 #[test]
 fn budget() {
     let mut solved = lab("article");

@@ -325,12 +325,12 @@ fn locking_has_each_elements_error() {
     assert_eq!(ui.scene().element(), ElementKind::T3);
 }
 
-/// Card 9 leads to Budget, with one's own scene.
+/// Card 9 leads to Measure, with one's own scene.
 #[test]
-fn the_last_card_leads_to_budget() {
+fn the_last_card_leads_to_measure() {
     let mut ui = at_card(9);
-    ui.click("Open Budget");
-    ui.expect(&["Measure"]);
+    ui.click("Open Measure");
+    ui.expect(&["Measure on this machine"]);
     assert!(ui.state().card().is_none());
 }
 

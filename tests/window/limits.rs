@@ -1,4 +1,4 @@
-//! Tests of the mode Limits: its numbers are those of `warpbeam limits`; its strips set load, method and element.
+//! Tests of the limits in the mode Measure: its numbers are those of `warpbeam limits`; its strips set load, method and element.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ fn open(scene: Scene) -> Ui {
     window(SIZE, lab_of("scene", scene))
 }
 
-/// Opens Limits, and waits for its strips.
+/// Opens the limits, and waits for its strips.
 fn opened(scene: Scene) -> Ui {
     let mut ui = open(scene);
     ui.key_press(Key::M);

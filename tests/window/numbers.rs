@@ -1,6 +1,6 @@
 //! The numbers of the window are those of `warpbeam solve --json`, wherever they stand: status bar, summary, Details, the
-//! panes of Compare, the cards of Learn, and plots. Those of Budget are those of `warpbeam study`, and those of Limits are
-//! those of `warpbeam limits`.
+//! panes of Compare, the cards of Learn, and plots. Those of Measure are those of
+//! `warpbeam study` and `warpbeam limits`.
 
 use serde_json::Value;
 
@@ -276,7 +276,7 @@ fn cards_have_the_numbers_of_solve() {
     assert!(errors >= 6 && rhos == 2, "{errors} errors, {rhos} numbers ρ");
 }
 
-/// The list of Budget has the errors of `study`. The error of the scene's own setting is that of `solve`.
+/// The list of settings has the errors of `study`. The error of the scene's own setting is that of `solve`.
 #[test]
 fn settings_have_the_errors_of_study() {
     let folder = tempfile::tempdir().unwrap();

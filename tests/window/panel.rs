@@ -412,7 +412,7 @@ fn a_narrow_window_has_a_sheet_and_everything_is_within_it() {
             ui.click("Panel");
             assert!(ui.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
         }
-        ui.contains("Run Step Reset Explore Learn Compare Budget Help Theme Panel Limits Sections explain".split(' '));
+        ui.contains("Run Step Reset Explore Learn Compare Measure Help Theme Panel Sections explain".split(' '));
         controls_are_inside(&ui);
         if narrow {
             ui.key(Key::P);
@@ -571,7 +571,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     ui.key(Key::B);
     ui.expect(&["Not measured yet"]);
     assert!(ui.get_by_label("Apply the fastest").accesskit_node().is_disabled());
-    ui.click_for("Measure", 2);
+    ui.click_for("Measure on this machine", 2);
     assert!(ui.state().study().1, "no study runs");
     wait(&mut ui, "a first mesh", |lab| !measurements(lab).is_empty());
     let (before, at) = (ui.force(), ui.slider("Force"));
@@ -595,7 +595,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
     let is_offered_in_compare = |ui: &mut Ui| {
         ui.key_press(Key::K);
         ui.run_steps(2);
-        let is_disabled = ui.get_by_label("current | budget").accesskit_node().is_disabled();
+        let is_disabled = ui.get_by_label("current | fastest").accesskit_node().is_disabled();
         ui.key_press(Key::B);
         ui.run_steps(2);
         !is_disabled
@@ -784,7 +784,7 @@ fn an_unstable_integrator_leaves_the_comparison() {
     assert!(!matches!(ui.simulation().status(), Status::Stopped(_)));
 }
 
-/// Budget measures the time of a displayed frame against the error of the path. A click applies a setting.
+/// The study measures the time of a displayed frame against the error of the path. A click applies a setting.
 #[test]
 fn a_motions_settings_are_measured_and_applied() {
     // The motion is shortened for the test.
@@ -792,7 +792,7 @@ fn a_motions_settings_are_measured_and_applied() {
     ui.key_press(Key::Space);
     ui.key_press(Key::B);
     ui.run_steps(4);
-    ui.click_for("Measure", 2);
+    ui.click_for("Measure on this machine", 2);
     wait(&mut ui, "the study of the motion", |lab| !lab.study().1);
     let study = ui.state().study().0.unwrap().clone();
     assert!(!study.is_partial && study.measurements.len() > 20);
@@ -806,7 +806,7 @@ fn a_motions_settings_are_measured_and_applied() {
     ui.click_for("Apply the fastest", 1);
     assert_eq!((Setting::of(ui.scene()), ui.scene().analysis), (best, Analysis::Dynamic));
     // A cancelled study keeps the measurements that it has, or none.
-    ui.click_for("Measure", 2);
+    ui.click_for("Measure on this machine", 2);
     ui.click_for("Cancel", 1);
     wait(&mut ui, "the end of a cancelled study", |lab| !lab.study().1);
     assert!(ui.state().study().0.is_none_or(|study| study.is_partial));

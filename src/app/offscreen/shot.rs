@@ -32,7 +32,7 @@ pub struct ShotOptions {
     pub field: Field,
     /// Factor of the drawn displacement.
     pub magnification: Magnification,
-    /// `true` if the load curve is shown, in the mode Limits.
+    /// `true` if the load curve is shown, in the mode Measure.
     pub curve: bool,
     /// `true` if the plots of the sections are shown.
     pub sections: bool,

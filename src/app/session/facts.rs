@@ -15,8 +15,8 @@ use crate::sentence::sentence;
 use crate::simulation::Simulation;
 use crate::study::limits::MethodLimits;
 use crate::study::{
-    Effort, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, SolveFromRest, StudyError, time_from_rest,
-    time_of_motion,
+    Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, SolveFromRest, Study, StudyError,
+    time_from_rest, time_of_motion,
 };
 
 /// Load–displacement curve of a scene.
@@ -40,6 +40,8 @@ facts! {
         in parts |scene, observe, partial| {
             found(MethodLimits::with_partial(scene, observe, &|limits| partial(limits.clone())))
         };
+    /// Errors and times of elements, meshes and methods; of a motion those on coarse meshes, as finer ones take minutes.
+    StudyFact by without_settings = "study": Study, |scene, observe| study(scene, observe, &|_| ()), in parts study;
     /// Spectral radius ρ of the warped iteration at the equilibrium.
     RhoFact by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
     /// Time and result of a solve from rest.
@@ -180,6 +182,11 @@ pub(crate) fn with_default_methods(mut scene: Scene) -> Scene {
 
 fn find_reference(scene: &Scene, observe: Observer<'_>) -> Computed<Reference> {
     found(Reference::find(scene, None, Effort::Bounded, observe))
+}
+
+fn study(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(Study) + Sync)) -> Computed<Study> {
+    let extent = if scene.analysis == Analysis::Dynamic { Extent::Quick } else { Extent::Full };
+    found(Study::with_partial(scene, extent, observe, &mut |study| partial(study.clone())))
 }
 
 fn found<V>(found: Result<V, StudyError>) -> Computed<V> {

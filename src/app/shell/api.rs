@@ -11,7 +11,7 @@ use crate::app::language::{self, Language, tr};
 use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
 use crate::app::modes::learn::{self};
 use crate::app::shell::settings::Settings;
-use crate::app::view_options::{Drawer, Magnification, Mode, ViewOptions};
+use crate::app::view_options::{Drawer, Magnification, MeasureTab, Mode, ViewOptions};
 use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::mesh::MaterialPoint;
@@ -39,9 +39,9 @@ impl Lab {
         self.desk.view.magnification = magnification;
     }
 
-    /// Shows the load curve in the mode Limits.
+    /// Shows the load curve in the mode Measure.
     pub fn show_curve(&mut self) {
-        (self.desk.view.mode, self.desk.view.curve) = (Mode::Limits, true);
+        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::LoadCurve);
     }
 
     /// Shows the plots of the sections under the body.
@@ -72,17 +72,15 @@ impl Lab {
         self.lesson.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
     }
 
-    /// Shows a speed–accuracy study in the mode Budget.
+    /// Shows a speed–accuracy study in the mode Measure.
     pub fn show_study(&mut self, study: Study) {
-        if self.lesson.is_none() {
-            self.desk.view.mode = Mode::Budget;
-        }
-        self.desk.budget.set(self.desk.session.scene(), study);
+        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::HowFast);
+        self.desk.measure.budget.set(self.desk.session.scene(), study);
     }
 
     /// Shows the limits of every method and element, or of every integrator.
     pub fn show_limits(&mut self) {
-        self.desk.view.mode = Mode::Limits;
+        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::HowFar);
     }
 
     /// Shows two to four panes side by side under the same load, one per setting. Does nothing for a motion.
@@ -109,7 +107,7 @@ impl Lab {
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
-        (self.desk.budget.study(), self.desk.budget.runs())
+        (self.desk.measure.budget.study(), self.desk.measure.budget.runs())
     }
 
     /// Sets the time of iterations after which a displayed frame makes no more.
@@ -273,19 +271,19 @@ impl Lab {
     /// Returns `true` while a displayed result of the scene is being computed in the background.
     #[must_use]
     pub fn is_computing(&self) -> bool {
-        let Desk { session, view, limits, .. } = &self.desk;
+        let Desk { session, view, measure, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
         let plots = view.drawer == Some(Drawer::Section) && self.desk.sections.is_pending();
-        let limits = match view.mode {
-            Mode::Limits if view.shows_curve(scene) => facts.curve.is_pending(scene),
-            Mode::Limits => limits.base().is_none_or(|base| facts.limits.is_pending(base)),
-            _ => false,
+        let measures = match view.measured(scene) {
+            Some(MeasureTab::LoadCurve) => facts.curve.is_pending(scene),
+            Some(MeasureTab::HowFar) => measure.limits.base().is_none_or(|base| facts.limits.is_pending(base)),
+            Some(MeasureTab::HowFast) | None => false,
         };
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
-        session.is_working() || session.is_certifying() || plots || limits || learns || at_rest
+        session.is_working() || session.is_certifying() || plots || measures || learns || at_rest
     }
 
     /// Restores the saved settings.

@@ -5,20 +5,18 @@ use crate::app::language::{fill, said};
 use crate::app::modes::compare::{Compare, MotionCompare};
 use crate::app::modes::figure;
 use crate::app::modes::learn;
-use crate::app::modes::limits::LimitMap;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
-use crate::app::view_options::{Magnification, Mode, Toggle};
+use crate::app::view_options::{Magnification, MeasureTab, Mode, Toggle};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
 use crate::scene::{Load, LoadId, Source};
-use crate::study::Extent;
 
 impl Lab {
     /// Updates the window after changes of the session.
     pub(super) fn apply_session_changes(&mut self) {
-        let Desk { session, viewport, view, panel, budget, compare, motions, limits, .. } = &mut self.desk;
+        let Desk { session, viewport, view, panel, compare, motions, measure, .. } = &mut self.desk;
         let changed = session.take_changed();
         if changed == Changed::default() {
             return;
@@ -36,10 +34,9 @@ impl Lab {
         }
         if changed.document {
             panel.clear();
-            budget.open(session.scene());
+            measure.open(session.scene());
             *compare = Compare::default();
             *motions = MotionCompare::default();
-            *limits = LimitMap::default();
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;
@@ -150,8 +147,7 @@ impl Lab {
             }
             // The drawer of the other kind of scene does not exist here.
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
-            // A motion has no load curve.
-            Action::Toggle(Toggle::Curve) if self.desk.session.is_motion() => {}
+            Action::Toggle(Toggle::Tab(tab)) if !MeasureTab::of(self.scene()).contains(&tab) => {}
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();
@@ -187,16 +183,13 @@ impl Lab {
             Action::Copy => self.copy(ctx),
             Action::CopyLink => self.copy_link(ctx),
             Action::Measure(true) => {
-                // A full study of a motion takes many minutes.
-                let is_motion = self.desk.session.is_motion();
-                let extent = if is_motion { Extent::Quick } else { Extent::Full };
-                if is_motion {
+                if self.desk.session.is_motion() {
                     // A motion that runs beside would take the time that is measured.
                     self.desk.session.pause();
                 }
-                self.desk.budget.measure(self.desk.session.scene(), extent);
+                self.desk.measure.budget.measure(self.desk.session.scene());
             }
-            Action::Measure(false) => self.desk.budget.cancel(),
+            Action::Measure(false) => self.desk.measure.budget.cancel(),
         }
     }
 

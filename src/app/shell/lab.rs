@@ -2,11 +2,10 @@
 
 use web_time::Duration;
 
-use crate::app::modes::budget::Budget;
 use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
 use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
-use crate::app::modes::limits::LimitMap;
+use crate::app::modes::measure::Measure;
 use crate::app::panel::PanelState;
 use crate::app::readout::Readout;
 use crate::app::session::document::{Document, built_in};
@@ -16,7 +15,7 @@ use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
 use crate::app::shell::settings::Settings;
-use crate::app::view_options::{Drawer, Mode, ViewOptions};
+use crate::app::view_options::{Drawer, MeasureTab, Mode, ViewOptions};
 use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::scene::{Scene, Source, registry};
@@ -40,10 +39,9 @@ pub(super) struct Desk {
     pub viewport: BodyView,
     pub view: ViewOptions,
     pub panel: PanelState,
-    pub budget: Budget,
     pub compare: Compare,
     pub motions: MotionCompare,
-    pub limits: LimitMap,
+    pub measure: Measure,
     pub sections: SectionPlot,
 }
 
@@ -54,26 +52,25 @@ impl Desk {
             session,
             view: ViewOptions::default(),
             panel: PanelState::default(),
-            budget: Budget::default(),
             compare: Compare::default(),
             motions: MotionCompare::default(),
-            limits: LimitMap::default(),
+            measure: Measure::default(),
             sections: SectionPlot::default(),
         }
     }
 
-    /// Turns Limits to the scene while it is shown, and returns the results that only some views show; `learns_rho` is
+    /// Turns the limits to the scene while they are shown, and returns the results that only some views show; `learns_rho` is
     /// `true` if a card of Learn shows ρ.
     pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
-        let Self { session, view, limits, .. } = self;
-        let shows_curve = view.shows_curve(session.scene());
-        let shows_limits = view.mode == Mode::Limits;
+        let Self { session, view, measure: Measure { limits, .. }, .. } = self;
+        let tab = view.measured(session.scene());
+        let shows_limits = tab == Some(MeasureTab::HowFar);
         if shows_limits {
             limits.turn_to(session.scene());
         }
-        let limits_of = limits.base().filter(|_| shows_limits && !shows_curve);
+        let limits_of = limits.base().filter(|_| shows_limits);
         session.turn_limits_to(limits_of);
-        (session, ShownFacts { curve: shows_curve, rho: learns_rho, limits_of })
+        (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
     }
 
     /// Returns the common input of the panes of Compare.
@@ -330,7 +327,7 @@ impl Lab {
             equilibrium_rho: facts.rho.get(session.scene()).copied(),
             is_computing_rho: facts.rho.is_pending(session.scene()),
             quality: session.quality(),
-            reference_progress: facts.reference.progress(),
+            reference_progress: facts.reference.progress().map(|(done, _)| done),
             value_range: viewport.body().value_range(),
             is_fallback: session.fallback().is_some(),
             scene: session.scene(),

@@ -32,8 +32,8 @@ const STATUS_BAR_HEIGHT: f32 = 42.0;
 
 /// Height of the plots under the body, points, and its largest fraction of the window's height.
 const DRAWER_HEIGHT: f32 = 270.0;
-/// Height of Limits, whose strips have a curve above them, points.
-const LIMITS_HEIGHT: f32 = 350.0;
+/// Height of Measure, points.
+const MEASURE_HEIGHT: f32 = 350.0;
 const DRAWER_SHARE: f32 = 0.45;
 
 /// Height of the line with the status under the body, points.
@@ -51,7 +51,7 @@ impl Lab {
         self.desk.panel.fade_messages(ui.ctx());
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
-        self.desk.budget.poll(ui.ctx());
+        self.desk.measure.budget.poll(ui.ctx());
         self.show_notices(ui.ctx());
         self.desk.view.narrow = ui.ctx().content_rect().width() < NARROW;
         // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
@@ -67,17 +67,11 @@ impl Lab {
             Mode::Explore => self.plots(ui, &mut actions),
             Mode::Learn => self.card_row(ui, &mut actions),
             Mode::Compare => self.comparison_bars(ui),
-            Mode::Budget => {
-                let Desk { session, budget, .. } = &mut self.desk;
-                drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| budget.show(ui, session.scene(), &mut actions));
-            }
-            Mode::Limits => {
-                let mut limits = std::mem::take(&mut self.desk.limits);
-                let shown = self.readout().shown;
-                let mut view = self.desk.view.clone();
-                let session = &self.desk.session;
-                drawer_panel(ui, LIMITS_HEIGHT).show(ui, |ui| limits.show(ui, session, shown, &mut view, &mut actions));
-                (self.desk.limits, self.desk.view) = (limits, view);
+            Mode::Measure => {
+                let mut measure = std::mem::take(&mut self.desk.measure);
+                let (Desk { session, view, .. }, shown) = (&self.desk, self.readout().shown);
+                drawer_panel(ui, MEASURE_HEIGHT).show(ui, |ui| measure.show(ui, session, shown, view, &mut actions));
+                self.desk.measure = measure;
             }
         }
         for action in actions {
@@ -239,7 +233,7 @@ impl Lab {
 
     /// Returns the comparison of equilibria, and its input.
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
-        let Desk { session, viewport, view, panel, budget, compare, .. } = &mut self.desk;
+        let Desk { session, viewport, view, panel, measure, compare, .. } = &mut self.desk;
         let input = CompareInput {
             common: Desk::pane_input(session, view, panel, viewport.eases()),
             reference: session.facts().reference.get(session.scene()).or(session.live().map(|live| &live.reference)),
@@ -248,7 +242,7 @@ impl Lab {
             from_rest: session.timed_from_rest(),
             running: session.is_running(),
             is_slow: session.is_slow(),
-            chosen: budget.chosen(session.scene()),
+            chosen: measure.budget.chosen(session.scene()),
         };
         (compare, input)
     }
@@ -386,7 +380,7 @@ impl Lab {
 
     /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
     fn remedy(&self, input: &Readout<'_>, errors: &Errors) -> Option<diagnosis::Remedy> {
-        let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Limits) && self.story.is_none();
+        let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Measure) && self.story.is_none();
         diagnosis::remedy(input, errors).filter(|_| offers)
     }
 

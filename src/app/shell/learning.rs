@@ -37,10 +37,10 @@ impl Lab {
     }
 
     fn leave(&mut self, lesson: Lesson) {
-        let (mode, drawer) = (self.desk.view.mode, self.desk.view.drawer);
+        let ViewOptions { mode, tab, drawer, .. } = self.desk.view;
         self.desk = lesson.aside;
         let view = &mut self.desk.view;
-        view.mode = mode;
+        (view.mode, view.tab) = (mode, tab);
         // A drawer opened from a card stays open.
         view.drawer = drawer.filter(|drawer| drawer.suits(self.desk.session.scene())).or(view.drawer);
     }

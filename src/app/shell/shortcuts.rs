@@ -3,7 +3,7 @@
 use egui::{Context, Event, Key, Modifiers};
 
 use crate::app::action::Action;
-use crate::app::view_options::{Drawer, Mode, Toggle};
+use crate::app::view_options::{Drawer, MeasureTab, Mode, Toggle};
 
 /// Key with its modifiers, description and action.
 pub(crate) struct Shortcut {
@@ -32,13 +32,6 @@ impl Shortcut {
     }
 }
 
-/// Returns every shortcut: its keys, its description, and `true` if it exists on a desktop and on a web page.
-#[must_use]
-pub fn every_shortcut() -> Vec<(String, &'static str, [bool; 2])> {
-    let places = |shortcut: &Shortcut| [false, true].map(|page| (shortcut.act)().exists_on(page));
-    SHORTCUTS.iter().map(|shortcut| (shortcut.text(), shortcut.does, places(shortcut))).collect()
-}
-
 /// Returns the shortcuts that exist here, in the order of the help.
 pub(crate) fn shortcuts() -> impl Iterator<Item = &'static Shortcut> {
     SHORTCUTS.iter().filter(|shortcut| (shortcut.act)().is_available())
@@ -56,15 +49,17 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::O, "Outline of the body at rest on or off", || Action::Toggle(Toggle::RestOutline)),
     key(Key::G, "Outline of the linear solution on or off", || Action::Toggle(Toggle::Ghost)),
     key(Key::X, "Outline of the reference solution on or off", || Action::Toggle(Toggle::Exact)),
-    key(Key::L, "Load curve on or off", || Action::Toggle(Toggle::Curve)),
+    key(Key::L, "Measure, load curve, on or off", || Action::Toggle(Toggle::Tab(MeasureTab::LoadCurve))),
     key(Key::Q, "Stress along the sections, and N, V and M along the beam, on or off", || {
         Action::Toggle(Toggle::Drawer(Drawer::Section))
     }),
     key(Key::E, "Energy and tip of a motion on or off", || Action::Toggle(Toggle::Drawer(Drawer::Motion))),
     key(Key::Y, "Trail of the tip on or off", || Action::Toggle(Toggle::Trail)),
-    key(Key::B, "Budget: error against time, on or off", || Action::Toggle(Toggle::Mode(Mode::Budget))),
-    key(Key::M, "Limits: up to which load each method and element holds, on or off", || {
-        Action::Toggle(Toggle::Mode(Mode::Limits))
+    key(Key::B, "Measure, how fast: error against time, on or off", || {
+        Action::Toggle(Toggle::Tab(MeasureTab::HowFast))
+    }),
+    key(Key::M, "Measure, how far: up to which load each method and element holds, on or off", || {
+        Action::Toggle(Toggle::Tab(MeasureTab::HowFar))
     }),
     key(Key::K, "Compare: methods, elements and meshes side by side, on or off", || {
         Action::Toggle(Toggle::Mode(Mode::Compare))

@@ -42,8 +42,8 @@ pub(crate) trait Fact: Debug + 'static {
 /// Progress report of a computation.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum FactProgress<V> {
-    /// Fraction done.
-    Fraction(f64),
+    /// Fraction done, and what is computed now, if it is something else than before.
+    Now(f64, Option<Sentence>),
     /// Value so far.
     SoFar(V),
 }
@@ -104,7 +104,8 @@ impl<F: Fact> Work for FactWork<F> {
     type Output = Computed<F::Value>;
 
     fn run(self, reporter: &Reporter<Self::Reported, Self::Output>) -> Self::Output {
-        let observe = |progress: Progress<'_>| reporter.report(FactProgress::Fraction(progress.fraction));
+        let observe =
+            |progress: Progress<'_>| reporter.report(FactProgress::Now(progress.fraction, progress.now.cloned()));
         // A cancellation is seen by the next report of progress.
         F::compute_in_parts(&self.0.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
     }
@@ -131,14 +132,14 @@ pub(crate) struct Keyed<F: Fact> {
     /// Running computation, and `true` if it is for the scene that was asked for. Only one runs at a time, so that edits
     /// do not pile up.
     running: Option<(FactTask<F>, bool)>,
-    /// Fraction of the running computation that is done, and the value so far.
-    done: f64,
+    /// Fraction of the running computation that is done, what is computed now, and the value so far.
+    done: (f64, Sentence),
     so_far: Option<F::Value>,
 }
 
 impl<F: Fact> Default for Keyed<F> {
     fn default() -> Self {
-        Self { asked: None, computed: None, previous: None, running: None, done: 0.0, so_far: None }
+        Self { asked: None, computed: None, previous: None, running: None, done: Default::default(), so_far: None }
     }
 }
 
@@ -160,7 +161,7 @@ impl<F: Fact> Keyed<F> {
     }
 
     /// Returns `true` if the scene has the key of the one that was last asked for.
-    fn is_of(&self, scene: &Scene) -> bool {
+    pub(crate) fn is_of(&self, scene: &Scene) -> bool {
         self.asked.as_ref().is_some_and(|asked| asked.scene == *scene || asked.key == Self::key(scene))
     }
 
@@ -170,9 +171,22 @@ impl<F: Fact> Keyed<F> {
         self.cancel();
     }
 
+    /// Stops the computation; the part of the value that has been computed is the value.
+    pub(crate) fn stop(&mut self) {
+        self.computed = Some(Ok(self.so_far.take()));
+        self.cancel();
+    }
+
+    /// Turns to a scene whose value was computed elsewhere.
+    pub(crate) fn set(&mut self, scene: &Scene, value: F::Value) {
+        self.clear();
+        self.turn_to(scene);
+        self.computed = Some(Ok(Some(value)));
+    }
+
     /// Cancels the running computation.
     fn cancel(&mut self) {
-        (self.done, self.so_far) = (0.0, None);
+        (self.done, self.so_far) = Default::default();
         if let Some((task, is_current)) = &mut self.running {
             *is_current = false;
             task.cancel();
@@ -189,7 +203,9 @@ impl<F: Fact> Keyed<F> {
             let computed = loop {
                 match task.poll() {
                     Update::Progress(_) if !*is_current => {}
-                    Update::Progress(FactProgress::Fraction(done)) => self.done = done,
+                    Update::Progress(FactProgress::Now(done, now)) => {
+                        self.done = (done, now.unwrap_or(std::mem::take(&mut self.done.1)));
+                    }
                     Update::Progress(FactProgress::SoFar(value)) => self.so_far = Some(value),
                     Update::None => return true,
                     Update::Done(computed) => break computed,
@@ -202,7 +218,7 @@ impl<F: Fact> Keyed<F> {
             self.running = None;
         }
         if self.computed.is_none() {
-            self.done = 0.0;
+            self.done = Default::default();
             match Task::run(FactWork::<F>(SentScene(scene.clone()), PhantomData)) {
                 Ok(task) => self.running = Some((task, true)),
                 Err(error) => self.computed = Some(Err(error.to_string().into())),
@@ -211,9 +227,9 @@ impl<F: Fact> Keyed<F> {
         true
     }
 
-    /// Returns the fraction done while the value is being computed.
-    pub(crate) fn progress(&self) -> Option<f64> {
-        self.running.as_ref().map(|_| self.done)
+    /// Returns the fraction done, and what is computed now, while the value is being computed.
+    pub(crate) fn progress(&self) -> Option<(f64, &Sentence)> {
+        self.running.as_ref().map(|_| (self.done.0, &self.done.1))
     }
 
     /// Computes the value of a scene, and waits for it.
@@ -236,7 +252,13 @@ impl<F: Fact> Keyed<F> {
 
     /// Returns the value of a scene, or the part of it that has been computed.
     pub(crate) fn so_far(&self, scene: &Scene) -> Option<&F::Value> {
-        self.get(scene).or(self.so_far.as_ref().filter(|_| self.is_of(scene)))
+        self.known().filter(|_| self.is_of(scene)).map(|(_, value)| value)
+    }
+
+    /// Returns the scene that was last asked for, with its value or the part of it that has been computed.
+    pub(crate) fn known(&self) -> Option<(&Scene, &F::Value)> {
+        let computed = self.computed.as_ref().and_then(|computed| computed.as_ref().ok()?.as_ref());
+        Some((&self.asked.as_ref()?.scene, computed.or(self.so_far.as_ref())?))
     }
 
     /// Returns the reason why the value of a scene could not be computed.
@@ -260,6 +282,7 @@ impl<F: Fact> Keyed<F> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
     use std::thread;
 
     use super::*;
@@ -275,7 +298,18 @@ mod tests {
             Some(beam) if beam.length > 50.0 => std::panic::panic_any("meant"),
             beam => Ok(beam.as_ref().map(|beam| beam.length)),
         };
+        /// The value of a beam of 2 m has a second part when its computation is cancelled.
+        Parts = "parts": f64, |_, _| Ok(Some(2.0)), in parts |scene, observe, partial| {
+            RUNNING.fetch_add(1, Ordering::Relaxed);
+            partial(1.0);
+            while scene.beam.as_ref().is_some_and(|beam| beam.length == 2.0) && observe(Progress::at(0.5)).is_continue() {
+                thread::yield_now();
+            }
+            RUNNING.fetch_sub(1, Ordering::Relaxed);
+            Ok(Some(2.0))
+        };
     }
+    static RUNNING: AtomicU32 = AtomicU32::new(0);
 
     #[test]
     fn the_previous_value_stays_until_the_next_is_known() {
@@ -304,6 +338,23 @@ mod tests {
         let other = other.section([1.0, 0.0], 0.0);
         assert_eq!(length.get(&other), Some(&2.0));
         assert!(!length.request(&other));
+    }
+
+    /// A stopped computation is awaited before the next one starts: two at a time would slow each other down.
+    #[test]
+    fn a_stopped_computation_keeps_its_part() {
+        let scene = Scene::beam(2.0, 1.0);
+        let mut parts = Keyed::<Parts>::default();
+        while parts.so_far(&scene).is_none() {
+            assert!(parts.request(&scene));
+        }
+        parts.stop();
+        assert!(!parts.request(&scene) && parts.get(&scene) == Some(&1.0));
+        let other = Scene::beam(3.0, 1.0);
+        while parts.request(&other) {
+            assert!(RUNNING.load(Ordering::Relaxed) < 2);
+        }
+        assert_eq!(parts.get(&other), Some(&2.0));
     }
 
     #[test]

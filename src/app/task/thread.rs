@@ -134,11 +134,6 @@ impl<P, T> Task<P, T> {
         self.is_cancelled.store(true, Ordering::Relaxed);
         self.worker.iter().for_each(platform::work::end);
     }
-
-    /// Returns `true` if the task has been cancelled.
-    pub(crate) fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
-    }
 }
 
 /// Does work in a worker, and sends its reports and its result to the page.

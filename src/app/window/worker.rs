@@ -1,10 +1,9 @@
 //! Work that a worker of the web page can do.
 
-use crate::app::modes::budget::study_task::StudyWork;
 use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
 use crate::app::session::facts::{
-    CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, TimeFact,
+    CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
 };
 use crate::app::task::keyed::FactWork;
 use crate::app::task::thread::{Work, serve};
@@ -26,7 +25,7 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<FactWork<FrequencyFact>>(),
     entry::<FactWork<RhoFact>>(),
     entry::<FactWork<ElementErrors>>(),
-    entry::<StudyWork>(),
+    entry::<FactWork<StudyFact>>(),
 ];
 
 /// Waits for requests of the page.

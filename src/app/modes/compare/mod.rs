@@ -56,7 +56,7 @@ pub(crate) struct CompareInput<'a> {
     pub running: bool,
     /// `true` if a frame makes one iteration.
     pub is_slow: bool,
-    /// Setting that Budget has chosen.
+    /// Fastest measured setting within the limits.
     pub chosen: Option<Setting>,
 }
 
@@ -211,11 +211,11 @@ impl Compare {
                 unless: "The mesh of this file can have one element only",
             },
             Preset {
-                name: tr("current | budget").to_owned(),
+                name: tr("current | fastest").to_owned(),
                 settings: chosen.to_vec(),
                 enabled: input.chosen.is_some(),
-                tip: "The current setting next to the fastest that meets the limits of Budget",
-                unless: "Measure this load in Budget first: its fastest setting is compared with the current one",
+                tip: "The current setting next to the fastest that meets both limits of How fast, in Measure",
+                unless: "Measure how fast the settings are first: the fastest is compared with the current one",
             },
         ];
         ui.horizontal_wrapped(|ui| {

@@ -358,7 +358,7 @@ fn result(ui: &mut Ui, name: &str, pane: &MotionPane, first: Option<&MotionPane>
     let spoken = format!("{name}: {text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(tr(
-        "Computing time of a frame at 60 Hz, measured as in Budget; energy that the integrator has added; distance of the \
+        "Computing time of a frame at 60 Hz, as in Measure; energy that the integrator has added; distance of the \
          first probe from the first pane's at the same time",
     ));
 }

@@ -2,7 +2,7 @@
 
 use egui::{Painter, Ui};
 
-use super::{CardView, Learn, Needs, area, code, exploded, frames, locking, matrices, residuals, to_budget};
+use super::{CardView, Learn, Needs, area, code, exploded, frames, locking, matrices, residuals, to_measure};
 use crate::app::action::Action;
 use crate::app::readout::Readout;
 use crate::scene::{Load, MethodKind, Scene};
@@ -252,11 +252,11 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "The trade-off",
         text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on \
-                your machine. Budget measures all of them for your own scene. It shows their Pareto front: the \
+                your machine. Measure has the errors and times of all of them for your own scene. It shows their Pareto front: the \
                 settings that no other one beats in both time and error.",
         formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
-        task: "Open Budget, and press \u{201c}Measure\u{201d}.",
+        task: "Open Measure, and press \u{201c}Measure on this machine\u{201d}.",
         setup: Setup {
             edit: |scene| with(scene, MethodKind::Newton, NEAR),
             field: Field::VonMises,
@@ -266,7 +266,7 @@ pub(crate) const CARDS: &[Card] = &[
             reach: None,
         },
         needs: Needs::Nothing,
-        show: to_budget,
+        show: to_measure,
         paint: nothing,
         apart: false,
         lines: false,

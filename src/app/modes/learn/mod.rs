@@ -10,7 +10,7 @@ use crate::app::readout::Readout;
 use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
-use crate::app::view_options::{Mode, Toggle};
+use crate::app::view_options::{MeasureTab, Mode, Toggle};
 use crate::app::widgets::buttons::at_right;
 use crate::app::widgets::number_field::Messages;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
@@ -338,10 +338,10 @@ fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static 
     }
 }
 
-/// Shows the button that leads to Budget.
-fn to_budget(ui: &mut Ui, _: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
-    if ui.button(tr("Open Budget")).on_hover_text(tr("Leave the cards, and measure your own scene (B)")).clicked() {
-        actions.push(Action::Toggle(Toggle::Mode(Mode::Budget)));
+/// Shows the button that leads to Measure.
+fn to_measure(ui: &mut Ui, _: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+    if ui.button(tr("Open Measure")).on_hover_text(tr("Leave the cards, and measure your own scene (B)")).clicked() {
+        actions.push(Action::Toggle(Toggle::Tab(MeasureTab::HowFast)));
     }
 }
 

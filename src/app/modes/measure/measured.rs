@@ -1,4 +1,4 @@
-//! Measurements of a study as the mode Budget shows them: the time of a motion is that of a frame.
+//! Measurements of a study as the mode Measure shows them: the time of a motion is that of a frame.
 
 use crate::app::diagnosis::drift_text;
 use crate::app::language::{count, fill, percent, tr};

@@ -1,20 +1,17 @@
-//! Mode Limits: up to which load each method and element holds, with the load of the scene on the same axis; in motion up
-//! to which time step each integrator does.
-
-pub(crate) mod load_curve;
+//! Loads up to which each method and element holds, with the load of the scene on the same axis; of a motion, time steps
+//! up to which each integrator does.
 
 use egui::{
-    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, RichText, Role, ScrollArea, Sense, Stroke, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, Role, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
 };
 use nalgebra::Vector2;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
+use crate::app::modes::measure::first_probe;
 use crate::app::session::Session;
 use crate::app::session::facts::with_default_methods;
-use crate::app::view_options::ViewOptions;
-use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{number, prefix, six_digits, three_digits};
@@ -44,7 +41,7 @@ const ROW: [f32; 2] = [13.0, 19.0];
 /// Largest height of a strip of a motion, which has no curve.
 const HIGH_ROW: f32 = 40.0;
 
-/// State of Limits: the scene whose limits are shown.
+/// The scene whose limits are shown.
 #[derive(Debug)]
 pub(crate) struct LimitMap {
     /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
@@ -74,31 +71,12 @@ impl LimitMap {
     }
 
     /// Shows the limits of the lab's scene.
-    pub(crate) fn show(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        shown: &Simulation,
-        view: &mut ViewOptions,
-        actions: &mut Vec<Action>,
-    ) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
         let scene = session.scene();
-        let shows_curve = view.shows_curve(scene);
         let facts = &session.facts().limits;
         let Some(base) = self.base.clone() else { return };
         let limits = facts.so_far(&base);
-        let progress = facts.progress().map(|done| done as f32);
-        let moves = scene.analysis == Analysis::Dynamic;
-        ui.horizontal_wrapped(|ui| {
-            ui.add_space(8.0);
-            Self::views(ui, scene, view);
-            if limits.is_some() && !shows_curve {
-                key(ui, moves);
-            }
-        });
-        if shows_curve {
-            return load_curve::show(ui, session, first_probe(shown), view.curve_plot, actions);
-        }
+        let progress = facts.progress().map(|(done, _)| done as f32);
         if let Some(reason) = facts.failure(&base) {
             ui.centered_and_justified(|ui| ui.weak(said(reason)));
             return;
@@ -166,14 +144,10 @@ impl LimitMap {
         }
     }
 
-    /// Shows the choice between the strips and the load curve.
-    fn views(ui: &mut Ui, scene: &Scene, view: &mut ViewOptions) {
-        let shows_curve = view.shows_curve(scene);
-        for (curve, name) in [(false, "Strips"), (true, "Load curve")] {
-            let text = RichText::new(tr(name)).size(SMALL);
-            if scene.analysis == Analysis::Static && ui.add(option_button(shows_curve == curve, text)).clicked() {
-                view.curve = curve;
-            }
+    /// Shows the key of the colours once limits are known.
+    pub(crate) fn key(&self, ui: &mut Ui, session: &Session) {
+        if self.base.as_ref().is_some_and(|base| session.facts().limits.so_far(base).is_some()) {
+            key(ui, session.is_motion());
         }
     }
 }
@@ -248,12 +222,6 @@ fn with_part(base: &Scene, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene
 /// Returns the bar of the fraction of the limits that is known.
 fn progress_bar(done: f32) -> ProgressBar {
     ProgressBar::new(done).show_percentage()
-}
-
-/// Returns the displacement of the first probe, m, at an equilibrium.
-fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
-    let probe = shown.problem().probes().first().filter(|_| shown.status().is_success())?;
-    Some(probe.mean(shown.displacement()))
 }
 
 /// Shows the key of the colours; a line breaks between entries.

@@ -1,9 +1,7 @@
-//! Mode Budget: error against time of all settings measured on this machine, and the settings within given limits.
+//! Error against time of all settings measured on this machine, and the settings within given limits.
 
-pub(crate) mod measured;
-pub(crate) mod study_task;
-
-use crate::app::session::facts::without_settings;
+use crate::app::session::facts::StudyFact;
+use crate::app::task::keyed::Keyed;
 use crate::app::widgets::plot::{X_AXIS, marker, segments};
 use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui, vec2};
 use egui_plot::{
@@ -13,8 +11,7 @@ use egui_plot::{
 
 use crate::app::action::Action;
 use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
-use crate::app::modes::budget::measured::{choices, fastest, frame_ms, meeting, nearest, parts};
-use crate::app::modes::budget::study_task::{BackgroundStudy, StudyState};
+use crate::app::modes::measure::measured::{choices, fastest, frame_ms, meeting, nearest, parts};
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
 use crate::app::widgets::palette::Palette;
@@ -25,20 +22,16 @@ use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::Sentence;
-use crate::study::{Demand, Extent, Measurement, Setting, Study, StudyReference};
+use crate::study::{Demand, Measurement, Setting, Study, StudyReference};
 
-/// State of Budget: the study of the scene, and the largest error and time that a setting may have.
+/// The study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
-    background: Option<BackgroundStudy>,
-    /// Study that starts once the one in progress has ended: two at a time would slow each other down.
-    next: Option<(Scene, Extent)>,
-    study: Option<Study>,
-    /// Measured scene.
-    of: Option<Scene>,
-    /// Budget of a scene that was open before, with its study.
-    kept: Option<Box<Budget>>,
-    error: Option<Sentence>,
+    study: Keyed<StudyFact>,
+    /// Scene that is being measured.
+    measured: Option<Scene>,
+    /// `true` if the study is that of a scene which was open before.
+    is_hidden: bool,
     limits: Limits,
     messages: Messages,
 }
@@ -64,88 +57,56 @@ impl From<Limits> for Demand {
 }
 
 impl Budget {
-    /// Starts a study of a scene, and drops the previous one; one in progress is cancelled, and awaited. A setting of the
-    /// previous study that was applied is measured among the same settings again: those of a motion are chosen around the
-    /// mesh and the time step of the scene.
-    pub(crate) fn measure(&mut self, scene: &Scene, extent: Extent) {
-        if let Some(background) = &self.background {
-            background.cancel();
-            self.next = Some((scene.clone(), extent));
-            return;
-        }
+    /// Starts a study of a scene, and drops the previous one. A setting of the previous study that was applied is measured
+    /// among the same settings again: those of a motion are chosen around the mesh and the time step of the scene.
+    pub(crate) fn measure(&mut self, scene: &Scene) {
         let is_setting = |study: &Study| study.measurements.iter().any(|m| m.is_applied_to(scene));
-        let is_measured = self.is_of(scene) && self.study.as_ref().is_some_and(is_setting);
-        let base = self.of.take().filter(|_| is_measured).unwrap_or_else(|| scene.clone());
-        *self = Self { of: Some(base.clone()), limits: self.limits, ..Self::default() };
-        match BackgroundStudy::start(base, extent) {
-            Ok(background) => self.background = Some(background),
-            Err(error) => self.error = Some(error),
-        }
+        let known = self.study.known().filter(|(_, study)| self.study.is_of(scene) && is_setting(study));
+        self.measured = Some(known.map_or(scene, |(base, _)| base).clone());
+        self.study.clear();
+        self.is_hidden = false;
     }
 
-    /// Shows the last study of another scene than before, if it is of that scene; it is kept until there is another one.
+    /// Turns to another scene; the study is shown again with its own.
     pub(crate) fn open(&mut self, scene: &Scene) {
-        let limits = self.limits;
-        let kept = if self.study.is_some() && !self.runs() {
-            let (study, of) = (self.study.take(), self.of.take());
-            Some(Box::new(Self { study, of, ..Self::default() }))
-        } else {
-            self.kept.take()
-        };
-        *self = match kept {
-            Some(kept) if kept.is_of(scene) => *kept,
-            kept => Self { kept, ..Self::default() },
-        };
-        self.limits = limits;
+        self.cancel();
+        self.is_hidden = !self.study.is_of(scene);
     }
 
-    /// Cancels the study, which then ends soon; measurements made so far are kept.
+    /// Ends the study; measurements made so far are kept.
     pub(crate) fn cancel(&mut self) {
-        if let Some(background) = &self.background {
-            background.cancel();
-            self.next = None;
+        if self.measured.take().is_some() {
+            self.study.stop();
         }
     }
 
     /// Returns `true` while a study is in progress.
     pub(crate) fn runs(&self) -> bool {
-        self.background.is_some()
+        self.measured.is_some()
     }
 
     pub(crate) fn study(&self) -> Option<&Study> {
-        self.study.as_ref()
+        self.study.known().filter(|_| !self.is_hidden).map(|(_, study)| study)
     }
 
     /// Returns the fastest setting that was measured of a scene at rest, meets the limits, and whose iteration converges.
     pub(crate) fn chosen(&self, scene: &Scene) -> Option<Setting> {
-        let study = self.study.as_ref().filter(|_| self.is_of(scene))?;
+        let study = self.study.so_far(scene)?;
         let setting = fastest(study, &meeting(study, self.limits.into()))?.setting;
         setting.stepping.is_none().then_some(setting)
     }
 
-    /// Returns `true` if the study is of a scene, whatever its settings.
-    fn is_of(&self, scene: &Scene) -> bool {
-        self.of.as_ref().is_some_and(|of| without_settings(of) == without_settings(scene))
-    }
-
     /// Sets a study made elsewhere.
     pub(crate) fn set(&mut self, scene: &Scene, study: Study) {
-        *self = Self { of: Some(scene.clone()), study: Some(study), limits: self.limits, ..Self::default() };
+        self.study.set(scene, study);
+        (self.measured, self.is_hidden) = (None, false);
     }
 
     /// Polls the study in progress.
     pub(crate) fn poll(&mut self, ctx: &Context) {
-        let Some(background) = &mut self.background else { return };
-        match background.poll(&mut self.study) {
-            StudyState::Running => ctx.request_repaint_after(POLL),
-            StudyState::Ended(result) => {
-                self.error = result.err();
-                self.background = None;
-                if let Some((scene, extent)) = self.next.take() {
-                    self.measure(&scene, extent);
-                    ctx.request_repaint();
-                }
-            }
+        self.measured.take_if(|scene| !self.study.request(scene));
+        if self.runs() {
+            ctx.request_repaint_after(POLL);
         }
     }
 
@@ -153,7 +114,7 @@ impl Budget {
     pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         let demand = Demand::from(self.limits);
         let moves = scene.analysis == Analysis::Dynamic;
-        let study = self.study.as_ref();
+        let study = self.study.known().filter(|_| !self.is_hidden).map(|(_, study)| study);
         let meeting = study.map(|study| meeting(study, demand)).unwrap_or_default();
         let budget = BudgetView {
             scene,
@@ -163,9 +124,9 @@ impl Budget {
             best: study.and_then(|study| fastest(study, &meeting)),
             nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, demand)).unwrap_or_default(),
             meeting,
-            current: self.is_of(scene),
-            progress: self.background.as_ref().map(BackgroundStudy::progress),
-            error: self.error.as_ref(),
+            current: self.study.is_of(scene),
+            progress: self.study.progress().filter(|_| self.measured.is_some()),
+            error: self.study.failure(scene),
         };
         let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
@@ -201,7 +162,7 @@ struct BudgetView<'a> {
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
     /// Fraction done and current measurement, while a study is in progress.
-    progress: Option<(f32, &'a Sentence)>,
+    progress: Option<(f64, &'a Sentence)>,
     /// Reason for which there is no study.
     error: Option<&'a Sentence>,
 }
@@ -223,7 +184,7 @@ fn settings(
             if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
                 actions.push(Action::Measure(false));
             }
-            ui.add(ProgressBar::new(fraction).desired_width(120.0).show_percentage());
+            ui.add(ProgressBar::new(fraction as f32).desired_width(120.0).show_percentage());
             ui.add(egui::Label::new(RichText::new(said(now)).small()).truncate());
         } else {
             let tip = match budget.scene.analysis {
@@ -235,7 +196,7 @@ fn settings(
                      measures finer ones too"
                 }
             };
-            if ui.button(tr("Measure")).on_hover_text(tr(tip)).clicked() {
+            if ui.button(tr("Measure on this machine")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
             let text = match (budget.error, budget.study) {
@@ -553,41 +514,28 @@ fn own_error_zone(plot: &mut PlotUi<'_>, palette: &Palette, [left, right]: [f64;
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
     use crate::scene::{Source, open};
+    use crate::study::Extent;
 
-    /// A study that is measured again starts once the cancelled one has ended.
+    /// A measured setting that was applied is measured among the same settings again, another one around itself.
     #[test]
-    fn one_study_runs_at_a_time() {
-        let of = |id: &str| open(&Source { name: id.into(), assignments: Vec::new() }).unwrap();
-        let (first, second) = (of("cantilever"), of("article"));
-        let (ctx, mut budget) = (Context::default(), Budget::default());
-        budget.measure(&first, Extent::Full);
-        budget.cancel();
-        assert!(budget.runs(), "a cancelled study is awaited");
-        budget.measure(&second, Extent::Quick);
-        assert_eq!(budget.of.as_ref(), Some(&first));
-        while budget.runs() {
-            assert_eq!(budget.next.is_some(), budget.of.as_ref() == Some(&first));
-            budget.poll(&ctx);
-            std::thread::yield_now();
-        }
-        assert_eq!(budget.of.as_ref(), Some(&second));
-        assert!(budget.error.is_none() && budget.study().is_some_and(|study| !study.is_partial));
-        // A measured setting that was applied is measured among the same settings again, another one around itself.
-        let all = choices(budget.study.as_ref().unwrap());
-        let applied = all.iter().find(|m| !m.is_applied_to(&second)).unwrap().apply(&second);
-        let mut other = second.clone();
+    fn a_setting_is_measured_again() {
+        let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
+        let measured = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(())).unwrap();
+        let all = choices(&measured);
+        let applied = all.iter().find(|m| !m.is_applied_to(&scene)).unwrap().apply(&scene);
+        let mut other = scene.clone();
         other.beam.as_mut().unwrap().cells = [17, 3];
-        for (scene, base) in [(&other, &other), (&applied, &second)] {
-            let mut again = Budget::default();
-            (again.of, again.study) = (Some(second.clone()), budget.study.clone());
-            again.measure(scene, Extent::Quick);
-            assert_eq!(again.of.as_ref(), Some(base));
-            again.cancel();
+        for (again, base) in [(&other, &other), (&applied, &scene)] {
+            let mut budget = Budget::default();
+            budget.set(&scene, measured.clone());
+            budget.measure(again);
+            assert_eq!(budget.measured.as_ref(), Some(base));
         }
         // Where no setting meets a demand, the nearest ones each meet one of its halves.
-        let measured = budget.study.unwrap();
         let least = |of: &dyn Fn(&Measurement) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
         let [time, error] = [least(&frame_ms), least(&|m| measured.error_bound(m))].map(|v| 1.01 * v);
         let demand = Demand { max_error_percent: Some(error), max_time_ms: Some(time) };

@@ -1,0 +1,70 @@
+//! Mode Measure, in tabs: how far the methods hold, how fast they are, and the load curve of the scene.
+
+pub(crate) mod budget;
+pub(crate) mod limits;
+pub(crate) mod load_curve;
+pub(crate) mod measured;
+
+use egui::{Button, Ui};
+use nalgebra::Vector2;
+
+use crate::app::action::Action;
+use crate::app::language::tr;
+use crate::app::modes::measure::budget::Budget;
+use crate::app::modes::measure::limits::LimitMap;
+use crate::app::session::Session;
+use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+
+/// State of Measure.
+#[derive(Debug, Default)]
+pub(crate) struct Measure {
+    pub limits: LimitMap,
+    pub budget: Budget,
+}
+
+impl Measure {
+    /// Turns to another scene.
+    pub(crate) fn open(&mut self, scene: &Scene) {
+        self.budget.open(scene);
+        self.limits = LimitMap::default();
+    }
+
+    /// Shows a tab; `shown` is the drawn body.
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        shown: &Simulation,
+        view: &ViewOptions,
+        actions: &mut Vec<Action>,
+    ) {
+        let scene = session.scene();
+        let Some(tab) = view.measured(scene) else { return };
+        ui.horizontal_wrapped(|ui| {
+            ui.add_space(8.0);
+            for other in MeasureTab::of(scene) {
+                let (name, about) = other.text();
+                let button = ui.add(Button::selectable(*other == tab, tr(name))).on_hover_text(tr(about));
+                if button.clicked() && *other != tab {
+                    actions.push(Action::Toggle(Toggle::Tab(*other)));
+                }
+            }
+            if tab == MeasureTab::HowFar {
+                self.limits.key(ui, session);
+            }
+        });
+        match tab {
+            MeasureTab::HowFar => self.limits.show(ui, session, shown, actions),
+            MeasureTab::HowFast => self.budget.show(ui, scene, actions),
+            MeasureTab::LoadCurve => load_curve::show(ui, session, first_probe(shown), view.curve_plot, actions),
+        }
+    }
+}
+
+/// Returns the displacement of the first probe, m, at an equilibrium.
+fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
+    let probe = shown.problem().probes().first().filter(|_| shown.status().is_success())?;
+    Some(probe.mean(shown.displacement()))
+}
