@@ -50,22 +50,6 @@ fn undo(ui: &mut Ui) {
     ui.run_steps(3);
 }
 
-/// The strips have the words and the order of the command.
-#[test]
-fn strips_are_those_of_the_command() {
-    let (ui, scene) = (opened(scene("article")), scene("article"));
-    let limits = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
-    let axis = LoadAxis::of(&scene);
-    assert_eq!(limits.strips.len(), 9);
-    for strip in &limits.strips {
-        let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
-        let name = format!("{} {}", strip.element.id(), strip.method.id());
-        ui.get_by_label(&format!(
-            "{name}: within 1 %: {good}; within 5 %: {usable}; converges: {converges}; strains above 10 %: {law}"
-        ));
-    }
-}
-
 /// Returns the labels of the strips that are complete, and of those that are not.
 fn strips(ui: &Ui) -> [Vec<String>; 2] {
     let labels = ui.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());

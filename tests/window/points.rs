@@ -289,6 +289,13 @@ fn a_new_beam_has_an_error_and_a_name() {
     settle(&mut ui);
     assert!(!ui.says("no reference") && ui.says("ERROR 0."), "{:?}", ui.texts());
     assert_eq!(ui.state().title(), "New beam \u{2013} warpbeam");
+    let view = ui.state().view_rect();
+    ui.get_by_label_contains("Loads and supports: ").click();
+    ui.run_steps(8);
+    assert_eq!(ui.state().view_rect(), view, "the panel has grown");
+    crate::panel::controls_are_inside(&ui);
+    ui.get_by_label_contains("Loads and supports: ").click();
+    ui.run_steps(8);
     ui.get_by_label_contains("File: ").click();
     ui.run_steps(8);
     ui.get_by_role_and_label(Role::TextInput, "Name").click();

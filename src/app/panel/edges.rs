@@ -145,7 +145,8 @@ fn coordinates(
     let (mut moved, mut widened) = (at, width);
     let refused = RefCell::new(None);
     ui.push_id(id, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 5.0;
             let [x, y] = &mut moved;
             let fields = [("x", x, limits::COORDINATE, POINT), ("y", y, limits::COORDINATE, POINT)];
             let wide = widened.as_mut().map(|width| (tr("width"), width, limits::WIDTH, WIDTH));
