@@ -175,7 +175,7 @@ pub(crate) fn six_digits(value: f64) -> f64 {
 }
 
 /// Rounds to `digits` significant digits.
-fn rounded(value: f64, digits: usize) -> f64 {
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }

@@ -6,7 +6,7 @@ use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
     MethodKind, Place, Plane, Probe, Pulse, Scene, SectionLine, SolverSettings, Start, Support,
 };
-use crate::format::engineering;
+use crate::format::{engineering, rounded};
 
 /// Handle of a load in a scene. It is valid as long as no load before it is removed.
 ///
@@ -475,31 +475,28 @@ impl Scene {
         Ok(())
     }
 
-    /// Changes the length and height of the beam, m, and moves loads, supports and probes at points and sections with it. The
-    /// number of cells does not change. Does nothing if the scene has no beam.
+    /// Changes the length and height of the beam, m, and moves loads, supports and probes at points and sections with it;
+    /// their widths grow with the height. The number of cells does not change. Does nothing if the scene has no beam.
     pub fn resize_beam(&mut self, length: f64, height: f64) {
         let Some(beam) = &mut self.beam else { return };
-        let before = beam.clone();
-        (beam.length, beam.height) = (length, height);
+        let before = std::mem::replace(beam, Beam { length, height, ..beam.clone() });
         let loads = self.loads.iter_mut().filter_map(|load| match load {
-            Load::Force { place, .. } => Some(place),
+            Load::Force { place, width, .. } => Some((place, Some(width))),
             Load::Moment { .. } | Load::Gravity { .. } => None,
         });
-        let supports = self.supports.iter_mut().map(|support| &mut support.place);
-        let probes = self.probes.iter_mut().map(|probe| &mut probe.place);
+        let supports = self.supports.iter_mut().map(|support| (&mut support.place, Some(&mut support.width)));
+        let probes = self.probes.iter_mut().map(|probe| (&mut probe.place, None));
         let moved = |[x, y]: [f64; 2]| {
             let along = x / before.length;
-            let across = (y - before.axis(along)) / before.height;
-            beam.point(along, across)
+            beam.point(along, (y - before.axis(along)) / before.height).map(|x| rounded(x, 12))
         };
-        for place in loads.chain(supports).chain(probes) {
+        for (place, width) in loads.chain(supports).chain(probes) {
             if let Place::At(at) = place {
                 *at = moved(*at);
             }
+            width.into_iter().for_each(|width| *width = rounded(*width * height / before.height, 12));
         }
-        for line in &mut self.sections {
-            line.at = moved(line.at.into()).into();
-        }
+        self.sections.iter_mut().for_each(|line| line.at = moved(line.at.into()).into());
     }
 
     /// Multiplies every load and every prescribed displacement and rotation of supports by `factor`.

@@ -8,7 +8,7 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
 use crate::app::widgets::text::Labels;
 use crate::assembly::System;
-use crate::format::{engineering, round_down, three_digits};
+use crate::format::{engineering, round_down, rounded, three_digits};
 use crate::mesh::Mesh;
 use crate::scene::{Load, Material, Place, Scene};
 
@@ -54,7 +54,7 @@ pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
         180.0 | -180.0 => (0.0, -1.0),
         _ => degrees.to_radians().sin_cos(),
     };
-    [magnitude * c, magnitude * s]
+    [magnitude * c, magnitude * s].map(|component| rounded(component, 12))
 }
 
 /// Returns the largest force with a visible effect, N, rounded up to a power of ten: the force that strains the whole
@@ -215,8 +215,14 @@ impl Arrow {
     /// Returns the force, N, and its direction, degrees, after the tip has moved by `by`, points. The numbers are
     /// rounded to the pointer's accuracy.
     pub(crate) fn dragged(&self, by: Vec2, snap: bool) -> (f64, f64) {
-        // The length of the force, not that of the arrow, which is limited.
-        let vector = self.direction * self.scale.length(self.magnitude) as f32 + by;
+        let whole = self.scale.length(self.magnitude) as f32;
+        let vector = if self.is_broken() {
+            // The force has the direction of what is drawn. A longer arrow keeps the part of its length that is not drawn.
+            let (to, drawn) = (self.vector + by, self.vector.length());
+            to * if to.length() < drawn { whole / drawn } else { 1.0 + (whole - drawn) / to.length() }
+        } else {
+            self.direction * whole + by
+        };
         let vector = if vector.length() < NO_LENGTH { Vec2::ZERO } else { vector };
         let pointed = if vector == Vec2::ZERO { self.direction } else { vector };
         let degrees = f64::from(-pointed.y).atan2(f64::from(pointed.x)).to_degrees();
@@ -418,6 +424,8 @@ mod tests {
         // The force of an arrow that ends at the border of the view is that of its whole length.
         let large = Arrow { vector: 3.0 * vector, magnitude: 1e5, ..arrow };
         assert_eq!(large.dragged(Vec2::ZERO, false), (1e5, DOWN));
+        // Dragged, it has the direction that is drawn.
+        assert_eq!(large.dragged(vec2(3.0 * vector.y, 0.0), false).1, -45.0);
         let zero = Arrow { vector: 16.0 * arrow.direction, magnitude: 0.0, ..arrow };
         assert_eq!((zero.dragged(Vec2::ZERO, false).0, zero.dragged(vector, false)), (0.0, (1e3, DOWN)));
         assert_eq!(zero.dragged(Vec2::ZERO, false).1, DOWN);
