@@ -106,17 +106,20 @@ fn read_to_limit(stream: impl Read) -> Result<Vec<u8>, ReadError> {
 /// Returns a scene's text; the error names the encoding and the line of the first byte that is not UTF-8.
 fn decoded(name: &Path, bytes: &[u8]) -> Result<String, SceneError> {
     // The text of a scene has no zeros, but every second byte of UTF-16 is one.
-    let zero = bytes.iter().position(|&byte| byte == 0);
+    let zeros = bytes.iter().filter(|&&byte| byte == 0).count();
     let invalid = str::from_utf8(bytes).err().map(|error| error.valid_up_to());
-    let Some(at) = invalid.or(zero) else { return Ok(String::from_utf8_lossy(bytes).into_owned()) };
-    let line = 1 + bytes.iter().take(at).filter(|&&byte| byte == b'\n').count();
-    let (got, encoding) = match bytes.get(at).filter(|_| zero.is_none()) {
-        Some(byte) => (format!("the byte 0x{byte:X}, as in Latin-1"), "LATIN1"),
-        None => ("UTF-16".to_owned(), "UTF-16"),
+    let Some(at) = invalid.or(bytes.iter().position(|&byte| byte == 0)) else {
+        return Ok(String::from_utf8_lossy(bytes).into_owned());
     };
-    let message = format!(
-        "expected text in UTF-8, got {got}; save it as UTF-8, or convert it: `iconv -f {encoding} -t UTF-8 in.toml > out.toml`"
-    );
+    let line = 1 + bytes.iter().take(at).filter(|&&byte| byte == b'\n').count();
+    let advice =
+        |encoding| format!("; save it as UTF-8, or convert it: `iconv -f {encoding} -t UTF-8 in.toml > out.toml`");
+    let got = match bytes.get(at) {
+        Some(byte) if zeros == 0 => format!("the byte 0x{byte:X}, as in Latin-1{}", advice("LATIN1")),
+        _ if 4 * zeros > bytes.len() => format!("UTF-16{}", advice("UTF-16")),
+        _ => "a file of another kind".to_owned(),
+    };
+    let message = format!("expected text in UTF-8, got {got}");
     Err(SceneError::Syntax { file: Some(name.to_owned()), line: Some(line), message })
 }
 

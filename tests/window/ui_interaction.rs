@@ -622,6 +622,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
         ui.push(name);
         ui.push("Open");
         assert_eq!((&*ui.scene().name, ui.query_by_label("Open a scene").is_some()), (scene, name == "bad.toml"));
+        assert_eq!(ui.ctx.text_edit_focused(), name == "bad.toml", "a refused dialog keeps the cursor");
     }
     let mut names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();

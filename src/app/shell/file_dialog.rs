@@ -6,6 +6,9 @@ use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
 
 use crate::app::language::{fill, tr};
 
+/// Largest number of recent files that are offered.
+const RECENT: usize = 4;
+
 /// Purpose of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
@@ -81,16 +84,16 @@ impl FileDialog {
         }
     }
 
-    /// Shows an error message; the dialog stays open.
+    /// Shows an error message; the dialog stays open, with the cursor in its text.
     pub(crate) fn refuse(&mut self, message: String) {
-        self.message = Some(message);
+        (self.message, self.is_new) = (Some(message), true);
     }
 
     /// Accepts the typed path: enters a folder, or returns a file as the answer.
     fn accept(&mut self) -> Option<Answer> {
         let typed = self.text.trim();
         if typed.is_empty() {
-            self.message = Some(tr("expected the name of a scene file").to_owned());
+            self.refuse(tr("expected the name of a scene file").to_owned());
             return None;
         }
         let mut path = self.folder.join(typed);
@@ -99,15 +102,17 @@ impl FileDialog {
             self.enter(path);
             return None;
         }
-        if self.purpose == Purpose::Save {
-            if path.extension().is_none() {
-                path.set_extension("toml");
-            }
-            if path.exists() && self.replaced.as_ref() != Some(&path) {
-                self.message = Some(fill!("%{file} exists: Replace overwrites it", file = path.display()));
-                self.replaced = Some(path);
-                return None;
-            }
+        if path.extension().is_none() && !path.exists() {
+            path.set_extension("toml");
+        }
+        if self.purpose == Purpose::Open && !path.exists() {
+            self.refuse(fill!("There is no file %{file}", file = path.display()));
+            return None;
+        }
+        if self.purpose == Purpose::Save && path.exists() && self.replaced.as_ref() != Some(&path) {
+            self.message = Some(fill!("%{file} exists: Replace overwrites it", file = path.display()));
+            self.replaced = Some(path);
+            return None;
         }
         Some(Answer::File(path))
     }
@@ -133,11 +138,20 @@ impl FileDialog {
                 edit.request_focus();
             }
             if edit.changed() {
-                self.replaced = None;
+                (self.replaced, self.message) = (None, None);
             }
             let entered_key = edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
             ui.add_space(4.0);
-            ScrollArea::vertical().max_height(220.0).auto_shrink([false, true]).show(ui, |ui| {
+            ScrollArea::vertical().max_height(280.0).auto_shrink([false, true]).show(ui, |ui| {
+                if self.purpose == Purpose::Open && !recent.is_empty() {
+                    ui.label(RichText::new(tr("Recent files")).weak());
+                    for path in recent.iter().take(RECENT) {
+                        if ui.selectable_label(false, path.display().to_string()).clicked() {
+                            chosen = Some(path.clone());
+                        }
+                    }
+                    ui.separator();
+                }
                 if let Some(above) = self.folder.parent()
                     && ui.selectable_label(false, "../").clicked()
                 {
@@ -152,19 +166,10 @@ impl FileDialog {
                     let row = ui.selectable_label(*name == self.text, name);
                     if row.clicked() {
                         self.text.clone_from(name);
-                        self.replaced = None;
+                        (self.replaced, self.message) = (None, None);
                     }
                     if row.double_clicked() {
                         chosen = Some(self.folder.join(name));
-                    }
-                }
-                if self.purpose == Purpose::Open && !recent.is_empty() {
-                    ui.separator();
-                    ui.label(RichText::new(tr("Recent files")).weak());
-                    for path in recent {
-                        if ui.selectable_label(false, path.display().to_string()).clicked() {
-                            chosen = Some(path.clone());
-                        }
                     }
                 }
             });
