@@ -59,7 +59,7 @@ pub(super) struct ShotArgs {
     /// Add the load–deflection curve.
     #[arg(long)]
     pub curve: bool,
-    /// Add the stress along the first section of the scene, or N along the beam if it has none.
+    /// Add the stress along the first section of the scene, or M along the beam if it has none.
     #[arg(long, conflicts_with = "curve")]
     pub sections: bool,
     /// Add the plot of error against time, measured now.

@@ -11,8 +11,8 @@ import { deflateRawSync, gzipSync } from "node:zlib";
 const { chromium } = createRequire(join(process.env.WEB_MODULES ?? process.cwd(), "package.json"))("playwright-core");
 const [dist, warpbeam, pictures, part = ""] = process.argv.slice(2);
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
-// Position of the button that measures, points from the lower left corner of the view: under the line of the status.
-const MEASURE = [42, 34 + 19];
+// Position of the button that measures, points from the lower left corner of the view: under the line of the status and the tabs.
+const MEASURE = [60, 34 + 49];
 // Position of the field of the force in a window of this size.
 const FORCE = [1219, 170];
 const SIZE = { width: 1280, height: 800 };

@@ -226,6 +226,11 @@ impl Lab {
             compare.show(ui, &input)
         };
         self.edit_loads(ui.ctx(), &interaction, requests);
+        let Desk { session, compare, motions, .. } = &self.desk;
+        let is_moved = if session.is_motion() { motions.is_moved() } else { compare.is_moved() };
+        if is_moved {
+            fit_button(ui, rect, actions);
+        }
         let painter = ui.painter_at(rect);
         self.show_work(ui, rect, actions);
         self.paint_toast(ui, &painter, rect);
@@ -332,10 +337,7 @@ impl Lab {
             self.show_work(ui, rect, actions);
         }
         if self.desk.viewport.misses_body() {
-            let place = Rect::from_center_size(rect.center_bottom() - vec2(0.0, 64.0), vec2(120.0, 24.0));
-            if ui.put(place, Button::new(tr("Fit"))).on_hover_text(tr("Show the whole body (F)")).clicked() {
-                actions.push(Action::Fit);
-            }
+            fit_button(ui, rect, actions);
         }
         self.report_crossing(ui);
         self.paint_toast(ui, &painter, rect);
@@ -404,6 +406,14 @@ impl Lab {
                 });
             });
         });
+    }
+}
+
+/// Shows the button that fits the camera, at the lower end of a view.
+fn fit_button(ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
+    let place = Rect::from_center_size(rect.center_bottom() - vec2(0.0, 64.0), vec2(120.0, 24.0));
+    if ui.put(place, Button::new(tr("Fit"))).on_hover_text(tr("Show the whole body (F)")).clicked() {
+        actions.push(Action::Fit);
     }
 }
 

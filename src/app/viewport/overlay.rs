@@ -8,8 +8,8 @@ use crate::app::widgets::text::Labels;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
-use crate::app::diagnosis::Errors;
-use crate::app::language::{area_text, fill, percent, tr};
+use crate::app::diagnosis::{Errors, error_text};
+use crate::app::language::{area_text, fill, tr};
 use crate::app::session::history::MotionSample;
 use crate::app::session::playback::Playback;
 use crate::app::view_options::ViewOptions;
@@ -51,6 +51,8 @@ pub(crate) struct Overlay<'a> {
     pub exact: &'a [Vec<Vector2<f64>>],
     /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
+    /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
+    pub live: Option<bool>,
     /// Relative changes of the area of the drawn body and of the linear solution.
     pub areas: [Option<f64>; 2],
     /// Simulated time, s.
@@ -158,10 +160,11 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     if !overlay.apart {
         draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
+    let exact = if overlay.live == Some(true) { palette.exact.gamma_multiply(0.4) } else { palette.exact };
     for line in overlay.exact {
         // A background stroke keeps the line visible over the body.
         dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
-        dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
+        dashed(painter, &projection, line, Stroke::new(1.7, exact));
     }
     if overlay.options.trail {
         trails(painter, &projection, overlay, palette);
@@ -594,9 +597,9 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         return None;
     }
     let values = |word: &str, error: Option<f64>, area: Option<f64>| {
-        let error = error.map(|error| format!("  {}", percent(error))).unwrap_or_default();
+        let error = error.map(|error| format!("  {}", error_text(Some(error), overlay.live.is_some())));
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
-        format!("{}{error}{}", tr(word), area.unwrap_or_default())
+        [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()
     };
     let own = match overlay.scene.analysis {
         Analysis::Static => values(overlay.scene.solver.method.id(), overlay.errors.own, overlay.areas[0]),

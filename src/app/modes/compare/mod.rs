@@ -101,6 +101,11 @@ impl Compare {
         self.panes.camera()
     }
 
+    /// Returns `true` if the user has moved the camera.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.panes.is_moved()
+    }
+
     /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
         self.panes.fit();

@@ -208,6 +208,11 @@ impl MotionCompare {
         self.panes.camera()
     }
 
+    /// Returns `true` if the user has moved the camera.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.panes.is_moved()
+    }
+
     /// Returns the bodies of the panes for the render pass.
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
         self.panes.views(wireframe, pixels_per_point)

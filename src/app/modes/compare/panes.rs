@@ -172,6 +172,11 @@ impl<P: ComparedPane> Panes<P> {
         self.controller.iter_mut().for_each(CameraController::fit);
     }
 
+    /// Returns `true` if the user has moved the camera.
+    pub(super) fn is_moved(&self) -> bool {
+        self.controller.as_ref().is_some_and(CameraController::is_moved)
+    }
+
     /// Returns the camera of all panes.
     pub(super) fn camera(&self) -> Camera {
         self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
@@ -343,6 +348,7 @@ impl<P: ComparedPane> Panes<P> {
                 ghost: None,
                 exact: if wanted.is_some() { &[] } else { exact },
                 errors: Errors::default(),
+                live: None,
                 areas: [None; 2],
                 time,
                 direction: input.direction,

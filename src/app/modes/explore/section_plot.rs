@@ -144,9 +144,11 @@ impl SectionPlot {
         }
         let cuts = self.cuts_of(simulation);
         let offered = cuts.map(Cuts::offered).unwrap_or_default();
-        let shown = self.shown.filter(|figure| offered.contains(figure)).or_else(|| offered.first().copied());
-        let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
         let has_none = cuts.is_some_and(|cuts| cuts.own.is_empty());
+        // The bending moment, or the stress along the first section.
+        let usual = if has_none { offered.last() } else { offered.first() };
+        let shown = self.shown.filter(|figure| offered.contains(figure)).or(usual.copied());
+        let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
         let parts = Parts::of(whole);
         ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
             Some(Ok(drawn)) => figure::plot(ui, "sections", drawn),
