@@ -49,8 +49,6 @@ pub(crate) enum Action {
     Speed(f64),
     /// Show the same motion with another integrator; if it is shown, hide it.
     Compare(IntegratorKind),
-    /// Make one iteration per displayed frame, or as many as the frame has time for.
-    SlowMotion,
     /// Fit the camera to the whole body.
     Fit,
     /// Show or hide a part of the display.

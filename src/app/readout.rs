@@ -31,8 +31,6 @@ pub(crate) struct Readout<'a> {
     pub playback: &'a Playback,
     /// Lowest natural frequency of a body in motion, Hz; `None` until it has been computed.
     pub frequency: Option<f64>,
-    /// `true` if a displayed frame makes one iteration.
-    pub is_slow: bool,
     /// Time of the iterations made for the last displayed frame.
     pub timings: &'a Timings,
     /// Time and result of a solve from rest; `None` until it has been measured.

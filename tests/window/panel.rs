@@ -215,7 +215,7 @@ fn run_pause_step_and_reset() {
     assert_eq!(iterations(&ui), converged);
 }
 
-/// The iterate has its number and residual; an edit goes on to the equilibrium, in slow motion too.
+/// The iterate has its number and residual; an edit goes on to the equilibrium.
 #[test]
 fn a_step_shows_an_iterate_and_an_edit_goes_on() {
     let mut ui = open("article");
@@ -224,16 +224,6 @@ fn a_step_shows_an_iterate_and_an_edit_goes_on() {
     assert!(!ui.says("not reached"), "an iterate that was asked for is not grey");
     ui.type_into("Force", "20 kN");
     assert_eq!(*ui.simulation().status(), Status::Converged);
-    ui.click("One iteration a frame");
-    ui.key_press(Key::R);
-    ui.step();
-    let mut frames = 1;
-    while *ui.simulation().status() != Status::Converged {
-        ui.step();
-        frames += 1;
-        assert!(ui.simulation().iterations() <= frames, "more than one iteration in a frame");
-    }
-    assert!(frames > 5, "{frames} frames");
 }
 
 #[test]

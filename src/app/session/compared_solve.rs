@@ -91,8 +91,6 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
 /// Conditions of a solve in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameConditions {
-    /// `true` if the frame makes one iteration.
-    pub is_slow: bool,
     /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
     pub holds: bool,
     /// `true` if iterations are made at all.
@@ -326,7 +324,7 @@ impl ComparedSolve {
         }
         while !self.is_large && !has_ended(simulation, most) {
             simulation.step();
-            if frame.is_slow || Instant::now() >= frame.until {
+            if Instant::now() >= frame.until {
                 break;
             }
         }
@@ -432,9 +430,9 @@ mod tests {
         scene
     }
 
-    /// Returns the conditions of a frame in slow motion.
+    /// Returns the conditions of a frame that has time for one iteration.
     fn frame(holds: bool) -> FrameConditions {
-        FrameConditions { is_slow: true, holds, runs: true, until: Instant::now() }
+        FrameConditions { holds, runs: true, until: Instant::now() }
     }
 
     /// Advances until no work is left; returns the number of frames.

@@ -138,7 +138,6 @@ impl Lab {
                 self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
-            Action::SlowMotion => self.desk.session.set_slow(!self.desk.session.is_slow()),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
                 self.desk.viewport.fit();

@@ -80,7 +80,7 @@ impl Gallery {
         let window = ui.ctx().content_rect().size();
         let opened = ComboBox::from_id_salt("scene")
             .selected_text(tr(&input.scene.name))
-            .width(120.0)
+            .width(150.0)
             .height(window.y - 64.0)
             .truncate()
             .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));

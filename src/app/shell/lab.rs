@@ -345,7 +345,6 @@ impl Lab {
             },
             playback: session.playback(),
             frequency: facts.frequency.latest().copied(),
-            is_slow: session.is_slow(),
             timings: session.timings(),
             from_rest: session.timed_from_rest(),
             last_from_rest: session.last_from_rest(),

@@ -246,7 +246,6 @@ impl Lab {
             reference_failure: session.facts().reference.failure(session.scene()),
             from_rest: session.timed_from_rest(),
             running: session.is_running(),
-            is_slow: session.is_slow(),
             chosen: measure.budget.chosen(session.scene()),
         };
         (compare, input)

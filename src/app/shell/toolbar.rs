@@ -86,9 +86,8 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
     let ended = input.ended;
     let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
         let (name, tip) = (tr(name), tr(tip));
-        let word = (wide && ![Icon::Slow, Icon::Reset].contains(&icon)).then_some(name);
-        let chosen = icon == Icon::Slow && input.is_slow;
-        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, chosen));
+        let word = (wide && icon != Icon::Reset).then_some(name);
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));
         if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
             actions.push(action);
         }
@@ -104,10 +103,6 @@ fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) 
         (false, false) => "One iteration (N)",
     };
     button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
-    if !moves {
-        let tip = "Slow motion: one iteration a frame, in place of all that it has time for";
-        button(Icon::Slow, "One iteration a frame", tip, true, Action::SlowMotion);
-    }
     button(
         Icon::Reset,
         "Reset",

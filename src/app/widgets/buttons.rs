@@ -15,7 +15,6 @@ pub(crate) enum Icon {
     Play,
     Pause,
     Step,
-    Slow,
     Reset,
     Undo,
     Redo,
@@ -71,9 +70,6 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
         Icon::Step => {
             polygon(vec![at(-6.0, -5.5), at(2.0, 0.0), at(-6.0, 5.5)]);
             bar(4.5);
-        }
-        Icon::Slow => {
-            painter.text(center, Align2::CENTER_CENTER, "1×", FontId::proportional(BODY), color);
         }
         Icon::Reset => {
             painter.add(Shape::line(arc(-0.6, 4.6), stroke));

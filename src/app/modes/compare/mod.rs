@@ -54,8 +54,6 @@ pub(crate) struct CompareInput<'a> {
     /// Time of a solve from rest with the panel's settings; `None` until it has been measured.
     pub from_rest: Option<&'a SolveFromRest>,
     pub running: bool,
-    /// `true` if a frame makes one iteration.
-    pub is_slow: bool,
     /// Fastest measured setting within the limits.
     pub chosen: Option<Setting>,
 }
@@ -158,9 +156,9 @@ impl Compare {
         let share = WORK / u32::try_from(self.panes.list.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes.list {
             let until = Instant::now() + share;
-            let frame = FrameConditions { is_slow: input.is_slow, holds, runs: input.running, until };
+            let frame = FrameConditions { holds, runs: input.running, until };
             pane.solve.advance(pane.setting.apply(input.common.scene), &equations, frame);
-            pane.is_dragged = holds && input.running && !input.is_slow;
+            pane.is_dragged = holds && input.running;
             pane.update_error(input);
         }
         let mut solves = self.panes.list.iter().map(|pane| &pane.solve);
