@@ -232,7 +232,8 @@ const TESTS = {
     await onPage(browser, "?scene=article&lang=en", async ({ page, until, still }) => {
       await still();
       await page.keyboard.press("b");
-      const { view } = await until((now) => now.view[3] < 740, "waited for the plot of the study");
+      await until((now) => now.view[3] < 740, "waited for the plot of the study");
+      const { view } = await still();
       const press = () => page.mouse.click(...MEASURE.map((at, axis) => view[axis ? 3 : 0] + at));
       await press();
       await until((now) => now.is_measuring, "waited for the study");
