@@ -37,7 +37,6 @@ pub use session::recovery::{RecoveryCopies, Unsaved};
 pub use shell::help::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
-#[doc(hidden)]
 pub use view_options::Magnification;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;

@@ -144,11 +144,21 @@ impl LimitMap {
         }
     }
 
-    /// Shows the key of the colours once limits are known.
+    /// Shows the key of the colours once limits are known; a line breaks between entries.
     pub(crate) fn key(&self, ui: &mut Ui, session: &Session) {
-        if self.base.as_ref().is_some_and(|base| session.facts().limits.so_far(base).is_some()) {
-            key(ui, session.is_motion());
+        const BOX: Vec2 = vec2(10.0, 10.0);
+        if self.base.as_ref().is_none_or(|base| session.facts().limits.so_far(base).is_none()) {
+            return;
         }
+        ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
+        for (rating, name) in Rating::all(session.is_motion()) {
+            legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+        }
+        let ink = Palette::new(ui.visuals()).text;
+        legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
+            ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
+            hatch(ui, rect, ink);
+        });
     }
 }
 
@@ -222,20 +232,6 @@ fn with_part(base: &Scene, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene
 /// Returns the bar of the fraction of the limits that is known.
 fn progress_bar(done: f32) -> ProgressBar {
     ProgressBar::new(done).show_percentage()
-}
-
-/// Shows the key of the colours; a line breaks between entries.
-fn key(ui: &mut Ui, moves: bool) {
-    const BOX: Vec2 = vec2(10.0, 10.0);
-    ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
-    for (rating, name) in Rating::all(moves) {
-        legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
-    }
-    let ink = Palette::new(ui.visuals()).text;
-    legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
-        ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
-        hatch(ui, rect, ink);
-    });
 }
 
 fn color(rating: Rating) -> Color32 {

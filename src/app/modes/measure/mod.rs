@@ -12,7 +12,7 @@ use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::modes::measure::budget::Budget;
 use crate::app::modes::measure::limits::LimitMap;
-use crate::app::session::Session;
+use crate::app::session::{Session, live};
 use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -65,6 +65,5 @@ impl Measure {
 
 /// Returns the displacement of the first probe, m, at an equilibrium.
 fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
-    let probe = shown.problem().probes().first().filter(|_| shown.status().is_success())?;
-    Some(probe.mean(shown.displacement()))
+    live::first_probe(shown).filter(|_| shown.status().is_success())
 }
