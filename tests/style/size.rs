@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 817),
     ("the rest of src", &["src"], 5_153),
-    ("tests", &["tests"], 21_427),
+    ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 64_387;

@@ -290,6 +290,20 @@ fn the_residual_falls_by_rho() {
     ui.get_by_label(&format!("Residual {:.1e} after {n} iterations; rho = {rho:.2}", residuals[n - 1]));
 }
 
+/// A card that waits makes at most one iteration a frame once it runs.
+#[test]
+fn a_card_runs_one_iteration_a_frame() {
+    let mut ui = at_card(6);
+    ui.key_press(Key::Space);
+    let mut frames = 0;
+    while *ui.simulation().status() == Status::Running {
+        ui.step();
+        frames += 1;
+        assert!(ui.simulation().iterations() <= frames, "more than one iteration in a frame");
+    }
+    assert!(frames > 5, "{frames} frames");
+}
+
 /// Card 7: `newton` converges under a load where ρ of `warped` exceeds 1, and `warped` diverges.
 #[test]
 fn newton_converges_where_rho_exceeds_one() {
