@@ -149,9 +149,10 @@ const NEARLY_ORTHOGONAL: f64 = 1e-7;
 /// Path of solutions from a first one, followed step by step.
 #[derive(Clone, Debug)]
 pub(crate) struct Continuation<S> {
-    point: ContinuationPoint<S>,
+    /// Last point.
+    pub(crate) point: ContinuationPoint<S>,
     /// Point before the last step.
-    before: ContinuationPoint<S>,
+    pub(crate) before: ContinuationPoint<S>,
     step: f64,
     /// Length of the path so far.
     length: f64,
@@ -168,9 +169,9 @@ pub(crate) struct Continuation<S> {
     /// Number of these that only locate bifurcations beyond the first.
     pub(crate) located: u32,
     /// Largest number of linearizations.
-    max_linearizations: u32,
+    pub(crate) max_linearizations: u32,
     /// Largest change of λ in a step.
-    max_by_factor: f64,
+    pub(crate) max_by_factor: f64,
     /// `true` if bifurcations beyond the first one, where the path is unstable already, are located too.
     pub(crate) locates_all: bool,
     /// Number of places in a unit of λ at which steps look for bifurcations that hide each other.
@@ -178,7 +179,8 @@ pub(crate) struct Continuation<S> {
     scratch: [Vec<f64>; 2],
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Returns the scalar product of two vectors.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -260,31 +262,6 @@ impl<S: Clone> Continuation<S> {
             scratch,
         };
         usable.then_some(made)
-    }
-
-    /// Sets the largest total number of linearizations.
-    pub fn limit_linearizations(&mut self, max: u32) {
-        self.max_linearizations = max;
-    }
-
-    /// Sets the largest change of λ in a step.
-    pub fn limit_factor(&mut self, max: f64) {
-        self.max_by_factor = max;
-    }
-
-    /// Locates the bifurcations beyond the first one, too.
-    pub fn locate_all(&mut self) {
-        self.locates_all = true;
-    }
-
-    /// Returns the last point.
-    pub fn point(&self) -> &ContinuationPoint<S> {
-        &self.point
-    }
-
-    /// Returns the point before the last step.
-    pub fn before(&self) -> &ContinuationPoint<S> {
-        &self.before
     }
 
     /// Takes one step; returns the critical point that it has passed, with its place, if any.

@@ -191,7 +191,7 @@ impl ClampedBeam {
         let mut goals = (1..=points).map(|point| largest * f64::from(point) / f64::from(points)).peekable();
         while goals.peek().is_some() {
             let passed = path.step(&mut shooting).ok()?;
-            let (from, to) = (path.before().clone(), path.point().clone());
+            let (from, to) = (path.before.clone(), path.point.clone());
             let end = passed.as_ref().map_or(&to, |(_, critical)| critical);
             while let Some(&goal) = goals.peek().filter(|goal| (from.factor..=end.factor).contains(goal)) {
                 let found = path.between(&mut shooting, &from, end, goal)?;

@@ -86,7 +86,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     // Other methods have no `auto`.
     if let Some(auto) = &solution.auto {
         object["auto"] = json!({
-            "decision": auto.decision.id(),
+            "decision": auto.decision,
             "estimated_error_percent": 100.0 * auto.estimated_error,
             "solves": auto.solves,
             "factorizations": auto.factorizations,

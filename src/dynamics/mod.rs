@@ -27,7 +27,7 @@ mod tr_bdf2;
 pub use ledger::{Ledger, Momentum};
 pub(crate) use linear_theory::LinearTheory;
 pub use modes::{critical_step, lowest_frequency};
-pub use report::{MotionDecision, MotionReport};
+pub use report::MotionReport;
 pub(crate) use stage::{StageSolver, Step};
 pub use step::{Counts, StepError, StopReason};
 pub(crate) use step::{Memory, Solves, StepEnergy};

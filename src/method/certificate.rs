@@ -2,8 +2,6 @@
 
 use crate::assembly::{Forces, Kinematics, Matrix, Problem, System};
 use crate::element::Tangent;
-use crate::format::{number, two_digits};
-use crate::sentence::{Sentence, sentence};
 use crate::solver::lanczos::extreme_eigenvalues;
 use crate::solver::{Factor, SolverError};
 use crate::state::State;
@@ -114,28 +112,6 @@ pub fn support_stiffness(
         noise += magnitudes.map(|(increment, force)| increment.abs().dot(force)).sum::<f64>() * ROUNDING / (2.0 * H);
     }
     (stiffness.is_finite() && stiffness.abs() > noise).then_some(stiffness)
-}
-
-/// Describes ρ in a sentence.
-#[must_use]
-pub fn rho_text(rho: f64) -> Sentence {
-    let text = match rho {
-        // Near 1, more digits are needed.
-        _ if (rho - 1.0).abs() < 5e-4 => format!("{rho:.6}"),
-        0.01..1000.0 => format!("{rho:.3}"),
-        ..0.01 => number(two_digits(rho)),
-        _ => format!("{rho:.1e}"),
-    };
-    match rho {
-        ..1.0 => sentence!(
-            "the warped iteration converges near this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
-            n = text
-        ),
-        _ => sentence!(
-            "the warped iteration leaves this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
-            n = text
-        ),
-    }
 }
 
 /// Number of Lanczos steps; the extreme eigenvalue has a few correct digits long before.

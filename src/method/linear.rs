@@ -13,7 +13,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "linear",
     about: "Linear FEM: one solve, accurate only for small rotations; under larger ones the area of the body grows.",
     start: || Box::<Linear>::default(),
-    motion: Some(MotionMethod::Linear),
+    motion: MotionMethod::Linear,
 };
 
 /// The warped iteration with identity rotations: the first solve gives the result, further ones refine it.

@@ -3,8 +3,7 @@
 //! A method decides which matrix a step factorizes, under which part of the load, and when the solve is done. The step
 //! itself is the article's, the same for all methods: [`crate::step`].
 
-use crate::scene::{Analysis, Invalid, MethodKind};
-use crate::sentence::sentence;
+use crate::scene::MethodKind;
 use crate::state::State;
 use crate::step::{Iteration, Linearization, Operation};
 
@@ -20,12 +19,12 @@ mod warped;
 pub use crate::assembly::IterationError;
 pub use crate::step::Workspace;
 pub use auto::{AutoReport, Decision};
-pub use certificate::{Certificate, fixed_point_rho, is_stable, rho_text, support_stiffness};
+pub use certificate::{Certificate, fixed_point_rho, is_stable, support_stiffness};
 pub(crate) use iteration::Criteria;
 pub use path::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub(crate) use path::{PathFollower, PathPart, PathProgress, StaticEquations};
+pub use status::Reason;
 pub(crate) use status::is_useful_start;
-pub use status::{Reason, floor_text};
 
 /// Entry of the registry.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +37,8 @@ pub struct MethodEntry {
     pub about: &'static str,
     /// Constructor.
     pub(crate) start: fn() -> Box<dyn Method>,
-    /// How time steps are solved; `None` for a method that does not serve motions.
-    pub motion: Option<MotionMethod>,
+    /// How time steps are solved.
+    pub motion: MotionMethod,
 }
 
 /// How the stages of time steps are solved.
@@ -55,55 +54,21 @@ pub enum MotionMethod {
     Adaptive,
 }
 
-impl MethodEntry {
-    /// Returns how the method solves time steps.
-    ///
-    /// # Errors
-    /// [`Invalid`], naming the methods that serve motions, if this one does not.
-    pub fn in_motion(&self) -> Result<MotionMethod, Invalid> {
-        self.motion.ok_or_else(|| {
-            let known: Vec<&str> = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.id).collect();
-            let message = sentence!(
-                "expected one of %{known} with analysis = \"dynamic\", got %{got}",
-                known = known.join(", "),
-                got = format!("\"{}\"", self.id)
-            );
-            Invalid::new("solver.method", message)
-        })
-    }
-
-    /// Returns `true` if the method can solve scenes of this analysis.
-    #[must_use]
-    pub fn serves(&self, analysis: Analysis) -> bool {
-        analysis == Analysis::Static || self.motion.is_some()
-    }
-}
-
-macro_rules! registry {
-    ($($kind:ident => $entry:path),* $(,)?) => {
-        /// All methods; to add one, write a file in this folder and a line here.
-        pub const METHODS: &[MethodEntry] = &[$($entry),*];
-
-        impl MethodKind {
-            /// Returns the registry entry.
-            #[must_use]
-            pub fn entry(self) -> MethodEntry {
-                match self {
-                    $(Self::$kind => $entry),*
-                }
-            }
-        }
-    };
-}
-
-registry! {
-    Linear => linear::ENTRY,
-    Warped => warped::ENTRY,
-    Newton => newton::ENTRY,
-    Auto => auto::ENTRY,
-}
+/// All methods; to add one, write a file in this folder, and a line here and in [`MethodKind::entry`].
+pub const METHODS: &[MethodEntry] = &[linear::ENTRY, warped::ENTRY, newton::ENTRY, auto::ENTRY];
 
 impl MethodKind {
+    /// Returns the registry entry.
+    #[must_use]
+    pub fn entry(self) -> MethodEntry {
+        match self {
+            Self::Linear => linear::ENTRY,
+            Self::Warped => warped::ENTRY,
+            Self::Newton => newton::ENTRY,
+            Self::Auto => auto::ENTRY,
+        }
+    }
+
     /// Returns the name in scene files.
     #[must_use]
     pub fn id(self) -> &'static str {
@@ -112,7 +77,7 @@ impl MethodKind {
 
     /// Returns `true` if the method moves a body by linear theory alone.
     pub(crate) fn moves_linearly(self) -> bool {
-        self.entry().motion == Some(MotionMethod::Linear)
+        self.entry().motion == MotionMethod::Linear
     }
 }
 
@@ -197,23 +162,4 @@ pub(crate) trait Method: std::fmt::Debug + Send + Sync {
 
     /// Leaves the best available state; called when the iteration limit is reached.
     fn stop(&mut self, _: &mut State) {}
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_method_that_does_not_serve_motions_is_refused_by_a_message_with_those_that_do() {
-        for entry in METHODS.iter().filter(|entry| entry.motion.is_some()) {
-            assert_eq!(entry.in_motion().ok(), entry.motion);
-            assert!(entry.serves(Analysis::Dynamic));
-        }
-        let other = MethodEntry { id: "other", motion: None, ..MethodKind::Newton.entry() };
-        let refused = other.in_motion().unwrap_err();
-        assert_eq!(refused.key, "solver.method");
-        let known = "expected one of linear, warped, newton, auto with analysis = \"dynamic\", got \"other\"";
-        assert_eq!(refused.message(), known);
-        assert!(other.serves(Analysis::Static) && !other.serves(Analysis::Dynamic));
-    }
 }

@@ -19,8 +19,8 @@
 use nalgebra::Vector2;
 
 use super::iteration::ROUNDING;
-use super::path::{Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
-use super::status::{LONGEST_STEP, farthest};
+use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
+use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::continuation::ContinuationPoint;
@@ -35,7 +35,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "newton",
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
     start: || Box::<Newton>::default(),
-    motion: Some(MotionMethod::Exact),
+    motion: MotionMethod::Exact,
 };
 
 /// Full steps before the residual must be close to zero. Usually 5 to 9 are needed.
@@ -50,7 +50,7 @@ const PATIENCE: u32 = 3;
 /// the risk of a missed limit load.
 const MAX_SOFTENING: f64 = 0.05;
 /// Largest displacement, relative to that of linear theory, with which the result counts as the end of the path.
-const MAX_GROWTH: f64 = 1.1;
+pub(super) const MAX_GROWTH: f64 = 1.1;
 
 /// Phase of the solve.
 #[derive(Clone, Debug, Default)]
@@ -62,11 +62,12 @@ enum NewtonPhase {
     Path(Option<Box<PathFollower>>),
     /// Full steps from the end of the path.
     Finish(PathEvents),
-    /// Full steps under growing parts of the load, where rounding errors hide the path, or the path is too long.
+    /// Full steps under growing parts of the load, where rounding errors hide the path, or the path is long.
     LoadSteps(Box<LoadSteps>),
 }
 
-/// Load steps, each by full steps.
+/// Load steps from rest, each by full steps: they solve slender bodies in fewer solves, but are not known to end on the
+/// path.
 #[derive(Clone, Debug)]
 struct LoadSteps {
     /// Last equilibrium, and its load factor.
@@ -74,22 +75,16 @@ struct LoadSteps {
     reached: f64,
     /// Length of the current load step.
     step: f64,
-    /// Last stable equilibrium of the path.
-    path_end: ContinuationPoint<State>,
-    /// Limit point of the path, and the critical points on it, if the path was followed beyond it.
-    limit: Option<(ContinuationPoint<State>, PathEvents)>,
-    /// Follower of a path that is long, and can be followed further.
-    resume: Option<Box<PathFollower>>,
-    /// Critical points of the path once the result is known.
-    events: Option<PathEvents>,
+    /// The path, and `true` if it goes on where the load steps fail.
+    path: Box<PathFollower>,
+    goes_on: bool,
 }
 
 /// Factor by which load steps grow after a success.
 const GROW: f64 = 2.0;
 /// Factor by which load steps shrink after a failure.
 const SHRINK: f64 = 0.35;
-/// Number of solves along a path after which load steps are tried: they solve slender bodies in fewer solves, but are
-/// not known to end on the path.
+/// Number of solves along a path after which load steps are tried.
 const MAX_PATH_SOLVES: u32 = 600;
 /// Smallest load step.
 const MIN_LOAD_STEP: f64 = 1e-4;
@@ -97,25 +92,21 @@ const MIN_LOAD_STEP: f64 = 1e-4;
 const BETWEEN_LOAD_STEPS: f64 = 1e-3;
 
 /// State of the method.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Newton {
     phase: NewtonPhase,
-    /// Load factor of the current state.
-    load_factor: f64,
+    /// Load factor of the current state; `None` for the whole load.
+    load_factor: Option<f64>,
     load_steps: u32,
+    /// `true` if load steps have failed.
+    load_steps_failed: bool,
     from_rest: bool,
-    /// `true` if the end of the path may be unstable, beyond a bifurcation.
-    may_be_unstable: bool,
     steps: u32,
-    /// Number of solves along a path after which load steps take over.
-    max_path_solves: u32,
     /// Number of linear solves of the last iteration.
     solves: u32,
     shortest: f64,
     worse: u32,
-    last_step: f64,
-    /// Length of the last step relative to the one before.
-    contraction: Option<f64>,
+    lengths: StepLengths,
     last_residual: f64,
     /// Norm of the displacement of linear theory, m.
     linear: f64,
@@ -123,102 +114,48 @@ pub struct Newton {
     end: Option<Reason>,
 }
 
-impl Default for Newton {
-    fn default() -> Self {
-        Self {
-            phase: NewtonPhase::Direct,
-            load_factor: 1.0,
-            load_steps: 1,
-            from_rest: false,
-            may_be_unstable: false,
-            steps: 0,
-            max_path_solves: MAX_PATH_SOLVES,
-            solves: 1,
-            shortest: f64::INFINITY,
-            worse: 0,
-            last_step: 0.0,
-            contraction: None,
-            last_residual: f64::INFINITY,
-            linear: 0.0,
-            end: None,
-        }
-    }
-}
-
 impl Newton {
     /// Returns the method that follows the path from rest from its first iteration on.
     pub(super) fn on_path() -> Self {
-        let mut newton = Self::default();
-        newton.begin_path();
-        newton
-    }
-
-    fn begin_path(&mut self) {
-        self.phase = NewtonPhase::Path(None);
-        self.from_rest = false;
-        (self.load_factor, self.load_steps) = (0.0, 0);
+        Self { phase: NewtonPhase::Path(None), load_factor: Some(0.0), ..Self::default() }
     }
 
     /// Returns to rest and begins to follow the path.
-    fn give_up(&mut self, state: &mut State) {
+    fn give_up(&mut self, state: &mut State) -> Verdict {
         state.reset();
-        self.begin_path();
+        *self = Self::on_path();
+        Verdict::Changed
     }
 
     /// Ends full steps without success: follows the path, tries a shorter load step, or stops.
     fn fail(&mut self, state: &mut State) -> Verdict {
-        match &mut self.phase {
+        let steps = match &mut self.phase {
             NewtonPhase::Finish(_) => return Verdict::Stop(Reason::Stuck(self.steps)),
-            NewtonPhase::LoadSteps(steps) => {
-                state.copy_from(&steps.base);
-                steps.step = SHRINK * (self.load_factor - steps.reached);
-                if steps.step < MIN_LOAD_STEP {
-                    if let Some(follower) = steps.resume.take() {
-                        self.max_path_solves = u32::MAX;
-                        self.phase = NewtonPhase::Path(Some(follower));
-                        return Verdict::Changed;
-                    }
-                    // A load step may end a little above a limit point, at its tolerance.
-                    if steps.limit.is_some() || steps.path_end.factor > steps.reached {
-                        state.copy_from(&steps.path_end.state);
-                        steps.reached = steps.path_end.factor;
-                    }
-                    self.load_factor = steps.reached;
-                    return Verdict::Stop(Reason::NoEquilibrium(steps.reached));
-                }
-                self.begin_load_step();
-            }
-            NewtonPhase::Direct | NewtonPhase::Path(_) => self.give_up(state),
+            NewtonPhase::Direct | NewtonPhase::Path(_) => return self.give_up(state),
+            NewtonPhase::LoadSteps(steps) => steps,
+        };
+        state.copy_from(&steps.base);
+        steps.step = SHRINK * (self.load_factor.unwrap_or(1.0) - steps.reached);
+        if steps.step >= MIN_LOAD_STEP {
+            self.begin_load_step();
+            return Verdict::Changed;
         }
+        let ContinuationPoint { state: end, factor, .. } = &steps.path.last;
+        self.load_factor = Some(*factor);
+        if !steps.goes_on {
+            state.copy_from(end);
+            return Verdict::Stop(Reason::NoEquilibrium(*factor));
+        }
+        self.load_steps_failed = true;
+        self.phase = NewtonPhase::Path(Some(steps.path.clone()));
         Verdict::Changed
-    }
-
-    /// Begins to apply the load in steps from rest; if they fail, the path is followed further with `resume`.
-    fn begin_load_steps(
-        &mut self,
-        state: &mut State,
-        path_end: ContinuationPoint<State>,
-        limit: Option<(ContinuationPoint<State>, PathEvents)>,
-        resume: Option<Box<PathFollower>>,
-    ) {
-        state.reset();
-        let (base, reached, step, events) = (state.clone(), 0.0, SHRINK, None);
-        let steps = LoadSteps { base, reached, step, path_end, limit, resume, events };
-        self.phase = NewtonPhase::LoadSteps(Box::new(steps));
-        self.begin_load_step();
     }
 
     fn begin_load_step(&mut self) {
         if let NewtonPhase::LoadSteps(steps) = &self.phase {
-            self.load_factor = (steps.reached + steps.step).min(1.0);
-            self.load_steps += 1;
+            self.load_factor = Some((steps.reached + steps.step).min(1.0));
         }
-        self.begin_full_steps();
-    }
-
-    fn begin_full_steps(&mut self) {
-        (self.steps, self.worse) = (0, 0);
-        (self.shortest, self.last_residual) = (f64::INFINITY, f64::INFINITY);
+        (self.load_steps, self.steps) = (self.load_steps + 1, 0);
     }
 
     /// Returns `true` if the tangent is known to be positive definite without a factorization: every tangent of the
@@ -227,7 +164,7 @@ impl Newton {
     fn is_known_stable(&self) -> bool {
         /// Largest contraction.
         const FAST: f64 = 0.1;
-        let is_fast = self.contraction.is_some_and(|ratio| ratio <= FAST);
+        let is_fast = self.lengths.ratio.is_some_and(|ratio| ratio <= FAST);
         matches!(self.phase, NewtonPhase::Direct) && self.from_rest && is_fast
     }
 
@@ -259,35 +196,34 @@ impl Newton {
             return;
         };
         let progress = follower.advance(&mut equations, before + solves_left);
-        drop(follower.take_parts());
+        follower.parts.clear();
         self.solves = (follower.linearizations() - before).max(1);
         self.load_steps = follower.steps;
         let shown = match &progress {
-            PathProgress::Continue => follower.current(),
-            PathProgress::Reached | PathProgress::Ended(_) => follower.last(),
+            PathProgress::Continue => &follower.path.point,
+            PathProgress::Reached | PathProgress::Ended(_) => &follower.last,
         };
         state.copy_from(&shown.state);
-        self.load_factor = shown.factor;
-        // Nothing but the path leads to its end where supports move.
-        let is_too_long = !problem.supports().move_the_body() && follower.linearizations() > self.max_path_solves;
+        self.load_factor = Some(shown.factor);
+        // Nothing but the path leads to its end where supports move, or beyond a limit point.
+        let may_leave = follower.limit.is_none() && !problem.supports().move_the_body() && !self.load_steps_failed;
+        let is_long = follower.linearizations() > MAX_PATH_SOLVES;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
-            PathProgress::Continue if !is_too_long => {}
+            PathProgress::Continue if !(may_leave && is_long) => {}
             PathProgress::Reached => {
-                let events = follower.take_events();
-                self.may_be_unstable = !events.bifurcations.is_empty();
-                self.phase = NewtonPhase::Finish(events);
-                self.load_factor = 1.0;
-                self.begin_full_steps();
+                self.phase = NewtonPhase::Finish(follower.take_events());
+                (self.load_factor, self.steps) = (None, 0);
             }
-            // The path is too long, rounding errors keep the follower from any step, or the descent is too slow.
-            PathProgress::Continue | PathProgress::Ended(_) => {
-                let limit = follower.limit().cloned().map(|limit| (limit, follower.take_events()));
-                let path_end = follower.last().clone();
-                let can_go_on = matches!(progress, PathProgress::Continue) && limit.is_none();
-                let resume = if can_go_on { Some(follower.clone()) } else { None };
-                self.begin_load_steps(state, path_end, limit, resume);
+            // The path is long, or rounding errors keep the follower from any step.
+            PathProgress::Continue | PathProgress::Ended(_) if may_leave => {
+                state.reset();
+                let (base, goes_on) = (state.clone(), matches!(progress, PathProgress::Continue));
+                let steps = LoadSteps { base, reached: 0.0, step: SHRINK, path: follower.clone(), goes_on };
+                self.phase = NewtonPhase::LoadSteps(Box::new(steps));
+                self.begin_load_step();
             }
+            _ => self.end = Some(Reason::NoEquilibrium(shown.factor)),
         }
     }
 }
@@ -342,19 +278,18 @@ impl Method for Newton {
     }
 
     fn linearization(&self) -> Linearization {
-        Linearization::corotated(Tangent::EXACT, self.load_factor)
+        Linearization::corotated(Tangent::EXACT, self.load_factor.unwrap_or(1.0))
     }
 
     fn report(&self) -> MethodReport {
-        MethodReport { load_steps: self.load_steps, solves: self.solves, ..MethodReport::DEFAULT }
+        MethodReport { load_steps: self.load_steps.max(1), solves: self.solves.max(1), ..MethodReport::DEFAULT }
     }
 
     fn path_events(&self) -> Option<PathEvents> {
         match &self.phase {
             NewtonPhase::Direct if self.from_rest => Some(PathEvents::default()),
             NewtonPhase::Finish(events) => Some(events.clone()),
-            NewtonPhase::LoadSteps(steps) => steps.events.clone(),
-            NewtonPhase::Direct | NewtonPhase::Path(_) => None,
+            NewtonPhase::Direct | NewtonPhase::Path(_) | NewtonPhase::LoadSteps(_) => None,
         }
     }
 
@@ -365,7 +300,7 @@ impl Method for Newton {
             if self.steps == 1 && matches!(self.phase, NewtonPhase::Direct) {
                 self.from_rest = it.is_at_rest();
                 if self.from_rest && it.problem.supports().move_the_body() {
-                    self.begin_path();
+                    *self = Self::on_path();
                 }
             }
         }
@@ -378,60 +313,54 @@ impl Method for Newton {
 
     fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, step: Option<f64>) -> Verdict {
         if let Some(step) = step {
-            self.contraction = (self.last_step > 0.0).then(|| step / self.last_step);
-            self.last_step = step;
+            self.lengths.stepped(step);
             if self.from_rest && self.steps == 1 {
                 self.linear = size(&it.state.displacement);
                 if softens(it) {
-                    self.give_up(it.state);
-                    return Verdict::Changed;
+                    return self.give_up(it.state);
                 }
             }
         }
-        let (residual, is_partial) = (it.forces.relative_residual, self.load_factor < 1.0);
+        let (residual, is_partial) = (it.forces.relative_residual, self.load_factor.is_some_and(|factor| factor < 1.0));
         let tolerance = criteria.residual.max(if is_partial { BETWEEN_LOAD_STEPS } else { 0.0 });
         if let NewtonPhase::Path(_) = self.phase {
             return self.end.take().map_or(Verdict::Continue, Verdict::Stop);
         }
-        // A step takes the rounding errors of the supports' motion along the path out of the strains.
-        let is_carried = matches!(self.phase, NewtonPhase::Finish(_)) && it.problem.supports().move_the_body();
-        if self.steps == 0 && (is_carried || matches!(self.phase, NewtonPhase::LoadSteps(_))) {
-            return Verdict::Continue;
+        let is_direct = matches!(self.phase, NewtonPhase::Direct);
+        // A body at rest without load is in equilibrium, but its supports may have to move.
+        if self.steps == 0 && is_direct && residual <= tolerance && it.supports_are_at(1.0, Kinematics::Corotated) {
+            return Verdict::Converged(None);
         }
-        if self.steps == 0 && matches!(self.phase, NewtonPhase::Direct) {
-            // A body at rest without load is in equilibrium, but its supports may have to move.
-            let is_there = it.supports_are_at(1.0, Kinematics::Corotated);
-            return if residual <= tolerance && is_there { Verdict::Converged(None) } else { Verdict::Continue };
+        // A step takes the rounding errors of the supports' motion along the path out of the strains.
+        let is_end = matches!(self.phase, NewtonPhase::Finish(_)) && !it.problem.supports().move_the_body();
+        if self.steps == 0 && !is_end {
+            return Verdict::Continue;
         }
         let gets_on = residual < self.last_residual;
         self.last_residual = residual;
         // A step computed from a residual at rounding level would be rounding error too, and move soft bodies far.
         let floor = if residual <= tolerance || is_partial { None } else { it.floor() };
         if residual <= tolerance || floor.is_some() {
-            let grows = self.from_rest && grows(it.state, self.linear);
-            let is_known = self.may_be_unstable || self.is_known_stable();
+            let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear;
+            let is_unstable = matches!(&self.phase, NewtonPhase::Finish(events) if !events.bifurcations.is_empty());
+            let is_known = is_unstable || self.is_known_stable();
             if !grows && (is_known || it.factorize().is_ok()) {
-                if let NewtonPhase::LoadSteps(steps) = &mut self.phase
-                    && is_partial
-                {
-                    steps.base.copy_from(it.state);
-                    steps.reached = self.load_factor;
-                    steps.step *= GROW;
-                    self.begin_load_step();
-                    return Verdict::Changed;
+                let NewtonPhase::LoadSteps(steps) = &mut self.phase else { return Verdict::Converged(floor) };
+                if !is_partial {
+                    return Verdict::Converged(floor);
                 }
-                if let NewtonPhase::LoadSteps(steps) = &mut self.phase
-                    && let Some((limit, mut events)) = steps.limit.take()
-                {
-                    events.jump = Some(Jump::from(&limit, Some(it.state), false, it.problem));
-                    steps.events = Some(events);
-                }
-                return Verdict::Converged(floor);
+                steps.base.copy_from(it.state);
+                (steps.reached, steps.step) = (steps.reached + steps.step, GROW * steps.step);
+                self.begin_load_step();
+                return Verdict::Changed;
             }
             return self.fail(it.state);
         }
-        if self.last_step < self.shortest {
-            self.shortest = self.last_step;
+        if self.steps == 0 {
+            return Verdict::Continue;
+        }
+        if self.steps == 1 || self.lengths.last < self.shortest {
+            self.shortest = self.lengths.last;
             self.worse = 0;
         } else {
             self.worse += 1;
@@ -441,7 +370,7 @@ impl Method for Newton {
             return Verdict::Stop(Reason::Stuck(self.worse));
         }
         let nodes = (it.workspace.linear.correction.len() as f64 * 0.5).sqrt();
-        let too_long = self.last_step / nodes > LONGEST_STEP * it.problem.system().size();
+        let too_long = self.lengths.last / nodes > LONGEST_STEP * it.problem.system().size();
         let hopeless = self.steps > 1
             && (too_long || self.worse >= PATIENCE && !near || farthest(it.problem.system(), it.state) > LONGEST_STEP);
         let late = self.steps >= MAX_STEPS + if residual < CLOSE { LAST_STEPS } else { 0 };
@@ -451,17 +380,17 @@ impl Method for Newton {
     fn stop(&mut self, state: &mut State) {
         match &self.phase {
             NewtonPhase::Path(Some(follower)) => {
-                state.copy_from(&follower.last().state);
-                self.load_factor = follower.last().factor;
+                state.copy_from(&follower.last.state);
+                self.load_factor = Some(follower.last.factor);
             }
             // Without load the body at rest is the only known equilibrium.
             NewtonPhase::Direct | NewtonPhase::Path(None) => {
                 state.reset();
-                self.load_factor = 0.0;
+                self.load_factor = Some(0.0);
             }
             NewtonPhase::LoadSteps(steps) => {
                 state.copy_from(&steps.base);
-                self.load_factor = steps.reached;
+                self.load_factor = Some(steps.reached);
             }
             NewtonPhase::Finish(_) => {}
         }
@@ -473,12 +402,6 @@ impl Method for Newton {
             NewtonPhase::Path(_) | NewtonPhase::Finish(_) => Verdict::Stop(Reason::Iteration(error)),
         }
     }
-}
-
-/// Returns `true` if a displacement is so much larger than that of linear theory, whose norm is `linear`, m, that the
-/// body may have softened.
-pub(super) fn grows(state: &State, linear: f64) -> bool {
-    size(&state.displacement) > MAX_GROWTH * linear
 }
 
 /// Returns the Euclidean norm of a displacement, m.

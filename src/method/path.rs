@@ -15,7 +15,7 @@ use std::borrow::Cow;
 use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, LinearSystem, Problem};
-use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure};
+use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure, dot};
 use crate::element::Tangent;
 use crate::format::engineering;
 use crate::rotation::Rotation;
@@ -172,12 +172,8 @@ impl PathEquations for StaticEquations<'_> {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 fn norm(v: &[f64]) -> f64 {
-    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+    dot(v, v).sqrt()
 }
 
 /// Returns the mode of a factorized matrix with the eigenvalue closest to 0, and this eigenvalue, by inverse iteration;
@@ -380,25 +376,25 @@ pub(crate) enum PathPart {
 /// Follower of the path from rest to a load factor.
 #[derive(Clone, Debug)]
 pub(crate) struct PathFollower {
-    path: Continuation<State>,
+    pub path: Continuation<State>,
     /// Load factor at the end.
     end: f64,
     /// Parts of the path since they were last taken.
-    parts: Vec<PathPart>,
+    pub parts: Vec<PathPart>,
     /// Limit point from which the body has jumped, until the path is stable again at the load of that point.
-    limit: Option<ContinuationPoint<State>>,
+    pub limit: Option<ContinuationPoint<State>>,
     /// Number of unstable modes that the path has gained at bifurcations.
     unstable_modes: usize,
     /// Number of linearizations since the limit point.
     since_limit: u32,
     /// Last equilibrium whose unstable modes all arose at bifurcations.
-    last: ContinuationPoint<State>,
+    pub last: ContinuationPoint<State>,
     /// `true` during the descent of the energy from the limit point.
     descends: bool,
     /// Number of linearizations of descents and of paths before them.
     descent_steps: u32,
     /// Critical points so far.
-    events: PathEvents,
+    pub events: PathEvents,
     /// Number of steps so far.
     pub steps: u32,
 }
@@ -439,11 +435,11 @@ impl PathFollower {
         // as much as the whole load in the norm of the path.
         let unit = 0.1 * equations.problem.system().size();
         let mut path = Continuation::start(equations, state, factor, unit, u32::MAX)?;
-        path.limit_factor(equations.problem.supports().largest_load_step());
+        path.max_by_factor = equations.problem.supports().largest_load_step();
         if equations.problem.supports().move_the_body() {
             path.places = PLACES;
         }
-        let last = path.point().clone();
+        let last = path.point.clone();
         let unstable_modes = last.modes;
         Some(Self {
             path,
@@ -460,35 +456,9 @@ impl PathFollower {
         })
     }
 
-    /// Locates every bifurcation, not only the first.
-    pub fn locating_all(mut self) -> Self {
-        self.path.locate_all();
-        self
-    }
-
     /// Returns the number of linearizations so far.
     pub fn linearizations(&self) -> u32 {
         self.path.linearizations + self.descent_steps
-    }
-
-    /// Returns the last point of the path.
-    pub fn current(&self) -> &ContinuationPoint<State> {
-        self.path.point()
-    }
-
-    /// Returns the limit point that the path is beyond, if it has not yet returned to its load.
-    pub fn limit(&self) -> Option<&ContinuationPoint<State>> {
-        self.limit.as_ref()
-    }
-
-    /// Returns `true` if the body has jumped.
-    pub fn has_jumped(&self) -> bool {
-        self.events.jump.is_some()
-    }
-
-    /// Takes the parts of the path since the last call.
-    pub fn take_parts(&mut self) -> Vec<PathPart> {
-        std::mem::take(&mut self.parts)
     }
 
     /// Takes the critical points up to the end, which the last step may have passed.
@@ -497,25 +467,9 @@ impl PathFollower {
         std::mem::take(&mut self.events)
     }
 
-    /// Returns the point at a load factor between two points of the path, which does not change; `None` if none is found.
-    pub fn between(
-        &self,
-        equations: &mut StaticEquations<'_>,
-        from: &ContinuationPoint<State>,
-        to: &ContinuationPoint<State>,
-        factor: f64,
-    ) -> Option<ContinuationPoint<State>> {
-        self.path.clone().between(equations, from, to, factor)
-    }
-
-    /// Returns the last equilibrium without unstable modes but those of bifurcations.
-    pub fn last(&self) -> &ContinuationPoint<State> {
-        &self.last
-    }
-
     /// Goes on toward the end by at most one step, with at most `solves` linearizations in all.
     pub fn advance(&mut self, equations: &mut StaticEquations<'_>, solves: u32) -> PathProgress {
-        self.path.limit_linearizations(solves.saturating_sub(self.descent_steps));
+        self.path.max_linearizations = solves.saturating_sub(self.descent_steps);
         if self.descends {
             return self.descend(equations, solves);
         }
@@ -524,7 +478,7 @@ impl PathFollower {
         let stepped = self.path.step(equations);
         self.steps += 1;
         self.since_limit += on_path(&self.path) - before;
-        let (from, to) = (self.path.before().clone(), self.path.point().clone());
+        let (from, to) = (self.path.before.clone(), self.path.point.clone());
         let is_beyond = self.limit.is_some();
         let progress = match stepped {
             Err(PathFailure::Limit) => PathProgress::Ended(PathEndReason::Solves(solves)),
@@ -560,7 +514,7 @@ impl PathFollower {
                 progress => progress,
             },
         };
-        let leaves = self.path.point().factor < LOWEST_FACTOR || self.since_limit > MAX_RETURN;
+        let leaves = self.path.point.factor < LOWEST_FACTOR || self.since_limit > MAX_RETURN;
         if self.limit.is_some() && leaves && matches!(progress, PathProgress::Continue) {
             return self.start_descent();
         }
@@ -652,9 +606,7 @@ impl PathFollower {
                     if jump.is_far(equations.problem) {
                         self.events.jump.get_or_insert(jump);
                     }
-                    if self.path.locates_all {
-                        next = next.locating_all();
-                    }
+                    next.path.locates_all = self.path.locates_all;
                     self.parts.push(PathPart::Landing(Box::new(next.last.clone())));
                     *self = Self {
                         parts: std::mem::take(&mut self.parts),

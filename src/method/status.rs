@@ -3,7 +3,7 @@
 use super::iteration::ROUNDING;
 use super::{Criteria, IterationError, Verdict};
 use crate::assembly::System;
-use crate::format::{engineering, number, two_digits};
+use crate::format::engineering;
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::state::{State, largest};
 use crate::step::Iteration;
@@ -66,18 +66,6 @@ impl From<&Reason> for Sentence {
     }
 }
 
-/// Explains in a sentence that a solve has ended at the rounding error of its residual.
-#[must_use]
-pub fn floor_text(floor: f64, tolerance: f64) -> Sentence {
-    let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
-    sentence!(
-        "the limit of rounding is reached: rounding may change the residual by %{floor}, so the tolerance \
-         %{tolerance} cannot be met here",
-        floor,
-        tolerance
-    )
-}
-
 /// Number of iterations without progress after which a fixed-point iteration is given up. A larger number lets slower
 /// iterations converge; a smaller one reports earlier that a load is too large.
 const PATIENCE: u32 = 30;
@@ -100,8 +88,9 @@ pub(super) struct StallDetector {
 /// Lengths of the last two steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepLengths {
-    last: f64,
-    ratio: Option<f64>,
+    pub last: f64,
+    /// Length of the last step relative to the one before.
+    pub ratio: Option<f64>,
 }
 
 impl StepLengths {
@@ -109,11 +98,6 @@ impl StepLengths {
     pub(super) fn stepped(&mut self, step: f64) {
         self.ratio = (self.last > 0.0).then(|| step / self.last).filter(|r| r.is_finite());
         self.last = step;
-    }
-
-    /// Returns the length of the last step relative to the one before.
-    pub(super) fn ratio(&self) -> Option<f64> {
-        self.ratio
     }
 }
 

@@ -18,7 +18,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "Warped stiffness: the article's fixed-point iteration, in which the stiffness of every element rotates \
             with it. Allows large rotations, but diverges under large loads.",
     start: || Box::<Warped>::default(),
-    motion: Some(MotionMethod::Warped),
+    motion: MotionMethod::Warped,
 };
 
 /// Method `warped`, the article's iteration.

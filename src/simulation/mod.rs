@@ -130,7 +130,7 @@ pub struct Solution {
 ///
 /// ```
 /// use warpbeam::{
-///     IntegratorKind, MethodKind, MotionDecision, MotionReport, MotionResult, Scene, Simulation,
+///     Decision, IntegratorKind, MethodKind, MotionReport, MotionResult, Scene, Simulation,
 /// };
 ///
 /// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]).with_method(MethodKind::Auto);
@@ -141,7 +141,7 @@ pub struct Solution {
 /// let MotionResult { time, auto, .. } = swing.solution().motion.ok_or("a dynamic scene has a motion")?;
 /// assert!((time - 0.5).abs() < 1e-9);
 /// let report: MotionReport = auto.ok_or("the method is `auto`")?;
-/// assert_ne!(report.decision, MotionDecision::Undecided);
+/// assert_ne!(report.decision, Decision::Undecided);
 /// assert_eq!(report.linear_steps + report.old_factor_steps + report.new_factor_steps, 30);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -355,9 +355,6 @@ impl Simulation {
     /// # Errors
     /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
-        if scene.analysis == Analysis::Dynamic {
-            scene.solver.method.entry().in_motion()?;
-        }
         let Self { body, process, .. } = self;
         let change = body.problem.update(scene)?;
         if change == Change::Mesh {

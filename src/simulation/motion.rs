@@ -5,11 +5,11 @@ use nalgebra::Vector2;
 use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionDecision, MotionReport, Solves,
-    StageSolver, Step, StepEnergy, StepError, StopReason, critical_step,
+    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionReport, Solves, StageSolver, Step,
+    StepEnergy, StepError, StopReason, critical_step,
 };
 use crate::element::StrainRate;
-use crate::method::MotionMethod;
+use crate::method::{Decision, MotionMethod};
 use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
 use crate::section::{MotionBalance, NodalBalance};
 use crate::state::{State, largest};
@@ -108,7 +108,7 @@ impl TimeStepping {
     /// Returns a motion that starts from the current state and velocity.
     pub(super) fn new(body: &mut Body) -> Result<Self, SimulationError> {
         let Body { scene, problem, state } = body;
-        let method = scene.solver.method.entry().in_motion()?;
+        let method = scene.solver.method.entry().motion;
         let mass = Mass::new(problem.system(), scene.material.area_density());
         let mut motion = Self {
             memory: Memory::new(problem.system())?,
@@ -176,7 +176,7 @@ impl TimeStepping {
     /// Continues after an edit; `before` is the previous scene. Displacement and velocity are kept.
     pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SimulationError> {
         let Body { scene, problem, state } = body;
-        self.method = scene.solver.method.entry().in_motion()?;
+        self.method = scene.solver.method.entry().motion;
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
@@ -262,9 +262,9 @@ impl TimeStepping {
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
             self.report.note(match self.counts.factorizations > factorizations {
-                _ if self.linear.is_in_use() => MotionDecision::Linear,
-                true => MotionDecision::NewFactor,
-                false => MotionDecision::OldFactor,
+                _ if self.linear.is_in_use() => Decision::Linear,
+                true => Decision::NewFactor,
+                false => Decision::OldFactor,
             });
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
                 self.stopped = Some(self.reason_to_run_away(whole));

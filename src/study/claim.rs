@@ -8,7 +8,7 @@ use super::trade::{Measurement, Study};
 use super::tune::Tuning;
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
-use crate::method::{Bifurcation, Drive, Jump, floor_text, rho_text};
+use crate::method::{Bifurcation, Drive, Jump};
 use crate::scene::{MethodKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status, probe_results};
@@ -425,4 +425,38 @@ pub(crate) fn driven_texts([motion, reaction]: [f64; 2], rotates: bool) -> [Stri
         true => [engineering(motion.to_degrees(), "°"), engineering(reaction, "N m")],
         false => [engineering(motion, "m"), engineering(reaction, "N")],
     }
+}
+
+/// Describes ρ in a sentence.
+#[must_use]
+pub fn rho_text(rho: f64) -> Sentence {
+    let text = match rho {
+        // Near 1, more digits are needed.
+        _ if (rho - 1.0).abs() < 5e-4 => format!("{rho:.6}"),
+        0.01..1000.0 => format!("{rho:.3}"),
+        ..0.01 => number(two_digits(rho)),
+        _ => format!("{rho:.1e}"),
+    };
+    match rho {
+        ..1.0 => sentence!(
+            "the warped iteration converges near this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
+            n = text
+        ),
+        _ => sentence!(
+            "the warped iteration leaves this equilibrium: an iteration multiplies a disturbance by ρ = %{n}",
+            n = text
+        ),
+    }
+}
+
+/// Explains in a sentence that a solve has ended at the rounding error of its residual.
+#[must_use]
+pub fn floor_text(floor: f64, tolerance: f64) -> Sentence {
+    let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
+    sentence!(
+        "the limit of rounding is reached: rounding may change the residual by %{floor}, so the tolerance \
+         %{tolerance} cannot be met here",
+        floor,
+        tolerance
+    )
 }

@@ -314,14 +314,14 @@ impl LoadPath {
         let mut follower = PathFollower::start(&mut tracer.equations(), 1.0)?;
         let now = sentence!("following the load path");
         let mut progress = PathProgress::Continue;
-        while matches!(progress, PathProgress::Continue) && !(to_jump && follower.has_jumped()) {
-            observe(Progress { fraction: follower.last().factor, now: Some(&now) }).is_continue().then_some(())?;
+        while matches!(progress, PathProgress::Continue) && !(to_jump && follower.events.jump.is_some()) {
+            observe(Progress { fraction: follower.last.factor, now: Some(&now) }).is_continue().then_some(())?;
             progress = follower.advance(&mut tracer.equations(), MAX_SOLVES);
-            drop(follower.take_parts());
+            follower.parts.clear();
         }
         let events = follower.take_events();
         let is_at_end = matches!(progress, PathProgress::Reached);
-        let end = is_at_end.then(|| follower.last().state.displacement.to_vec());
+        let end = is_at_end.then(|| follower.last.state.displacement.to_vec());
         let summary = PathSummary::of(events.jump, &events.bifurcations);
         (to_jump || is_at_end).then_some(PathFromRest { summary, end })
     }
@@ -437,21 +437,21 @@ impl Tracer {
     /// path and the displacement under the full load, m, if it is reached.
     fn trace(mut self, to: f64, observe: Observer<'_>) -> Option<(LoadPath, Option<Vec<Vector2<f64>>>)> {
         let now = sentence!("following the load path");
-        let mut follower = PathFollower::start(&mut self.equations(), to)?.locating_all();
-        let rest = follower.last().clone();
-        self.record(&follower, &rest);
+        let mut follower = PathFollower::start(&mut self.equations(), to)?;
+        follower.path.locates_all = true;
+        self.record(&follower, &follower.last);
         let mut states_before_jump = None;
         let end = loop {
-            if observe(Progress { fraction: follower.last().factor / to, now: Some(&now) }).is_break() {
+            if observe(Progress { fraction: follower.last.factor / to, now: Some(&now) }).is_break() {
                 break Some(PathEndReason::Interrupted);
             }
             let progress = follower.advance(&mut self.equations(), MAX_SOLVES);
-            for part in follower.take_parts() {
+            for part in std::mem::take(&mut follower.parts) {
                 match part {
                     PathPart::Between(ends) => self.follow(&follower, &ends[0], &ends[1]),
                     PathPart::Mark => self.mark(),
                     PathPart::Landing(landing) => {
-                        if follower.has_jumped() && landing.factor <= 1.0 {
+                        if follower.events.jump.is_some() && landing.factor <= 1.0 {
                             states_before_jump.get_or_insert(self.path.len());
                         }
                         self.last = None;
@@ -466,7 +466,7 @@ impl Tracer {
                 PathProgress::Ended(reason) => break Some(reason),
             }
         };
-        let (events, factor) = (follower.take_events(), follower.last().factor);
+        let (events, factor) = (follower.take_events(), follower.last.factor);
         self.mark();
         let path = LoadPath {
             scene: self.name,
@@ -492,7 +492,7 @@ impl Tracer {
             let at = factor(self.row);
             self.row += 1;
             if at > from.factor
-                && let Some(row) = follower.between(&mut self.equations(), from, to, at)
+                && let Some(row) = follower.path.clone().between(&mut self.equations(), from, to, at)
             {
                 self.record(follower, &row);
             }
@@ -587,7 +587,7 @@ impl Tracer {
         let (mut low, mut high) = (from.clone(), to.clone());
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low.factor + high.factor);
-            let point = follower.between(&mut self.equations(), &low, &high, middle)?;
+            let point = follower.path.clone().between(&mut self.equations(), &low, &high, middle)?;
             let side = if self.is_stable(&point)? == stable { &mut low } else { &mut high };
             *side = point;
         }

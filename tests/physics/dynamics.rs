@@ -11,7 +11,7 @@ use warpbeam::element::{DiscreteGradient, Lame, warped_strain};
 use warpbeam::rotation::{Rotation, polar_or};
 use warpbeam::scene::Analysis;
 use warpbeam::{
-    IntegratorKind, Load, Material, MethodKind, MotionDecision, MotionReport, Scene, Simulation, Status, StopReason,
+    Decision, IntegratorKind, Load, Material, MethodKind, MotionReport, Scene, Simulation, Status, StopReason,
 };
 
 const EULER: IntegratorKind = IntegratorKind::ImplicitEuler;
@@ -385,7 +385,7 @@ fn auto_uses_linear_theory_where_it_is_accurate_enough() {
         assert!(error <= 1.0, "{error}");
         assert!(auto.is_linear());
         let MotionReport { decision, linear_steps, factorizations, .. } = report(&auto);
-        assert_eq!((decision, linear_steps, factorizations), (MotionDecision::Linear, 240, 1), "{}", kind.id());
+        assert_eq!((decision, linear_steps, factorizations), (Decision::Linear, 240, 1), "{}", kind.id());
         let auto = run(&large.with_method(MethodKind::Auto));
         assert!(!auto.is_linear() && report(&auto).linear_steps < 5, "{:?}", report(&auto));
     }

@@ -5,12 +5,14 @@ use std::cell::RefCell;
 
 use super::{Language, said, speak};
 use crate::dynamics::{StepError, StopReason};
-use crate::method::{Decision, IterationError, Reason, floor_text, rho_text};
+use crate::method::{Decision, IterationError, Reason};
 use crate::scene::limits::{CELLS, FORCE};
 use crate::scene::{self, Scene, SceneError, Source, units};
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
-use crate::study::{Drive, Elsewhere, Jump, LoadPath, Reference, Setting, path_chart, section_chart};
+use crate::study::{
+    Drive, Elsewhere, Jump, LoadPath, Reference, Setting, floor_text, path_chart, rho_text, section_chart,
+};
 
 fn open(id: &str) -> Scene {
     scene::open(&Source { name: id.into(), assignments: Vec::new() }).unwrap()

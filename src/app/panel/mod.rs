@@ -244,8 +244,7 @@ fn picker<'a>(
 
 fn method(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut Vec<Action>) {
     let chosen = input.scene.solver.method.entry();
-    let served = METHODS.iter().filter(|entry| entry.serves(input.scene.analysis));
-    let entries = served.map(|entry| (entry.id, entry.about));
+    let entries = METHODS.iter().map(|entry| (entry.id, entry.about));
     let picked = picker(ui, "Method", (chosen.id, chosen.about), entries);
     if let Some(entry) = METHODS.iter().find(|entry| Some(entry.id) == picked) {
         let mut scene = Box::new(input.scene.clone());

@@ -12,12 +12,11 @@
 use nalgebra::Vector2;
 
 use self::expansion::{Expansion, relative_size};
-use super::newton::{Newton, grows, size, softens};
+use super::newton::{MAX_GROWTH, Newton, size, softens};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, PathEvents, Restart, Verdict};
 use crate::assembly::{Forces, Kinematics};
 use crate::element::Tangent;
-use crate::rotation::Rotation;
 use crate::scene::MethodKind;
 use crate::state::{State, largest};
 use crate::step::{Iteration, Linearization, Operation};
@@ -33,7 +32,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "As few computations as the estimated error allows for the required accuracy: no solve if nothing changed, linear \
             theory or the old factorization while accurate enough, load steps as a last resort.",
     start: || Box::<Auto>::default(),
-    motion: Some(MotionMethod::Adaptive),
+    motion: MotionMethod::Adaptive,
 };
 
 /// Fraction of the requested error that the estimates may reach; the rest is a margin for what they omit.
@@ -106,7 +105,7 @@ impl Auto {
             self.linear = false;
             return Ok(false);
         }
-        let turned = largest_rotation(&it.state.rotations);
+        let turned = it.state.rotations.iter().map(|r| r.angle().abs()).fold(0.0, f64::max);
         let tries = self.linear || turned <= LARGEST_LINEAR_ROTATION.min(self.refused.unwrap_or(f64::INFINITY));
         if !tries {
             return Ok(false);
@@ -176,15 +175,14 @@ impl Auto {
         self.lengths.stepped(it.step_length());
         if let Some(tangent) = &mut self.tangent {
             let near = tangent.definite && tangent.trusted && (!fresh || step <= NEAR);
-            tangent.serves = near && self.lengths.ratio().is_none_or(|r| r <= SERVES);
+            tangent.serves = near && self.lengths.ratio.is_none_or(|r| r <= SERVES);
         }
         // The remaining error is at most the last step if steps at least halve; else it is the sum of their geometric
         // series.
-        self.report.estimated_error = match self.lengths.ratio() {
-            Some(ratio) if ratio >= 1.0 => f64::INFINITY,
-            Some(ratio) => step * (ratio / (1.0 - ratio)).max(1.0),
-            // A single step gives no estimate: an old factor may be far too stiff for the remaining displacement.
-            None => f64::INFINITY,
+        // A single step gives no estimate: an old factor may be far too stiff for the remaining displacement.
+        self.report.estimated_error = match self.lengths.ratio {
+            Some(ratio) if ratio < 1.0 => step * (ratio / (1.0 - ratio)).max(1.0),
+            _ => f64::INFINITY,
         };
     }
 
@@ -217,11 +215,6 @@ impl Auto {
             Some(Accepted { residual_force, max_error: criteria.error, estimated_error: self.report.estimated_error });
         Verdict::Converged(None)
     }
-}
-
-/// Returns the largest angle of the rotations, rad.
-fn largest_rotation(r: &[Rotation]) -> f64 {
-    r.iter().map(|r| r.angle().abs()).fold(0.0, f64::max)
 }
 
 impl Method for Auto {
@@ -353,7 +346,7 @@ impl Method for Auto {
         let done = within || it.forces.relative_residual <= criteria.residual;
         match &self.tangent {
             Some(tangent) if done => {
-                let grows = self.from_rest && grows(it.state, self.linear_size);
+                let grows = self.from_rest && size(&it.state.displacement) > MAX_GROWTH * self.linear_size;
                 if tangent.definite && !grows { self.accept(it, criteria) } else { self.start_load_steps(it.state) }
             }
             Some(tangent) if self.from_rest && !tangent.definite => self.start_load_steps(it.state),

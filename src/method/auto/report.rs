@@ -31,6 +31,7 @@ pub struct AutoReport {
 
 /// Kind of solution that `auto` chose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Decision {
     /// Not finished.
@@ -46,21 +47,6 @@ pub enum Decision {
     NewFactor,
     /// Load stepping.
     LoadSteps,
-}
-
-impl Decision {
-    /// Returns the identifier in JSON.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Undecided => "undecided",
-            Self::Unchanged => "unchanged",
-            Self::Linear => "linear",
-            Self::OldFactor => "old_factor",
-            Self::NewFactor => "new_factor",
-            Self::LoadSteps => "load_steps",
-        }
-    }
 }
 
 displayed!(Decision);

@@ -232,7 +232,7 @@ fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
 
 /// Returns the methods that give different results.
 fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
-    let all = METHODS.iter().filter(|m| m.motion.is_some()).map(|m| m.kind);
+    let all = METHODS.iter().map(|m| m.kind);
     if integrator.is_explicit() {
         // Without a matrix, methods differ only in the theory.
         return vec![MethodKind::Linear, MethodKind::Newton];
