@@ -22,17 +22,14 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
 };
 
 /// Method `warped`, the article's iteration.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Warped {
     stall: StallDetector,
-    load_factor: f64,
+    /// Part of the load; `None` for the whole.
+    load_factor: Option<f64>,
     load_steps: u32,
-}
-
-impl Default for Warped {
-    fn default() -> Self {
-        Self { stall: StallDetector::default(), load_factor: 1.0, load_steps: 1 }
-    }
+    /// `true` if a mouse spring pulls the body: a hand is no load of the scene, and Newton's steps follow it.
+    is_pulled: bool,
 }
 
 impl Method for Warped {
@@ -45,29 +42,31 @@ impl Method for Warped {
     }
 
     fn linearization(&self) -> Linearization {
-        Linearization::corotated(Tangent::WARPED, self.load_factor)
+        let tangent = if self.is_pulled { Tangent::EXACT } else { Tangent::WARPED };
+        Linearization::corotated(tangent, self.load_factor.unwrap_or(1.0))
     }
 
     fn report(&self) -> MethodReport {
-        MethodReport { load_steps: self.load_steps, ..MethodReport::DEFAULT }
+        MethodReport { load_steps: self.load_steps.max(1), ..MethodReport::DEFAULT }
     }
 
     fn plan(&mut self, it: &mut Iteration<'_>, _: &Criteria) -> Result<Operation, IterationError> {
         if it.supports_rotate_in_steps() {
-            (self.load_factor, self.load_steps) = (0.0, 0);
+            (self.load_factor, self.load_steps) = (Some(0.0), 0);
         }
-        if self.load_factor < 1.0 {
-            self.load_factor = (self.load_factor + it.problem.supports().largest_load_step()).min(1.0);
+        if let Some(factor) = self.load_factor.filter(|factor| *factor < 1.0) {
+            self.load_factor = Some((factor + it.problem.supports().largest_load_step()).min(1.0));
             self.load_steps += 1;
             it.workspace.tangent = None;
         }
+        self.is_pulled = it.problem.mouse_spring().is_some();
         it.carry(self.linearization());
         it.put_supports(self.linearization());
-        Ok(Operation::Factorize)
+        Ok(if self.is_pulled { Operation::FactorizeIndefinite } else { Operation::Factorize })
     }
 
     fn check_convergence(&mut self, it: &mut Iteration<'_>, criteria: &Criteria, _: Option<f64>) -> Verdict {
-        if self.load_factor < 1.0 || !it.supports_are_at(1.0, Kinematics::Corotated) {
+        if self.load_factor.is_some_and(|factor| factor < 1.0) || !it.supports_are_at(1.0, Kinematics::Corotated) {
             return Verdict::Continue;
         }
         self.stall.check_convergence(it, criteria)

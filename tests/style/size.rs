@@ -13,7 +13,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_390),
     ("study", &["src/study"], 7_699),
     ("model", &["src/model", "src/scene"], 3_380),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_822),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_569),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 817),
     ("the rest of src", &["src"], 5_153),
-    ("tests", &["tests"], 21_442),
+    ("tests", &["tests"], 21_443),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_114;
+const SRC: usize = 64_113;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
