@@ -160,10 +160,15 @@ pub(crate) fn coarse_text(own: f64, reference: &ProbeReference) -> Option<String
     is_coarse.then(|| fill!("reference ± %{own}", own = percent(reference.own_error_percent)))
 }
 
-/// Formats the error of a result, percent: about, while the reference follows the load.
-pub(crate) fn error_text(own: Option<f64>, is_live: bool) -> String {
-    let about = if is_live { "≈ " } else { "" };
-    own.map_or_else(|| UNKNOWN.to_owned(), |own| format!("{about}{}", percent(own)))
+/// Formats the error of a result, percent: about, while the reference follows the load; its bound, where the error of the
+/// reference hides it.
+pub(crate) fn error_text(own: Option<f64>, bound: Option<f64>, is_live: bool) -> String {
+    let Some(own) = own else { return UNKNOWN.to_owned() };
+    match bound {
+        Some(bound) if bound > 2.0 * own => format!("≤ {}", format::bound_percent(bound)),
+        _ if is_live => format!("≈ {}", percent(own)),
+        _ => percent(own),
+    }
 }
 
 /// Returns `true` for an error, percent, that needs a remedy.

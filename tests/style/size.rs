@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 27_390),
+    ("app", &["src/app"], 27_396),
     ("study", &["src/study"], 7_699),
     ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_443),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_113;
+const SRC: usize = 64_119;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -106,7 +106,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let mut entries = vec![
         BarNumber {
             name: ERROR,
-            value: error_text(errors.own, input.live.is_some()),
+            value: error_text(errors.own, errors.bound, input.live.is_some()),
             word: match (doubt, errors.source) {
                 // A large error has a source, whatever else is to be doubted.
                 (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {

@@ -596,14 +596,15 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     if rect.width() < KEY_WIDTH {
         return None;
     }
-    let values = |word: &str, error: Option<f64>, area: Option<f64>| {
-        let error = error.map(|error| format!("  {}", error_text(Some(error), overlay.live.is_some())));
+    let values = |word: &str, [error, bound]: [Option<f64>; 2], area: Option<f64>| {
+        let error = error.map(|error| format!("  {}", error_text(Some(error), bound, overlay.live.is_some())));
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
         [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()
     };
+    let Errors { own, bound, linear, .. } = overlay.errors;
     let own = match overlay.scene.analysis {
-        Analysis::Static => values(overlay.scene.solver.method.id(), overlay.errors.own, overlay.areas[0]),
-        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), None, overlay.areas[0]),
+        Analysis::Static => values(overlay.scene.solver.method.id(), [own, bound], overlay.areas[0]),
+        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), [None; 2], overlay.areas[0]),
     };
     let mut lines = Vec::new();
     if overlay.magnification != 1.0 {
@@ -618,7 +619,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         ));
     }
     if overlay.ghost.is_some() {
-        let text = values(MethodKind::Linear.id(), overlay.errors.linear, overlay.areas[1]);
+        let text = values(MethodKind::Linear.id(), [linear, None], overlay.areas[1]);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {

@@ -399,8 +399,8 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         painter.rect_filled(rect, 4.0, palette.error_chip);
         left += 6.0;
     } else {
-        let number = error_text(error, input.live.is_some());
         let bound = judged.map(|(error, first)| first.error_bound(error));
+        let number = error_text(error, bound, input.live.is_some());
         let color = error_color(&palette, bound);
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
