@@ -16,8 +16,7 @@ use crate::render::AdapterReport;
 use crate::scene::{Analysis, Place, Scene, Support, registry};
 use crate::simulation::{Deformation, MotionResult, Solution, Status};
 use crate::study::{
-    Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, path_chart, section_chart, support_name,
-    support_text,
+    Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, section_chart, support_name, support_text,
 };
 
 /// Prints to standard output. A closed pipe, as after `head`, is not an error.
@@ -335,7 +334,7 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
         if let Some(u) = state.probes.first() {
             let _ = write!(text, "{:<24}  ", pair(*u, "m"));
         }
-        let _ = writeln!(text, "{}", path_chart::stability_text(state));
+        let _ = writeln!(text, "{}", if state.unstable_modes == 0 { "" } else { "unstable" });
     }
     text.push('\n');
     for claim in Claim::of_path(scene, path) {

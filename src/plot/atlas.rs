@@ -1,6 +1,6 @@
 //! A stability atlas as a drawing.
 
-use super::drawing::{Anchor, Color, Drawing, DrawingItem, Text};
+use super::drawing::{Anchor, Color, Drawing, Text};
 use crate::scene::ElementKind;
 use crate::study::extremes::{Case, Entry, Outcome, counts, labels};
 
@@ -40,7 +40,13 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
                 }
                 text(&mut drawing, 12.0, [x - 6.0, y + 14.0], Anchor::End, row);
                 for (column, counts) in cells.into_iter().enumerate().filter_map(|(i, counts)| Some((i, counts?))) {
-                    bar::<C>(&mut drawing, [x + CELL[0] * column as f64, y], counts);
+                    // The cell is divided by the counts of outcomes.
+                    let (total, mut left) = (counts.iter().sum::<usize>(), x + CELL[0] * column as f64);
+                    for (outcome, &count) in C::OUTCOMES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
+                        let width = (CELL[0] - 2.0) * count as f64 / total as f64;
+                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], color(outcome));
+                        left += width;
+                    }
                 }
                 y += CELL[1];
             }
@@ -52,18 +58,8 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
     drawing
 }
 
-/// Draws a cell with its upper left corner at `[left, y]`, divided by the counts of outcomes.
-fn bar<C: Case>(drawing: &mut Drawing, [mut left, y]: [f64; 2], counts: &[usize; Outcome::COUNT]) {
-    let total: usize = counts.iter().sum();
-    for (outcome, &count) in C::OUTCOMES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
-        let width = (CELL[0] - 2.0) * count as f64 / total as f64;
-        drawing.rect([[left, y], [width, CELL[1] - 2.0]], color(outcome));
-        left += width;
-    }
-}
-
 fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, content: &str) {
-    drawing.items.push(DrawingItem::Text(Text { size, ..Text::new(at, anchor, content) }));
+    drawing.put(Text { size, ..Text::new(at, anchor, content) });
 }
 
 /// Returns the colour of an outcome. Colours of one atlas differ in brightness (Okabe and Ito 2008).

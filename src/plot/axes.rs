@@ -1,7 +1,6 @@
 //! Axes of drawings: margins, scales, grids and the marks of elements.
 
-use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, Outline, Shape, Text, solid};
-use crate::format::number;
+use super::drawing::{Anchor, Color, Drawing, GRID, Outline, Shape, Text, solid};
 use crate::scene::ElementKind;
 
 /// Size of a drawing.
@@ -73,11 +72,6 @@ impl ScaledAxis {
         let values = if decades.len() > 1 { decades } else { of(&[1.0, 2.0, 5.0]) };
         values.into_iter().map(|value| (self.place(value), value)).collect()
     }
-
-    /// Returns the position and the label of each of [`Self::values`].
-    pub fn ticks(&self) -> Vec<(f64, String)> {
-        self.values().into_iter().map(|(place, value)| (place, number(value))).collect()
-    }
 }
 
 impl PlotMargins {
@@ -94,9 +88,7 @@ impl PlotMargins {
     /// Starts a drawing with its title.
     pub fn start(&self, title: impl Into<String>) -> Drawing {
         let mut drawing = Drawing::new([self.width, SIZE[1]]);
-        drawing
-            .items
-            .push(DrawingItem::Text(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) }));
+        drawing.put(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) });
         drawing
     }
 
@@ -113,7 +105,7 @@ impl PlotMargins {
         }
         drawing.text([0.5 * (left + right), SIZE[1] - 14.0], Anchor::Middle, x_label);
         let label = Text::new([22.0, 0.5 * (top + bottom)], Anchor::Middle, y_label);
-        drawing.items.push(DrawingItem::Text(Text { is_upright: true, ..label }));
+        drawing.put(Text { is_upright: true, ..label });
     }
 }
 

@@ -148,7 +148,11 @@ impl Drawing {
     }
 
     pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: impl Into<String>) {
-        self.items.push(DrawingItem::Text(Text::new(at, anchor, text)));
+        self.put(Text::new(at, anchor, text));
+    }
+
+    pub(super) fn put(&mut self, text: Text) {
+        self.items.push(DrawingItem::Text(text));
     }
 
     /// Draws what `draw` adds in a rectangle only.

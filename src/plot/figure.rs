@@ -1,7 +1,7 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
 use super::axes::{PlotMargins, SIZE};
-use super::drawing::{Anchor, Color, Drawing, Outline, Shape, Stroke, solid};
+use super::drawing::{Anchor, Drawing, Outline, Shape, Stroke, solid};
 use crate::format::{number, prefix, ticks};
 use crate::study::color;
 use crate::study::figure::{Figure, Ink, Mark};
@@ -14,28 +14,36 @@ const MARGINS: PlotMargins =
 /// Draws a figure with the table beside it.
 pub fn figure(figure: &Figure) -> Drawing {
     let ends = [MARGINS.across(), MARGINS.up()];
-    let corners = shaped_corners(figure, [ends[0][1] - ends[0][0], ends[1][0] - ends[1][1]]);
+    let [mut low, mut high] = figure.corners();
+    if figure.has_one_scale() {
+        let sizes = [ends[0][1] - ends[0][0], ends[1][0] - ends[1][1]];
+        let scale = ((high[0] - low[0]) / sizes[0]).max((high[1] - low[1]) / sizes[1]);
+        for (i, size) in sizes.into_iter().enumerate() {
+            let missing = 0.5 * (scale * size - (high[i] - low[i]));
+            (low[i], high[i]) = (low[i] - missing, high[i] + missing);
+        }
+    }
     let place = |value: f64, i: usize| {
         let [from, to] = ends[i];
-        from + (to - from) * (value - corners[0][i]) / (corners[1][i] - corners[0][i])
+        from + (to - from) * (value - low[i]) / (high[i] - low[i])
     };
     let mut drawing = MARGINS.start(figure.title.as_str());
     let mut labels = [String::new(), String::new()];
     let mut numbers = [Vec::new(), Vec::new()];
     for i in 0..2 {
         let Some(quantity) = figure.quantity(i) else { continue };
-        let (low, high) = (corners[0][i], corners[1][i]);
-        let (power, symbol) = prefix(&[low, high], quantity.unit);
+        let (power, symbol) = prefix(&[low[i], high[i]], quantity.unit);
         let unit = format!("{symbol}{}", quantity.unit);
         labels[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
-        numbers[i] = ticks(low, high, 8).into_iter().map(|v| (place(v, i), tick(v / 10f64.powi(power)))).collect();
+        let values = ticks(low[i], high[i], 8);
+        numbers[i] = values.into_iter().map(|v| (place(v, i), tick(v / 10f64.powi(power)))).collect();
     }
     MARGINS.grid(&mut drawing, numbers, [&labels[0], &labels[1]]);
     let [[left, right], [bottom, top]] = ends;
     drawing.clipped([[left, top], [right - left, bottom - top]], |drawing| {
         // Marks in the same place lie in each other.
         let mut size = 6.5;
-        for series in &figure.series {
+        for series in figure.series.iter().filter(|series| !series.points.is_empty()) {
             let points = series.points.iter().filter_map(|p| figure.place(p));
             draw(drawing, series.ink, series.mark, points.map(|[x, y]| [place(x, 0), place(y, 1)]).collect(), size);
             if series.mark == Mark::Disc {
@@ -47,41 +55,32 @@ pub fn figure(figure: &Figure) -> Drawing {
     drawing
 }
 
-/// The corners, with one scale for both axes where they have one, in a picture of this size.
-fn shaped_corners(figure: &Figure, [width, height]: [f64; 2]) -> [[f64; 2]; 2] {
-    let [mut low, mut high] = figure.corners();
-    if figure.has_one_scale() {
-        let scale = ((high[0] - low[0]) / width).max((high[1] - low[1]) / height);
-        for (i, size) in [width, height].into_iter().enumerate() {
-            let missing = 0.5 * (scale * size - (high[i] - low[i]));
-            (low[i], high[i]) = (low[i] - missing, high[i] + missing);
-        }
-    }
-    [low, high]
-}
-
 fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
     const ROW: f64 = 21.0;
     let mut y = 66.0;
-    let put = |drawing: &mut Drawing, [name, value]: [&String; 2], y: f64| {
+    let put = |drawing: &mut Drawing, [name, value]: [&str; 2], y: f64| {
         drawing.text([left + 26.0, y], Anchor::Start, name);
         drawing.text([right, y], Anchor::End, value);
     };
     let [name, value] = &figure.head;
     put(drawing, [name, value], y);
-    for row in &figure.rows {
+    for (series, value) in figure.rows() {
         y += ROW;
-        put(drawing, [&row.name, &row.value], y);
+        put(drawing, [&series.name, value], y);
         let middle = y - 4.5;
         let line = || vec![[left, middle], [left + 20.0, middle]];
-        let places = if row.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
-        draw(drawing, row.ink, row.mark, places, 4.5);
+        let places = if series.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
+        draw(drawing, series.ink, series.mark, places, 4.5);
     }
 }
 
 /// Draws a series at its places in the picture.
 fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size: f64) {
-    let color = on_paper(ink);
+    let color = match ink {
+        Ink::Method(method) => color(method.id(), false),
+        Ink::Unstable => [0xbe, 0x14, 0x1e],
+        Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
+    };
     let dashes: &[f64] = match mark {
         Mark::Dashes => &[9.0, 5.0],
         Mark::Dots => &[2.0, 5.0],
@@ -100,14 +99,6 @@ fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size
             Mark::Ring => drawing.add(Shape::stroked(Outline::Circle(place, size), color, solid(1.5))),
             _ => drawing.add(Shape::filled(Outline::Circle(place, size), color)),
         }
-    }
-}
-
-fn on_paper(ink: Ink) -> Color {
-    match ink {
-        Ink::Method(method) => color(method.id(), false),
-        Ink::Unstable => [0xbe, 0x14, 0x1e],
-        Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
     }
 }
 

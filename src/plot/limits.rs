@@ -1,10 +1,11 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::ScaledAxis;
-use super::drawing::{Anchor, Color, Drawing, DrawingItem, GRID, INK, Outline, Shape, Stroke, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, GRID, INK, Outline, Shape, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
-use crate::study::limits::{MethodLimits, Piece, Rating, axis as load_axis, axis_text, load_text};
+use crate::study::figure::LoadAxis;
+use crate::study::limits::{MethodLimits, Rating, axis_text, load_text};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
@@ -12,8 +13,11 @@ const ACROSS: [f64; 2] = [150.0, 760.0];
 const WIDTH: f64 = 1010.0;
 /// Upper and lower ends of the load curve.
 const CURVE: [f64; 2] = [56.0, 216.0];
-/// Height of a strip with the space below it.
+/// Height of a strip, and with the space below it.
+const HEIGHT: f64 = 18.0;
 const ROW: f64 = 26.0;
+/// Width by which bars overlap, so that no gap shows between those of one colour.
+const OVERLAP: f64 = 0.5;
 
 /// Returns the colour of a rating.
 pub(crate) fn rating_color(rating: Rating) -> Color {
@@ -28,14 +32,14 @@ pub(crate) fn rating_color(rating: Rating) -> Color {
 
 /// Draws the limits of a scene over the load.
 pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
-    let loads = load_axis(scene);
+    let loads = LoadAxis::of(scene);
     let axis = ScaledAxis::of(limits.range, ACROSS);
     // A motion has no load curve.
     let top = 44.0 + if limits.reference.is_empty() { CURVE[0] } else { CURVE[1] };
     let bottom = top + ROW * limits.strips.len() as f64;
     let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
     let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
-    drawing.items.push(DrawingItem::Text(Text { size: 16.0, ..title }));
+    drawing.put(Text { size: 16.0, ..title });
     for (x, factor) in axis.values() {
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
         drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));
@@ -46,7 +50,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
         drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
         drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
     }
-    if let Some(critical) = limits.critical_in_range() {
+    if let Some(critical) = limits.critical().filter(|&critical| limits.contains(critical)) {
         let x = axis.place(critical);
         let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
         drawing.line(vec![[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
@@ -57,7 +61,16 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     for (row, strip) in limits.strips.iter().enumerate() {
         let y = top + ROW * row as f64;
         drawing.text([ACROSS[0] - 12.0, y + 14.0], Anchor::End, strip.name(str::to_owned));
-        bars(&mut drawing, &strip.pieces(limits.range), &axis, y);
+        let pieces = strip.pieces(limits.range);
+        for (i, piece) in pieces.iter().enumerate() {
+            let [from, to] = piece.range.map(|factor| axis.place(factor));
+            let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
+            let overlap = if is_joined { OVERLAP } else { 0.0 };
+            drawing.rect([[from, y], [(to - from + overlap).max(0.0), HEIGHT]], rating_color(piece.rating));
+            if piece.is_beyond_law {
+                hatch(&mut drawing, [from, to], [y, y + HEIGHT]);
+            }
+        }
         let end = strip.end(&loads, limits.range).map_or_else(String::new, |end| end.to_string());
         drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
     }
@@ -84,22 +97,6 @@ fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &ScaledAxis) {
     drawing.text([ACROSS[1] + 12.0, CURVE[0] + 30.0], Anchor::Start, "of the first probe");
 }
 
-/// Draws the bars of a strip.
-fn bars(drawing: &mut Drawing, pieces: &[Piece], axis: &ScaledAxis, y: f64) {
-    const HEIGHT: f64 = 18.0;
-    /// No gap shows between bars of one colour.
-    const OVERLAP: f64 = 0.5;
-    for (i, piece) in pieces.iter().enumerate() {
-        let [from, to] = piece.range.map(|factor| axis.place(factor));
-        let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
-        let overlap = if is_joined { OVERLAP } else { 0.0 };
-        drawing.rect([[from, y], [(to - from + overlap).max(0.0), HEIGHT]], rating_color(piece.rating));
-        if piece.is_beyond_law {
-            hatch(drawing, [from, to], [y, y + HEIGHT]);
-        }
-    }
-}
-
 /// Draws slanted lines over a bar.
 fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
     const GAP: f64 = 7.0;
@@ -116,10 +113,10 @@ fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
 
 fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
     const BOX: f64 = 14.0;
-    let entries = Rating::all(moves).map(|(rating, name)| (rating_color(rating), name.to_string()));
     let mut x = 20.0;
-    for (color, text) in entries {
-        drawing.rect([[x, y], [BOX, BOX]], color);
+    for (rating, name) in Rating::all(moves) {
+        let text = name.to_string();
+        drawing.rect([[x, y], [BOX, BOX]], rating_color(rating));
         drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, text.as_str());
         x += 46.0 + 7.4 * text.chars().count() as f64;
     }

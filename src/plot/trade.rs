@@ -1,8 +1,9 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
 use super::axes::{MARGINS, ROW, ScaledAxis, mark};
-use super::drawing::{Anchor, Drawing, DrawingItem, INK, Outline, Shape, Stroke, Text, solid};
+use super::drawing::{Anchor, Drawing, INK, Outline, Shape, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
+use crate::format::number;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::motion::REAL_TIME;
@@ -34,12 +35,13 @@ pub fn study(study: &Study) -> Drawing {
     let x = ScaledAxis::decades(measured.iter().map(|m| m.milliseconds).chain(real_time), MARGINS.across());
     let y = ScaledAxis::decades(measured.iter().map(|m| error(m)), MARGINS.up());
     let mut drawing = MARGINS.start(format!("{}: {title}", study.scene));
-    MARGINS.grid(&mut drawing, [x.ticks(), y.ticks()], labels);
+    let ticks = [&x, &y].map(|axis| axis.values().into_iter().map(|(place, value)| (place, number(value))).collect());
+    MARGINS.grid(&mut drawing, ticks, labels);
     if let Some(time) = real_time {
         let ([bottom, top], at) = (MARGINS.up(), x.place(time));
         drawing.line(vec![[at, top], [at, bottom]], [0x55; 3], DASHED);
         let label = Text::new([at, top - 6.0], Anchor::Middle, "real time");
-        drawing.items.push(DrawingItem::Text(Text { color: INK, ..label }));
+        drawing.put(Text { color: INK, ..label });
     }
     let place = |m: &Measurement| [x.place(m.milliseconds), y.place(error(m))];
     drawing.line(study.front().into_iter().map(place).collect(), INK, solid(WIDTH));

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::export::csv_field;
-use crate::scene::{Load, MethodKind, Scene};
+use crate::scene::{Analysis, Load, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
 
 /// A quantity that every point of a figure has.
@@ -98,27 +98,22 @@ pub struct FigureSeries {
     pub may_leave: bool,
     /// Points, in the order in which a line joins them.
     pub points: Vec<FigurePoint>,
+    /// Present value with its unit in the table beside the figure; may be empty. `None` if the table does not have the
+    /// series.
+    pub value: Option<String>,
 }
 
 impl FigureSeries {
-    /// Returns a series that stretches the picture.
+    /// Returns a series that stretches the picture, with an empty value in the table.
     #[must_use]
     pub fn new(name: String, ink: Ink, mark: Mark, points: Vec<FigurePoint>) -> Self {
-        Self { name, ink, mark, may_leave: false, points }
+        Self { name, ink, mark, may_leave: false, points, value: Some(String::new()) }
     }
-}
 
-/// A row of the table beside a figure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FigureRow {
-    /// Name of the series.
-    pub name: String,
-    /// Colour.
-    pub ink: Ink,
-    /// Line or mark; that of a status without result, such as `diverged`, is a cross.
-    pub mark: Mark,
-    /// Present value with its unit; may be empty.
-    pub value: String,
+    /// Returns a row of the table that is not drawn.
+    pub(super) fn row(name: String, ink: Ink, mark: Mark, value: String) -> Self {
+        Self { value: Some(value), ..Self::new(name, ink, mark, Vec::new()) }
+    }
 }
 
 /// Series over two of their quantities, and a table of present values.
@@ -134,11 +129,16 @@ pub struct Figure {
     pub series: Vec<FigureSeries>,
     /// Headings of the table: name and value.
     pub head: [String; 2],
-    /// Rows of the table.
-    pub rows: Vec<FigureRow>,
 }
 
 impl Figure {
+    /// Returns the rows of the table, each with the value of a series.
+    pub fn rows(&self) -> impl Iterator<Item = (&FigureSeries, &str)> {
+        let is_first = |(i, series): &(usize, &FigureSeries)| self.series[..*i].iter().all(|s| s.name != series.name);
+        let first = self.series.iter().enumerate().filter(is_first);
+        first.filter_map(|(_, series)| Some((series, series.value.as_deref()?)))
+    }
+
     /// Returns the quantity along an axis: 0 is horizontal, 1 vertical.
     #[must_use]
     pub fn quantity(&self, axis: usize) -> Option<&FigureQuantity> {
@@ -168,37 +168,31 @@ impl Figure {
         const SPACE: f64 = 0.05;
         let places = |may_leave: bool| {
             let own = self.series.iter().filter(move |series| series.may_leave == may_leave);
-            own.flat_map(|series| &series.points).filter_map(|point| self.place(point))
+            own.flat_map(|series| &series.points).filter_map(|point| self.place(point)).map(Vector2::from)
         };
-        let around = |[low, high]: [[f64; 2]; 2], p: [f64; 2]| {
-            [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
-        };
-        let extents = |[low, high]: [[f64; 2]; 2]| [0, 1].map(|i| high[i] - low[i]);
-        let grown = |[low, high]: [[f64; 2]; 2], by: [f64; 2]| {
-            [[low[0] - by[0], low[1] - by[1]], [high[0] + by[0], high[1] + by[1]]]
-        };
-        let mut whole = places(false).fold([[0.0; 2]; 2], around);
+        let around = |[low, high]: [Vector2<f64>; 2], p: Vector2<f64>| [low.inf(&p), high.sup(&p)];
+        let mut whole = places(false).fold([Vector2::zeros(); 2], around);
         if whole[0] == whole[1] {
             whole = places(true).fold(whole, around);
         } else {
-            let [width, height] = extents(whole);
+            let ([low, high], extent) = (whole, whole[1] - whole[0]);
             // The longer axis decides a common scale, so the shorter one has room.
-            let room = if self.has_one_scale() { [width.max(height); 2] } else { [width, height] };
-            let [low, high] = grown(whole, room.map(|extent| LEAVES * extent));
-            let clamped = places(true).map(|p| [0, 1].map(|i| p[i].clamp(low[i], high[i])));
+            let room = LEAVES * if self.has_one_scale() { Vector2::repeat(extent.max()) } else { extent };
+            let clamped = places(true).map(|p| p.sup(&(low - room)).inf(&(high + room)));
             whole = clamped.fold(whole, around);
         }
-        let [mut low, mut high] = grown(whole, extents(whole).map(|extent| SPACE * extent));
+        let space = SPACE * (whole[1] - whole[0]);
+        let [mut low, mut high] = [whole[0] - space, whole[1] + space];
         // An axis of loads begins at the edge of the picture, without a margin.
-        if self.axes[0] == 0 && whole[0][0] == 0.0 {
-            low[0] = 0.0;
+        if self.axes[0] == 0 && whole[0].x == 0.0 {
+            low.x = 0.0;
         }
         for i in 0..2 {
             if low[i] >= high[i] {
                 (low[i], high[i]) = (low[i] - 0.5, high[i] + 0.5);
             }
         }
-        [low, high]
+        [low.into(), high.into()]
     }
 
     /// Formats the series as CSV, a row per point, in the units of the headings.
@@ -228,14 +222,14 @@ fn csv_row(fields: &[String]) -> String {
     fields.join(",") + "\n"
 }
 
-/// Axis of a scene's loads.
+/// Axis of a scene's loads, or of the time step of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadAxis {
     /// Name of the quantity.
     pub name: Sentence,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
-    /// Value under the scene's own loads.
+    /// Value of the scene itself.
     pub full: f64,
 }
 
@@ -244,6 +238,9 @@ impl LoadAxis {
     /// factor.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        if scene.analysis == Analysis::Dynamic {
+            return Self { name: sentence!("time step"), unit: "s", full: scene.dynamics.time_step };
+        }
         let pulling: Vec<(&'static str, &'static str, f64)> =
             scene.loads.iter().map(kind).filter(|(_, _, size)| *size > 0.0).collect();
         let one_unit = pulling.windows(2).all(|pair| pair[0].1 == pair[1].1);

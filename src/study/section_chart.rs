@@ -1,6 +1,6 @@
 //! Section forces as figures: the stress along a cut, and N, V and M along a beam.
 
-use super::figure::{Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, Mark};
+use super::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, Mark};
 use super::path_chart::Render;
 use crate::format::{Context, engineering, three_digits};
 use crate::scene::Scene;
@@ -74,49 +74,41 @@ pub const STRESSES: [(&str, &str, [&str; 2]); 2] = [
 /// from the middle; the forces have these contexts, and `render` translates the names.
 #[must_use]
 pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 2] {
-    [0, 1].map(|component| stress_of(component, section, scene, contexts, render))
-}
-
-fn stress_of(
-    component: usize,
-    section: &Section,
-    scene: &Scene,
-    contexts: &[Context; 3],
-    render: Render<'_>,
-) -> Figure {
-    let (_, name, names) = STRESSES[component];
-    let recovered = section.points.iter().map(|p| (p.stress.map(|stress| stress[component]), p.along)).collect();
-    let ends = [section.points.first(), section.points.last()].map(|point| point.filter(|point| point.beam.is_some()));
-    let beam = || -> Vec<(Option<f64>, f64)> {
-        let [Some(first), Some(last)] = ends else { return Vec::new() };
-        let along = |k: u32| first.along + (last.along - first.along) * f64::from(k) / f64::from(BEAM_POINTS - 1);
-        let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[component];
-        (0..BEAM_POINTS).map(|k| (Some(stress(along(k))), along(k))).collect()
-    };
-    let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| {
-        let at = |(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() };
-        FigureSeries::new(render(&name.into()), ink, mark, points.into_iter().map(at).collect())
-    };
-    let method = Ink::Method(scene.solver.method);
-    let mut series =
-        vec![series(names[0], method, Mark::Line, recovered), series(names[1], Ink::BeamTheory, Mark::Dashes, beam())];
-    series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
-    let mut rows: Vec<FigureRow> =
-        series.iter().map(|series| row(series.name.clone(), series.ink, series.mark, String::new())).collect();
-    rows.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
-        let [value, of_stress] =
-            [&section.forces, &section.stress_forces].map(|forces| within.engineering(three_digits(of(forces)), unit));
-        row((*symbol).to_owned(), Ink::Scene, Mark::Disc, format!("{value} ({of_stress})"))
-    }));
-    let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
-    Figure {
-        title: format!("{}: {}", render(&scene.name.as_str().into()), render(&"stress in a cut".into())),
-        quantities: vec![quantity(name, "Pa"), quantity("distance from the middle", "m")],
-        axes: [0, 1],
-        series,
-        rows,
-        head: [String::new(), render(&"in the cut (of the drawn stress)".into())],
-    }
+    [0, 1].map(|component| {
+        let (_, name, names) = STRESSES[component];
+        let recovered = section.points.iter().map(|p| (p.stress.map(|stress| stress[component]), p.along)).collect();
+        let ends =
+            [section.points.first(), section.points.last()].map(|point| point.filter(|point| point.beam.is_some()));
+        let beam = || -> Vec<(Option<f64>, f64)> {
+            let [Some(first), Some(last)] = ends else { return Vec::new() };
+            let along = |k: u32| first.along + (last.along - first.along) * f64::from(k) / f64::from(BEAM_POINTS - 1);
+            let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[component];
+            (0..BEAM_POINTS).map(|k| (Some(stress(along(k))), along(k))).collect()
+        };
+        let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| {
+            let at = |(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() };
+            FigureSeries::new(render(&name.into()), ink, mark, points.into_iter().map(at).collect())
+        };
+        let method = Ink::Method(scene.solver.method);
+        let mut series = vec![
+            series(names[0], method, Mark::Line, recovered),
+            series(names[1], Ink::BeamTheory, Mark::Dashes, beam()),
+        ];
+        series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
+        series.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
+            let [value, of_stress] = [&section.forces, &section.stress_forces]
+                .map(|forces| within.engineering(three_digits(of(forces)), unit));
+            FigureSeries::row((*symbol).to_owned(), Ink::Scene, Mark::Disc, format!("{value} ({of_stress})"))
+        }));
+        let quantity = |name: &str, unit| FigureQuantity::new(render(&name.into()), unit);
+        Figure {
+            title: format!("{}: {}", render(&scene.name.as_str().into()), render(&"stress in a cut".into())),
+            quantities: vec![quantity(name, "Pa"), quantity("distance from the middle", "m")],
+            axes: [0, 1],
+            series,
+            head: [String::new(), render(&"in the cut (of the drawn stress)".into())],
+        }
+    })
 }
 
 /// Returns the largest value of a component in these sections, rounded within a context, and its position x, m: the first
@@ -147,25 +139,18 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
                 true => sentence!("constant"),
                 false => sentence!("largest, at %{at}", at = engineering(three_digits(x), "m")),
             };
-            row(render(&at), ink, Mark::Line, engineering(three_digits(value), unit))
+            FigureSeries::row(render(&at), ink, Mark::Line, engineering(three_digits(value), unit))
         });
+        let curve = FigureSeries { value: None, ..FigureSeries::new(name.clone(), ink, Mark::Line, points.collect()) };
         Figure {
             title: format!("{}: {name}", render(&scene.name.as_str().into())),
-            quantities: vec![
-                FigureQuantity::new(render(&"x at rest".into()), "m"),
-                FigureQuantity::new(name.clone(), unit),
-            ],
+            quantities: vec![FigureQuantity::new(render(&"x at rest".into()), "m"), FigureQuantity::new(name, unit)],
             axes: [0, 1],
-            series: vec![FigureSeries::new(name, ink, Mark::Line, points.collect())],
-            rows: largest.into_iter().collect(),
+            series: std::iter::once(curve).chain(largest).collect(),
             ..Figure::default()
         }
     };
     [0, 1, 2].map(of)
-}
-
-fn row(name: String, ink: Ink, mark: Mark, value: String) -> FigureRow {
-    FigureRow { name, ink, mark, value }
 }
 
 #[cfg(test)]

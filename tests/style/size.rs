@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 27_396),
-    ("study", &["src/study"], 7_699),
+    ("app", &["src/app"], 27_391),
+    ("study", &["src/study"], 7_628),
     ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_822),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_569),
+    ("cli", &["src/cli"], 2_568),
     ("dynamics", &["src/dynamics"], 1_999),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
-    ("plot", &["src/plot"], 817),
+    ("plot", &["src/plot"], 799),
     ("the rest of src", &["src"], 5_153),
     ("tests", &["tests"], 21_443),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_119;
+const SRC: usize = 64_024;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -92,17 +92,17 @@ fn the_plots_have_the_values_of_the_library() {
     let stresses = section_chart::stress(&section, ui.scene(), &within, &ToString::to_string);
     for (symbol, stress) in ["\u{3c3}", "\u{3c4}"].into_iter().zip(&stresses) {
         ui.click_for(symbol, 2);
-        let row = stress.rows.iter().find(|row| row.name == "M").unwrap();
-        ui.get_by_label(&format!("{}: {}", row.name, row.value));
+        ui.get_by_label(&format!("M: {}", stress.rows().find(|(row, _)| row.name == "M").unwrap().1));
         ui.expect(&[&stress.series[0].name]);
     }
     let along = ui.simulation().sections(41).unwrap();
-    let row = section_chart::forces(&along, ui.scene(), &within, &ToString::to_string)[2].rows[0].clone();
+    let [.., moment] = section_chart::forces(&along, ui.scene(), &within, &ToString::to_string);
+    let label = moment.rows().map(|(row, value)| format!("{}: {value}", row.name)).next().unwrap();
     ui.click_for("M", 4);
-    ui.get_by_label(&format!("{}: {}", row.name, row.value));
+    ui.get_by_label(&label);
     ui.key_press(Key::Q);
     ui.run_steps(4);
-    assert!(ui.query_by_label(&format!("{}: {}", row.name, row.value)).is_none(), "the plots are closed");
+    assert!(ui.query_by_label(&label).is_none(), "the plots are closed");
 }
 
 /// A body without axis has no section at first, and then only the stress along its own.

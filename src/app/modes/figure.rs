@@ -15,7 +15,7 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{segments, still};
 use crate::sentence::Sentence;
-use crate::study::figure::{Figure, FigurePoint, FigureRow, Ink, Mark};
+use crate::study::figure::{Figure, FigurePoint, FigureSeries, Ink, Mark};
 
 /// Reason for which a figure is not saved.
 #[derive(Debug, Error)]
@@ -214,8 +214,8 @@ pub(crate) fn table(ui: &mut Ui, figure: &Figure) {
         if figure.head.iter().any(|text| !text.is_empty()) {
             head(ui, figure);
         }
-        for row in &figure.rows {
-            show_row(ui, row);
+        for (series, value) in figure.rows() {
+            show_row(ui, series, value);
         }
     });
 }
@@ -231,7 +231,7 @@ fn head(ui: &mut Ui, figure: &Figure) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name} {value}").trim()));
 }
 
-fn show_row(ui: &mut Ui, row: &FigureRow) {
+fn show_row(ui: &mut Ui, row: &FigureSeries, value: &str) {
     /// Width of the column of marks, points.
     const MARK: f32 = 22.0;
     let palette = Palette::new(ui.visuals());
@@ -239,15 +239,15 @@ fn show_row(ui: &mut Ui, row: &FigureRow) {
     let painter = ui.painter();
     paint_mark(ui, rect.left_center() + vec2(8.0, 0.0), row.mark, color(&palette, row.ink));
     let ink = if row.mark == Mark::Cross { palette.error } else { palette.text };
-    let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, &row.value, FontId::proportional(SMALL), ink);
+    let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, FontId::proportional(SMALL), ink);
     let room = (right.left() - rect.left() - MARK - 8.0).max(0.0);
     let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(BODY), palette.text);
     job.wrap = egui::text::TextWrapping::truncate_at_width(room);
     let galley = painter.layout_job(job);
     let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + vec2(MARK, 0.0), galley.size());
     painter.galley(at.min, galley, palette.text);
-    let separator = if row.value.is_empty() { "" } else { ": " };
-    let spoken = format!("{}{separator}{}", row.name, row.value);
+    let separator = if value.is_empty() { "" } else { ": " };
+    let spoken = format!("{}{separator}{value}", row.name);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     response.on_hover_text(spoken);
 }

@@ -15,9 +15,7 @@ use crate::format::{engineering, engineering_pair_among, three_digits};
 use crate::scene::{MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::Status;
-use crate::study::figure::{
-    Figure, FigurePoint, FigureQuantity, FigureRow, FigureSeries, Ink, LoadAxis, Mark, dominant_axis,
-};
+use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 
@@ -151,7 +149,10 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         let samples = curve.samples.iter();
         samples.map(|s| figure::point(s.factor * full, value(s))).collect()
     };
-    let series = |name: String, ink, mark, may_leave, points| FigureSeries { name, ink, mark, may_leave, points };
+    let series = |name: String, ink, mark, may_leave, points| FigureSeries {
+        may_leave,
+        ..FigureSeries::new(name, ink, mark, points)
+    };
     let mut all = vec![
         series(tr("linear beam theory").to_owned(), Ink::BeamTheory, Mark::Dashes, true, line(|s| s.linear)),
         series(tr("exact beam").to_owned(), Ink::BeamTheory, Mark::Line, false, line(|s| s.exact)),
@@ -182,17 +183,11 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         Mark::Dashes => at_load.map(|s| in_column(s.linear)),
         _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| in_column(p.tip)),
     };
-    let row = |series: &FigureSeries| FigureRow {
-        name: series.name.clone(),
-        ink: series.ink,
-        mark: series.mark,
-        value: value(series).unwrap_or_default(),
-    };
+    all.iter_mut().for_each(|series| series.value = Some(value(series).unwrap_or_default()));
     let load = engineering(three_digits(full), unit);
     Figure {
         title: curve_title(scene),
         axes: axes(shown),
-        rows: all.iter().map(row).collect(),
         series: all,
         head: [fill!("at %{load}", load = load), displacement_text(scene)],
         quantities: quantities(FigureQuantity::new(said(&name), unit), scene),
