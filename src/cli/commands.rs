@@ -205,7 +205,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     outputs.check()?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
-    let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene) };
+    let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene, &|_| ControlFlow::Continue(())) };
     drop(watch);
     let no_path = || {
         let expected = "expected a static scene with a method other than linear";

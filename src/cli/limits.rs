@@ -12,7 +12,8 @@ use super::{CliError, about, json, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
 use crate::scene::{self, Scene};
-use crate::study::limits::{self, GOOD, LimitPoint, LimitResult, MethodLimits, Strip, USABLE, load_text};
+use crate::study::figure::LoadAxis;
+use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::moved_points;
 
 /// Runs the command.
@@ -24,7 +25,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let seams = system.seams().iter().map(ToString::to_string);
     let notes: Vec<String> = seams.chain(moved_points(&scene, system.mesh()).iter().map(ToString::to_string)).collect();
     let watch = Watch::new();
-    let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress));
+    let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress), &|_| {});
     drop(watch);
     let limits = limits.map_err(|error| about(&source, error))?;
     outputs.write_table(|| table(&limits, &scene))?;
@@ -37,7 +38,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
 }
 
 fn summary(limits: &MethodLimits, scene: &Scene) -> String {
-    let axis = limits::axis(scene);
+    let axis = LoadAxis::of(scene);
     let load = |factor: f64| load_text(&axis, factor);
     let [low, high] = limits.range.map(load);
     let mut text = format!("{}: {} from {low} to {high}, {} in the scene; ", scene.name, axis.name, load(1.0));
@@ -80,11 +81,10 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
     for strip in &limits.strips {
         let Strip { element, integrator, points, .. } = strip;
         let method = strip.method_name(str::to_owned);
-        for LimitPoint { factor, result, .. } in points {
-            let Some(LimitResult { displacement, max_strain, inverted_elements, error: Some(error) }) = result else {
-                continue;
-            };
-            let error = error.percent.map_or_else(String::new, |error| error.to_string());
+        for point in points.iter().filter(|point| point.is_compared) {
+            let LimitPoint { factor, displacement, inverted_elements, .. } = point;
+            let error = point.error_percent.map_or_else(String::new, |error| error.to_string());
+            let max_strain = point.max_strain.unwrap_or_default();
             let first = match integrator {
                 Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),
                 None => format!("{},{method},{factor}", element.id()),
@@ -97,7 +97,7 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
 }
 
 fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String {
-    let axis = limits::axis(scene);
+    let axis = LoadAxis::of(scene);
     let strip = |strip: &Strip| {
         let fails = strip.fails();
         let mut object = json!({

@@ -1,7 +1,5 @@
 //! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
 
-use std::ops::ControlFlow;
-
 use nalgebra::Vector2;
 
 use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
@@ -11,7 +9,7 @@ use crate::scene::{MethodKind, Place, Scene};
 use crate::simulation::{Simulation, Status};
 
 /// Load factor with its deflections.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// Load factor, relative to the scene's load.
     pub factor: f64,
@@ -80,23 +78,16 @@ const MAX_ZOOMS: u32 = 4;
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 
 impl LoadCurve {
-    /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip.
+    /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip; `None` also if it is
+    /// cancelled.
     #[must_use]
-    pub fn new(scene: &Scene) -> Option<Self> {
-        Self::observed(scene, &|_| ControlFlow::Continue(()))
-    }
-
-    /// Returns the curve as [`Self::new`], with progress reports; `None` also if it is cancelled.
-    #[must_use]
-    pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
+    pub fn new(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         // A scene that cannot be simulated has no curve.
         let system = Simulation::new(scene).ok()?.system().clone();
         let height = scene.beam.as_ref()?.height;
         let linear = beam.linear_tip_displacement();
         let rest = Vector2::new(beam.length, 0.0);
-        let none =
-            Sample { factor: 0.0, linear: Vector2::zeros(), exact: Vector2::zeros(), rotation: 0.0, strain: 0.0 };
         let clamp_force = beam.tip_force + beam.weight * beam.length;
         let (loaded, buckles_at) = beam.path_to_critical(LARGEST_FACTOR, SAMPLES);
         let sample = |p: &PathPoint| Sample {
@@ -107,21 +98,21 @@ impl LoadCurve {
             strain: p.factor * (clamp_force.x * beam.stretch_compliance).abs()
                 + 0.5 * height * (p.clamp_moment / beam.bending).abs(),
         };
-        let samples: Vec<Sample> = std::iter::once(none).chain(loaded.iter().map(sample)).collect();
-        let sampled = |largest: f64| -> Vec<Sample> {
-            std::iter::once(none).chain(beam.path(largest, SAMPLES).iter().map(sample)).collect()
+        let from_rest = |loaded: &[PathPoint]| -> Vec<Sample> {
+            std::iter::once(Sample::default()).chain(loaded.iter().map(sample)).collect()
         };
-        let sampled = |percent: f64| {
+        let samples = from_rest(&loaded);
+        let departure = |percent: f64| {
             let mut samples = samples.clone();
             // With too few samples below the limit, the part up to it is sampled again.
             for _ in 0..MAX_ZOOMS {
                 let first = samples.iter().skip(1).position(|s| s.linear_error_percent() > percent)?;
                 let Some(end) = samples.get(first + 1).filter(|_| first < MIN_BELOW) else { break };
-                samples = sampled(end.factor);
+                samples = from_rest(&beam.path(end.factor, SAMPLES));
             }
-            Some(samples)
+            departure(&samples, percent)
         };
-        let departures = DEPARTURES.into_iter().filter_map(|percent| departure(&sampled, percent)).collect();
+        let departures = DEPARTURES.into_iter().filter_map(departure).collect();
         let mut methods = Vec::new();
         for (i, entry) in METHODS.iter().enumerate() {
             let mut own = scene.clone().with_method(entry.kind);
@@ -138,10 +129,8 @@ impl LoadCurve {
     }
 }
 
-/// Returns the load at which the error of linear theory first exceeds `percent`, in samples that are fine enough for
-/// it.
-fn departure(sampled: &dyn Fn(f64) -> Option<Vec<Sample>>, percent: f64) -> Option<Departure> {
-    let samples = sampled(percent)?;
+/// Returns the load at which the error of linear theory first exceeds `percent`.
+fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
     let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
     let [a, b] = [pair[0], pair[1]];
     let (from, to) = (a.linear_error_percent(), b.linear_error_percent());

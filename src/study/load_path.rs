@@ -138,11 +138,6 @@ impl PathSummary {
         events.into_iter().flatten().reduce(f64::min)
     }
 
-    /// Returns the critical load of the path next to the load of a simulation under linear theory.
-    fn of_linear(simulation: &Simulation, observe: Observer<'_>) -> Self {
-        Self { critical: Self::default().critical_load(simulation, observe), ..Self::default() }
-    }
-
     /// Returns the critical load next to the load of a simulation's scene: `None` if the path jumps or buckles below, or
     /// cannot be followed to it.
     fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<CriticalLoad> {
@@ -158,7 +153,7 @@ impl PathSummary {
 /// Critical points of the load path from rest, and the equilibrium at its end.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PathFromRest {
-    summary: PathSummary,
+    pub(super) summary: PathSummary,
     /// Displacement of every node at the end, m; `None` under linear theory, whose result is no equilibrium.
     end: Option<Vec<Vector2<f64>>>,
 }
@@ -178,7 +173,7 @@ impl PathFromRest {
 }
 
 /// Load path of a scene.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct LoadPath {
     /// Title of the scene.
@@ -229,7 +224,8 @@ impl LoadPath {
     /// Follows the path as [`Self::of`] with progress reports; a cancelled path ends early.
     #[must_use]
     pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
-        let simulation = can_be_followed(scene).then(|| Simulation::new(scene).ok())??;
+        let can_be_followed = scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear;
+        let simulation = can_be_followed.then(|| Simulation::new(scene).ok())??;
         Some(Tracer::new(&simulation)?.trace(1.0, observe)?.0)
     }
 
@@ -242,24 +238,37 @@ impl LoadPath {
             return None;
         }
         let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
-        if simulation.is_linear() {
-            return is_small.then(|| PathSummary::of_linear(simulation, observe));
-        }
-        if is_small && simulation.problem().supports().move_the_body() {
-            return Some(Self::traced(simulation, observe)?.to(simulation.displacement()));
-        }
-        let mut summary = match search.path_events() {
-            Some(_) if is_small && is_taken_for_path(simulation) => {
-                Self::followed(simulation, false, observe)?.to(simulation.displacement())
-            }
-            Some(events) => PathSummary::of(events.jump, &events.bifurcations),
-            None if is_small => Self::end_of(simulation, 1.0, observe)?.to(simulation.displacement()),
-            None => return None,
+        let moves = simulation.problem().supports().move_the_body();
+        let events = search.path_events().filter(|_| !(simulation.is_linear() || is_small && moves));
+        let Some(events) = events else {
+            return Some(Self::from_rest(simulation, observe)?.to(simulation.displacement()));
+        };
+        let mut summary = match is_small && is_taken_for_path(simulation) {
+            true => Self::followed(simulation, false, observe)?.to(simulation.displacement()),
+            false => PathSummary::of(events.jump, &events.bifurcations),
         };
         if is_small && summary.elsewhere.is_none() {
             summary.critical = summary.critical_load(simulation, observe);
         }
         Some(summary)
+    }
+
+    /// Follows the load path of a simulation's scene to its end; `None` if the path cannot be followed, or is cancelled, or
+    /// the model is too large.
+    fn from_rest(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
+        if simulation.system().dofs() > MAX_UNKNOWNS {
+            return None;
+        }
+        if simulation.is_linear() {
+            let critical = PathSummary::default().critical_load(simulation, observe);
+            return Some(PathFromRest { summary: PathSummary { critical, ..PathSummary::default() }, end: None });
+        }
+        if simulation.problem().supports().move_the_body() {
+            return Self::traced(simulation, observe);
+        }
+        let mut path = Self::end_of(simulation, 1.0, observe)?;
+        path.summary.critical = path.summary.critical_load(simulation, observe);
+        Some(path)
     }
 
     /// Follows the path of a scene with moving supports, with the work of these, to the critical load next to the full one;
@@ -301,15 +310,9 @@ impl LoadPath {
         Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
     }
 
-    /// Returns the load factor at which the path of a simulation's scene first jumps or buckles; `None` if it does neither
-    /// before its end, or the search is cancelled.
-    pub(super) fn first_event(simulation: &Simulation, observe: Observer<'_>) -> Option<f64> {
-        Self::followed(simulation, true, observe)?.summary.first_event()
-    }
-
     /// Follows the path of a simulation's scene by its follower alone, to the full load or, with `to_jump`, to the first jump or
     /// the end of the path; `None` if the full load is not reached without `to_jump`, or the search is cancelled.
-    fn followed(simulation: &Simulation, to_jump: bool, observe: Observer<'_>) -> Option<PathFromRest> {
+    pub(super) fn followed(simulation: &Simulation, to_jump: bool, observe: Observer<'_>) -> Option<PathFromRest> {
         let mut tracer = Tracer::new(simulation)?;
         let mut follower = PathFollower::start(&mut tracer.equations(), 1.0)?;
         let now = sentence!("following the load path");
@@ -331,24 +334,7 @@ impl LoadPath {
     #[must_use]
     pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
         let simulation = (scene.analysis == Analysis::Static).then(|| Simulation::new(scene).ok())??;
-        let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
-        if simulation.is_linear() {
-            let summary = || PathSummary::of_linear(&simulation, observe);
-            return is_small.then(|| PathFromRest { summary: summary(), end: None });
-        }
-        if is_small && simulation.problem().supports().move_the_body() {
-            return Self::traced(&simulation, observe);
-        }
-        let mut path = is_small.then(|| Self::end_of(&simulation, 1.0, observe))??;
-        path.summary.critical = path.summary.critical_load(&simulation, observe);
-        Some(path)
-    }
-
-    /// Summarizes the path.
-    #[must_use]
-    pub fn summary(&self) -> PathSummary {
-        let supports_work = self.end.is_none().then_some(self.supports_work);
-        PathSummary { supports_work, ..PathSummary::of(self.jump, &self.bifurcations) }
+        Self::from_rest(&simulation, observe)
     }
 
     /// Returns `true` if the path reaches the full load without a jump or a bifurcation.
@@ -383,19 +369,13 @@ impl LoadPath {
     }
 }
 
-fn can_be_followed(scene: &Scene) -> bool {
-    scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear
-}
-
 /// Records the states of a path.
 struct Tracer {
-    name: String,
-    driven: Option<usize>,
+    path: LoadPath,
     problem: Problem,
     workspace: Workspace,
     forces: Forces,
     timings: Timings,
-    path: Vec<PathState>,
     /// Number of the next row.
     row: u32,
     /// Derivative of the work of moving supports with respect to the load factor at the last state, J.
@@ -404,7 +384,6 @@ struct Tracer {
     power_slope: Option<[f64; 2]>,
     /// Load factor up to which the work is integrated.
     reached: f64,
-    work: f64,
     /// Last equilibrium, and its stability under force control.
     last: Option<(ContinuationPoint<State>, Option<bool>)>,
     /// Displacement under the full load, m.
@@ -415,19 +394,17 @@ impl Tracer {
     /// Returns a recorder of the path of a simulation's scene, on its mesh.
     fn new(simulation: &Simulation) -> Option<Self> {
         let (scene, problem) = (simulation.scene(), simulation.problem().clone());
+        let driven = scene.supports.iter().position(Support::moves);
         Some(Self {
-            name: scene.name.clone(),
-            driven: scene.supports.iter().position(Support::moves),
+            path: LoadPath { scene: scene.name.clone(), driven, ..LoadPath::default() },
             workspace: Workspace::new(problem.system()).ok()?,
             forces: Forces::new(problem.system().mesh().nodes().len()),
             timings: Timings::default(),
             problem,
-            path: Vec::new(),
             row: 1,
             power: 0.0,
             power_slope: None,
             reached: 0.0,
-            work: 0.0,
             last: None,
             end: None,
         })
@@ -440,7 +417,6 @@ impl Tracer {
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
         follower.path.locates_all = true;
         self.record(&follower, &follower.last);
-        let mut states_before_jump = None;
         let end = loop {
             if observe(Progress { fraction: follower.last.factor / to, now: Some(&now) }).is_break() {
                 break Some(PathEndReason::Interrupted);
@@ -452,7 +428,7 @@ impl Tracer {
                     PathPart::Mark => self.mark(),
                     PathPart::Landing(landing) => {
                         if follower.events.jump.is_some() && landing.factor <= 1.0 {
-                            states_before_jump.get_or_insert(self.path.len());
+                            self.path.states_before_jump.get_or_insert(self.path.states.len());
                         }
                         self.last = None;
                         self.record(&follower, &landing);
@@ -468,17 +444,9 @@ impl Tracer {
         };
         let (events, factor) = (follower.take_events(), follower.last.factor);
         self.mark();
-        let path = LoadPath {
-            scene: self.name,
-            states: self.path,
-            jump: events.jump,
-            states_before_jump,
-            bifurcations: events.bifurcations,
-            driven: self.driven,
-            supports_work: self.work,
-            end: end.map(|reason| PathEnd { factor, reason, drive: Drive::of(&self.problem) }),
-        };
-        Some((path, self.end))
+        (self.path.jump, self.path.bifurcations) = (events.jump, events.bifurcations);
+        self.path.end = end.map(|reason| PathEnd { factor, reason, drive: Drive::of(&self.problem) });
+        Some((self.path, self.end))
     }
 
     fn equations(&mut self) -> StaticEquations<'_> {
@@ -534,7 +502,7 @@ impl Tracer {
     fn integrate(&mut self, point: &ContinuationPoint<State>) {
         /// Smallest length of an interval, relative to the next one, whose slope is not the error of its ends.
         const RESOLVED: f64 = 0.1;
-        if self.driven.is_none() {
+        if self.path.driven.is_none() {
             return;
         }
         let reactions = self.reactions(point);
@@ -544,7 +512,7 @@ impl Tracer {
             let slope = (power - self.power) / length;
             let last = self.power_slope.filter(|[_, last]| *last > RESOLVED * length);
             let curvature = last.map_or(0.0, |[before, last]| (slope - before) / (length + last));
-            self.work += 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
+            self.path.supports_work += 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
             self.power_slope = Some([slope, length]);
         }
         (self.power, self.reached) = (power, point.factor);
@@ -556,8 +524,8 @@ impl Tracer {
         let reactions = self.reactions(&point);
         let probes = self.problem.probes().iter().map(|p| p.mean(&point.state.displacement)).collect();
         let state = PathState { factor: point.factor, probes, reactions, stable, unstable_modes: point.modes };
-        if self.path.last() != Some(&state) {
-            self.path.push(state);
+        if self.path.states.last() != Some(&state) {
+            self.path.states.push(state);
         }
         if point.factor == 1.0 {
             self.end = Some(point.state.displacement.to_vec());
@@ -567,7 +535,7 @@ impl Tracer {
 
     /// Returns `true` if a state is stable under force control.
     fn is_stable(&mut self, point: &ContinuationPoint<State>) -> Option<bool> {
-        if point.modes > 0 || self.driven.is_none() {
+        if point.modes > 0 || self.path.driven.is_none() {
             return Some(point.modes == 0);
         }
         let Self { problem, workspace, forces, .. } = self;

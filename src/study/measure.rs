@@ -1,22 +1,18 @@
 //! Measurement of the settings of a body at rest. A solve starts from rest, which is the hardest case; data computed once
 //! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
 
-use std::sync::Arc;
-
 use nalgebra::Vector2;
-use web_time::{Duration, Instant};
 
 use super::fine::{Effort, finest_element};
-use super::progress::{Extent, StudyError, all_done, check};
-use super::reference::{ProbeReference, Reference, end, first_probe, system_of};
+use super::progress::{Extent, StudyError, check};
+use super::reference::{ProbeReference, Reference, first_probe};
 use super::setting::{Setting, mesh_text};
-use super::timing::{expected_time, times_from_rest};
-use super::trade::{ErrorSplit, Measurement, Study, StudyReference};
+use super::timing::times_from_rest;
+use super::trade::{Measurement, Meshed, Study, StudyReference};
 use super::{motion, parallel};
-use crate::assembly::System;
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
+use crate::scene::{Analysis, MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Simulation, Status};
 
@@ -85,20 +81,17 @@ fn at_rest(
     let meshes = meshes(scene, extent);
     let (study, against) = begin(scene, observe)?;
     // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-    let ends = |mesh: &MeshChoice, observe: Observer<'_>| MeshEnds::find(scene, mesh, observe);
-    let ends = all_done(parallel::map(&meshes, ends, |done| {
-        let fraction = ENDS_SHARE * done as f64 / meshes.len() as f64;
-        observe(Progress { fraction, now: Some(&sentence!("end state of every method")) })
-    }))?;
+    let now = sentence!("end state of every method");
+    let meshed =
+        parallel::all(&meshes, observe, [0.0, ENDS_SHARE], &now, |(mesh, _), observe| meshed(scene, *mesh, observe))?;
     // Start with the element that converges fastest, which is likely to give the best results.
-    let mut order: Vec<_> = meshes.iter().zip(&ends).collect();
-    order.sort_by_key(|(mesh, _)| mesh.element != finest_element(scene));
-    let weighted = order.into_iter().map(|(mesh, ends)| ((mesh, ends), ends.expected_time()));
-    study.measure_meshes(ENDS_SHARE, weighted, observe, partial, |study, (mesh, ends), observe| {
-        measure(study, against, scene, mesh, ends, observe)?;
+    let mut order: Vec<_> = meshed.iter().zip(meshes.iter().map(|(_, weight)| *weight)).collect();
+    order.sort_by_key(|(meshed, _)| meshed.mesh.element != finest_element(scene));
+    study.measure_meshes(ENDS_SHARE, &order, observe, partial, |study, meshed, observe| {
+        measure(study, against, scene, meshed, observe)?;
         study.measurements.sort_by_key(|m| {
-            let of = |mesh: &MeshChoice| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
-            meshes.iter().position(of)
+            let of = |mesh: &Setting| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
+            meshes.iter().position(|(mesh, _)| of(mesh))
         });
         Ok(())
     })
@@ -117,19 +110,18 @@ pub(super) fn measure(
     study: &mut Study,
     reference: ProbeReference,
     scene: &Scene,
-    mesh: &MeshChoice,
-    ends: &MeshEnds,
+    meshed: &Meshed<Vector2<f64>>,
     observe: Observer<'_>,
 ) -> Result<(), StudyError> {
+    let Meshed { mesh, system, .. } = meshed;
     let text = mesh_text(mesh.element, mesh.cells);
-    let percent = |a, b| reference.percent(a, b);
-    let MeshEnds { system, exact, linear, .. } = ends;
     let mut measurements = Vec::new();
     for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
         let now = sentence!("%{mesh}, %{method}", mesh = &text, method = method.id());
         let fraction = number as f64 / METHODS.len() as f64;
         check(observe(Progress { fraction, now: Some(&now) }))?;
-        let mut simulation = Simulation::with_system(&mesh.with(method).apply(scene), system.clone())?;
+        let setting = Setting { method, ..*mesh };
+        let mut simulation = Simulation::with_system(&setting.apply(scene), system.clone())?;
         // `auto` decides itself how many iterations it needs.
         let most = if method == MethodKind::Auto { u32::MAX } else { Study::MAX_ITERATIONS };
         let times = times_from_rest(&mut simulation, most, &|_| observe(Progress::at(fraction)));
@@ -142,19 +134,14 @@ pub(super) fn measure(
                 continue;
             }
             let tip = first_probe(&simulation)?;
-            // Converged corotated methods end at the exact equilibrium.
-            let own_end = *if simulation.is_linear() { linear } else { exact };
+            let percent = |a: &Vector2<f64>, b: &Vector2<f64>| reference.percent(*a, *b);
+            let error = meshed.error(&tip, simulation.is_linear(), &reference.displacement, percent);
             measurements.push(Measurement {
-                setting: Setting { iterations, ..mesh.with(method) },
+                setting: Setting { iterations, ..setting },
                 dofs: simulation.system().dofs(),
                 converged: *simulation.status() == Status::Converged,
                 milliseconds: time.total().as_secs_f64() * 1e3,
-                error: Some(ErrorSplit {
-                    total: percent(tip, reference.displacement),
-                    discretization: percent(*exact, reference.displacement),
-                    iteration: percent(tip, own_end),
-                    model: percent(own_end, *exact),
-                }),
+                error: Some(error),
                 time,
                 motion: None,
                 pareto: false,
@@ -165,50 +152,17 @@ pub(super) fn measure(
     Ok(())
 }
 
-/// Mesh of a study.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MeshChoice {
-    pub element: ElementKind,
-    pub cells: Option<[u32; 2]>,
-    /// Approximate cost relative to other meshes.
-    pub weight: f64,
-}
-
-impl MeshChoice {
-    fn with(&self, method: MethodKind) -> Setting {
-        Setting { element: self.element, cells: self.cells, method, iterations: 0, stepping: None }
-    }
-}
-
-/// Mesh with the final results of methods on it: displacements of the first probe, m.
-#[derive(Clone, Debug)]
-pub(super) struct MeshEnds {
-    system: Arc<System>,
-    /// Displacement in the exact equilibrium.
-    exact: Vector2<f64>,
-    /// Displacement by linear theory.
-    linear: Vector2<f64>,
-    /// Time needed to compute them.
-    time: Duration,
-}
-
-impl MeshEnds {
-    /// Computes the results on a mesh.
-    pub fn find(scene: &Scene, mesh: &MeshChoice, observe: Observer<'_>) -> Result<Self, StudyError> {
-        let meshed = mesh.with(MethodKind::Newton).apply(scene);
-        let system = system_of(&meshed)?;
-        let start = Instant::now();
-        let first_end = |method| -> Result<_, StudyError> {
-            Ok(end(&meshed, method, &system, observe)?.first().copied().unwrap_or_default())
-        };
-        let (exact, linear) = (first_end(MethodKind::Newton)?, first_end(MethodKind::Linear)?);
-        Ok(Self { system, exact, linear, time: start.elapsed() })
-    }
-
-    /// Returns the approximate time of its measurement, s.
-    fn expected_time(&self) -> f64 {
-        METHODS.len() as f64 * expected_time(self.time).as_secs_f64()
-    }
+/// Meshes a scene, and computes the displacements of its first probe on that mesh, m.
+pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed<Vector2<f64>>, StudyError> {
+    Meshed::new(scene, mesh, |mut scene, system| {
+        scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
+        let mut simulation = Simulation::with_system(&scene, system.clone())?;
+        check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
+        match *simulation.status() != Status::Converged && scene.solver.method == MethodKind::Newton {
+            true => Err(StudyError::NoReference),
+            false => first_probe(&simulation),
+        }
+    })
 }
 
 /// Largest number of rows of cells in meshes that are measured in addition to those with square cells; elements without
@@ -217,12 +171,12 @@ const MAX_ROWS: u32 = 2;
 /// Largest ratio of height to length of such cells.
 const HIGHEST_CELL: f64 = 4.0;
 
-/// Returns the meshes of a scene, from coarse to fine for each element.
-pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
+/// Returns the meshes of a scene, from coarse to fine for each element, each with its approximate cost relative to others.
+pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<(Setting, f64)> {
     let mut meshes = Vec::new();
     for element in scene.elements() {
         let Some(beam) = &scene.beam else {
-            meshes.push(MeshChoice { element, cells: None, weight: 1.0 });
+            meshes.push((Setting::newton(element, None), 1.0));
             continue;
         };
         // The number of nodes along the beam is about the same for every element; cells are as high as long if
@@ -238,8 +192,8 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<MeshChoice> {
             let few = |across: u32| across <= MAX_ROWS && squares / f64::from(across) <= HIGHEST_CELL;
             for across in (1..=as_high).filter(|&across| across == as_high || few(across)) {
                 let nodes = f64::from(along) * f64::from(across) * pieces * pieces;
-                // The weight includes the setup of the mesh.
-                meshes.push(MeshChoice { element, cells: Some([along, across]), weight: 30.0 + nodes });
+                // The cost includes the setup of the mesh.
+                meshes.push((Setting::newton(element, Some([along, across])), 30.0 + nodes));
             }
         }
     }

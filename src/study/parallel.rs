@@ -2,7 +2,24 @@
 
 use std::ops::ControlFlow;
 
-use crate::progress::Observer;
+use super::progress::StudyError;
+use crate::progress::{Observer, Progress};
+use crate::sentence::Sentence;
+
+/// Processes all items as [`map`], and returns the results, or the error of the first that failed or was cancelled. Reports
+/// the progress from the first to the second of two fractions.
+pub fn all<T: Sync, R: Send>(
+    items: &[T],
+    observe: Observer<'_>,
+    [from, to]: [f64; 2],
+    now: &Sentence,
+    work: impl Fn(&T, Observer<'_>) -> Result<R, StudyError> + Sync,
+) -> Result<Vec<R>, StudyError> {
+    let results = map(items, work, |done| {
+        observe(Progress { fraction: from + (to - from) * done as f64 / items.len() as f64, now: Some(now) })
+    });
+    results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
+}
 
 /// Processes all items on all cores, and returns the results in order. Items are started in order. `observe` is called
 /// on the calling thread with the number of finished items, and can cancel the rest: items not started then give
@@ -18,8 +35,6 @@ pub fn map<T: Sync, R: Send>(
     use std::time::Duration;
 
     use rayon::prelude::*;
-
-    use crate::progress::Progress;
 
     /// Interval of calls of an observer while no item is finished.
     const ASK: Duration = Duration::from_millis(50);
@@ -78,7 +93,6 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::progress::Progress;
 
     #[test]
     fn results_come_in_order_and_work_is_cancelled() {

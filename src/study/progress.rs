@@ -20,8 +20,6 @@ pub enum StudyError {
     AtRest,
     /// The motion on the fine mesh, which would be the reference, stops.
     NoPath(StopReason),
-    /// The scene has a mesh file, which cannot be meshed with other cells.
-    NoBeam,
     /// The scene has no probe that moves.
     NoProbe,
     /// The refined mesh of a file would have too many unknowns.
@@ -58,9 +56,6 @@ impl From<&StudyError> for Sentence {
                 .into(),
             StudyError::NoPath(reason) => {
                 sentence!("no reference solution: the motion of the fine mesh stops: %{reason}", reason)
-            }
-            StudyError::NoBeam => {
-                sentence!("expected a scene with [beam]: the study measures coarser and finer meshes of it")
             }
             StudyError::NoProbe => {
                 sentence!("expected a scene with a probe that moves: errors are measured at probes")
@@ -108,10 +103,4 @@ pub enum Extent {
 /// Converts [`ControlFlow::Break`] to [`StudyError::Cancelled`].
 pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
-}
-
-/// Returns the results of all items of [`super::parallel::map`], or the error of the first that failed or was
-/// cancelled.
-pub(super) fn all_done<T>(results: Vec<Option<Result<T, StudyError>>>) -> Result<Vec<T>, StudyError> {
-    results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }

@@ -43,6 +43,11 @@ impl Setting {
         }
     }
 
+    /// Returns the setting of a solve by Newton's method on a mesh.
+    pub(super) fn newton(element: ElementKind, cells: Option<[u32; 2]>) -> Self {
+        Self { element, cells, method: MethodKind::Newton, iterations: 0, stepping: None }
+    }
+
     /// Returns the identifier of the integrator, or of the method at rest: its settings are drawn in one colour.
     #[cfg(feature = "cli")]
     pub(crate) fn series(&self) -> &'static str {

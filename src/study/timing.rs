@@ -1,6 +1,5 @@
 //! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
-use std::ops::RangeInclusive;
 use std::sync::{Mutex, PoisonError};
 
 use nalgebra::Vector2;
@@ -114,36 +113,21 @@ pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Ob
     Some(times)
 }
 
-/// Returns the approximate time that [`times_from_rest`] takes if a single run takes `run`.
-#[must_use]
-pub fn expected_time(run: Duration) -> Duration {
-    let [all, fewest] = [REPETITIONS, MIN_REPETITIONS].map(|repetitions| run * (WARM_UP + repetitions) as u32);
-    all.min(fewest.max(LONG)).min(run.max(TOO_LONG))
-}
-
-/// Number of timed runs.
-#[derive(Clone, Debug)]
-pub(super) struct Runs {
-    /// Smallest and largest number of runs.
-    pub count: RangeInclusive<usize>,
-    /// Total time after which no further run is started, because long times vary less.
-    pub enough: Duration,
-}
-
-/// Returns the median time of `run`, without `prepare`. Only one thread of the process measures at a time.
-pub(super) fn median_time<T>(
-    runs: Runs,
-    subject: &mut T,
-    prepare: impl Fn(&mut T),
-    mut run: impl FnMut(&mut T),
+/// Returns the median time of `run`, each time after a reset of the simulation. After the time `enough` no further run is
+/// started, because long times vary less. Only one thread of the process measures at a time.
+pub(super) fn median_time(
+    simulation: &mut Simulation,
+    enough: Duration,
+    mut run: impl FnMut(&mut Simulation),
 ) -> Duration {
+    /// Largest number of runs.
+    const RUNS: usize = 5;
     let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
-    let Runs { count, enough } = runs;
-    let mut times = Vec::new();
-    while times.len() < *count.start() || (times.len() < *count.end() && times.iter().sum::<Duration>() < enough) {
-        prepare(subject);
+    let mut times: Vec<Duration> = Vec::new();
+    while times.is_empty() || (times.len() < RUNS && times.iter().sum::<Duration>() < enough) {
+        simulation.reset();
         let start = Instant::now();
-        run(subject);
+        run(simulation);
         times.push(start.elapsed());
     }
     times.sort_unstable();

@@ -1,13 +1,16 @@
 //! Speed–accuracy study: error against time for every element, mesh, method and number of iterations, of a motion also for
 //! every integrator and time step, on this machine.
 
+use std::sync::Arc;
+
 use super::motion::MotionReference;
 use super::progress::StudyError;
-use super::reference::Reference;
+use super::reference::{Reference, system_of};
 use super::setting::Setting;
+use crate::assembly::System;
 use crate::dynamics::Counts;
 use crate::progress::{Observer, Progress};
-use crate::scene::Scene;
+use crate::scene::{MethodKind, Scene};
 use crate::sentence::{Sentence, displayed};
 use crate::timings::Timings;
 
@@ -32,6 +35,43 @@ impl ErrorSplit {
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.discretization + self.iteration + self.model
+    }
+}
+
+/// Mesh with the results of both theories on it, without an error of iterations or time steps: displacements of the first
+/// probe, m, or its paths.
+#[derive(Clone, Debug)]
+pub(super) struct Meshed<R> {
+    pub mesh: Setting,
+    pub system: Arc<System>,
+    /// Result of corotated theory.
+    exact: R,
+    linear: R,
+}
+
+impl<R> Meshed<R> {
+    /// Meshes a scene; `result` computes the result of the scene's method on this mesh.
+    pub fn new(
+        scene: &Scene,
+        mesh: Setting,
+        result: impl Fn(Scene, &Arc<System>) -> Result<R, StudyError>,
+    ) -> Result<Self, StudyError> {
+        let scene = mesh.apply(scene);
+        let system = system_of(&scene)?;
+        let of = |method| result(scene.clone().with_method(method), &system);
+        let (exact, linear) = (of(MethodKind::Newton)?, of(MethodKind::Linear)?);
+        Ok(Self { mesh, system, exact, linear })
+    }
+
+    /// Splits the error of a result of one of the theories; `distance` is in percent.
+    pub fn error(&self, result: &R, is_linear: bool, reference: &R, distance: impl Fn(&R, &R) -> f64) -> ErrorSplit {
+        let own = if is_linear { &self.linear } else { &self.exact };
+        ErrorSplit {
+            total: distance(result, reference),
+            discretization: distance(&self.exact, reference),
+            iteration: distance(result, own),
+            model: distance(own, &self.exact),
+        }
     }
 }
 
@@ -82,40 +122,6 @@ impl Ending {
     }
 }
 
-/// Effect of an integrator on the energy of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnergyBehaviour {
-    /// Changes the energy by less than a ten-thousandth of the largest kinetic energy.
-    Kept,
-    /// Removes energy.
-    Lost,
-    /// Adds energy.
-    Gained,
-}
-
-impl EnergyBehaviour {
-    /// Classifies a drift, percent of the largest kinetic energy.
-    #[must_use]
-    pub fn of(drift_percent: f64) -> Self {
-        const KEPT: f64 = 0.01;
-        match drift_percent {
-            d if d.abs() < KEPT => Self::Kept,
-            d if d < 0.0 => Self::Lost,
-            _ => Self::Gained,
-        }
-    }
-
-    /// Returns the identifier in tables.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Kept => "kept",
-            Self::Lost => "lost",
-            Self::Gained => "gained",
-        }
-    }
-}
-
 /// Figures of a measured motion.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
@@ -133,10 +139,16 @@ pub struct MotionFigures {
 }
 
 impl MotionFigures {
-    /// Returns the effect of the integrator on the energy.
+    /// Returns the effect of the integrator on the energy: `kept` if it changes by less than a ten-thousandth of the largest
+    /// kinetic energy, else `lost` or `gained`.
     #[must_use]
-    pub fn energy(&self) -> EnergyBehaviour {
-        EnergyBehaviour::of(self.drift_percent)
+    pub fn energy(&self) -> &'static str {
+        const KEPT: f64 = 0.01;
+        match self.drift_percent {
+            d if d.abs() < KEPT => "kept",
+            d if d < 0.0 => "lost",
+            _ => "gained",
+        }
     }
 }
 
@@ -231,18 +243,18 @@ impl Study {
     }
 
     /// Calls `measure` with each mesh, and `partial` with the study so far; a cancelled study keeps its measurements.
-    /// `weights` has the approximate cost of each mesh, `begun` the fraction of the work done before.
-    pub(super) fn measure_meshes<M>(
+    /// Each mesh has its approximate cost; `begun` is the fraction of the work done before.
+    pub(super) fn measure_meshes<M: Copy>(
         mut self,
         begun: f64,
-        meshes: impl Iterator<Item = (M, f64)> + Clone,
+        meshes: &[(M, f64)],
         observe: Observer<'_>,
         partial: &mut dyn FnMut(&Self),
         mut measure: impl FnMut(&mut Self, M, Observer<'_>) -> Result<(), StudyError>,
     ) -> Result<Self, StudyError> {
-        let all: f64 = meshes.clone().map(|(_, weight)| weight).sum();
+        let all: f64 = meshes.iter().map(|(_, weight)| weight).sum();
         let mut done = 0.0;
-        for (mesh, weight) in meshes {
+        for &(mesh, weight) in meshes {
             let fraction = |part: f64| begun + (1.0 - begun) * (done + part * weight) / all;
             let measured =
                 measure(&mut self, mesh, &|part| observe(Progress { fraction: fraction(part.fraction), ..part }));

@@ -1,6 +1,6 @@
 //! Tuning: choice of the cheapest element, mesh and method for a required accuracy and time.
 
-use super::measure::{MeshChoice, MeshEnds, begin, measure, meshes};
+use super::measure::{begin, measure, meshed, meshes};
 use super::progress::{Extent, StudyError};
 use super::ranking::Demand;
 use super::trade::{Measurement, Study};
@@ -41,35 +41,22 @@ impl Tuning {
     /// [`StudyError`]; [`StudyError::NotKnown`] if the reference is not more accurate than demanded.
     pub fn of(scene: &Scene, demand: Demand, observe: Observer<'_>) -> Result<Self, StudyError> {
         let mut meshes = meshes(scene, Extent::Full);
-        meshes.sort_by(|a, b| a.weight.total_cmp(&b.weight));
-        let all: f64 = meshes.iter().map(|m| m.weight).sum();
-        let (mut study, against) = begin(scene, observe)?;
+        meshes.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        let meshes: Vec<_> = meshes.into_iter().map(|(mesh, weight)| ((mesh, weight), weight)).collect();
+        let (study, against) = begin(scene, observe)?;
         if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_decide(demand)) {
             return Err(StudyError::NotKnown { own_percent: study.own_error_percent, asked_percent });
         }
-        let (mut enough, mut done) = (f64::INFINITY, 0.0);
-        study.is_partial = false;
-        for mesh in &meshes {
-            if mesh.weight > enough {
-                break;
+        let mut enough = f64::INFINITY;
+        let study = study.measure_meshes(0.0, &meshes, observe, &mut |_| {}, |study, (mesh, weight), observe| {
+            if weight > enough {
+                return Ok(());
             }
-            let MeshChoice { weight, .. } = *mesh;
             let before = study.measurements.len();
-            let ends = &|_: Progress<'_>| {
-                observe(Progress { fraction: done / all, now: Some(&sentence!("end state of every method")) })
-            };
-            let measured = MeshEnds::find(scene, mesh, ends).and_then(|ends| {
-                measure(&mut study, against, scene, mesh, &ends, &|part| {
-                    observe(Progress { fraction: (done + part.fraction * weight) / all, ..part })
-                })
-            });
-            study.is_partial = measured == Err(StudyError::Cancelled);
-            if study.is_partial {
-                break;
-            }
-            measured?;
-            study.mark_pareto();
-            done += weight;
+            let meshed = meshed(scene, mesh, &|progress| {
+                observe(Progress { now: Some(&sentence!("end state of every method")), ..progress })
+            })?;
+            measure(study, against, scene, &meshed, observe)?;
             let added = &study.measurements[before..];
             let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
             let fastest = added.iter().map(|m| m.milliseconds).fold(f64::INFINITY, f64::min);
@@ -77,15 +64,16 @@ impl Tuning {
             if met || slow {
                 enough = enough.min(TOO_FINE * weight);
             }
-        }
+            Ok(())
+        })?;
         let ended: Vec<&Measurement> = study.measurements.iter().filter(|m| m.converged).collect();
         let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.meets(m, demand)).collect();
-        let fastest =
-            |of: &[&Measurement]| of.iter().copied().min_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds)).copied();
-        let closest = |of: &[&Measurement]| {
-            of.iter().copied().min_by(|a, b| a.error_percent().total_cmp(&b.error_percent())).copied()
-        };
         let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
+        let least = |of: &[&Measurement], value: fn(&Measurement) -> f64| {
+            of.iter().copied().min_by(|a, b| value(a).total_cmp(&value(b))).copied()
+        };
+        let fastest = |of: &[&Measurement]| least(of, |m| m.milliseconds);
+        let closest = |of: &[&Measurement]| least(of, Measurement::error_percent);
         let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
         let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match study.is_partial {
             true => StudyError::Cancelled,

@@ -37,8 +37,8 @@ fn stated_ends_of_limits_hold() {
     for seed in (first..).take(count) {
         let mut scene = random::scene(seed);
         scene.solver.accept_after = 0;
-        let Ok(limits) = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())) else { continue };
-        let axis = warpbeam::study::limits::axis(&scene);
+        let Ok(limits) = MethodLimits::of(&scene, &|_| ControlFlow::Continue(()), &|_| {}) else { continue };
+        let axis = warpbeam::study::figure::LoadAxis::of(&scene);
         for strip in &limits.strips {
             let words = strip.words(&axis, limits.range).map(|words| words.to_string());
             let is_tried =

@@ -11,7 +11,7 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_391),
-    ("study", &["src/study"], 7_628),
+    ("study", &["src/study"], 7_247),
     ("model", &["src/model", "src/scene"], 3_380),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_822),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
     ("the rest of src", &["src"], 5_153),
-    ("tests", &["tests"], 21_443),
+    ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 64_024;
+const SRC: usize = 63_643;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

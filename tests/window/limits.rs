@@ -151,7 +151,7 @@ fn a_motion_has_limits_of_its_integrators() {
     // A coarse mesh keeps the test short.
     let scene = scene_with("swing", &["beam.cells=[6,1]"]);
     let mut ui = opened(scene.clone());
-    let found = MethodLimits::of(&scene, &|_| ControlFlow::Continue(())).unwrap();
+    let found = MethodLimits::of(&scene, &|_| ControlFlow::Continue(()), &|_| {}).unwrap();
     click_strip(&mut ui, "energy-momentum:");
     let dynamics = |ui: &Ui| (ui.scene().dynamics.integrator, ui.scene().dynamics.time_step);
     assert_eq!(dynamics(&ui), (IntegratorKind::EnergyMomentum, scene.dynamics.time_step));

@@ -36,9 +36,9 @@ facts! {
     /// End of the load path from rest, and the jumps on it.
     PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
     /// Limits of every method and element.
-    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe)),
+    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe, &|_| {})),
         in parts |scene, observe, partial| {
-            found(MethodLimits::with_partial(scene, observe, &|limits| partial(limits.clone())))
+            found(MethodLimits::of(scene, observe, &|limits| partial(limits.clone())))
         };
     /// Errors and times of elements, meshes and methods; of a motion those on coarse meshes, as finer ones take minutes.
     StudyFact by without_settings = "study": Study, |scene, observe| study(scene, observe, &|_| ()), in parts study;
@@ -63,7 +63,7 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
         ));
     }
     let own = || SentScene(scene.clone());
-    if let Some(curve) = LoadCurve::observed(scene, observe) {
+    if let Some(curve) = LoadCurve::new(scene, observe) {
         return Ok(Some(Curve::Beam(Box::new((curve, own())))));
     }
     let path = LoadPath::observed(scene, observe);

@@ -1,38 +1,35 @@
 //! Measurement of a motion: error of the first probe's path against computing time, for every integrator, time step,
 //! number of solves, method, element and mesh.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use nalgebra::Vector2;
 use web_time::Instant;
 
-use self::plan::{Job, MeshPlan, Plan, Samples};
+pub(super) use self::plan::Samples;
+use self::plan::{meshes, settings};
 pub use self::reference::MotionReference;
-use self::reference::{fine_path, path, run};
+use self::reference::run;
+pub(super) use self::reference::{fine_path, path};
 use super::parallel;
-use super::progress::{Extent, StudyError, all_done, check};
-use super::reference::system_of;
+use super::progress::{Extent, StudyError, check};
 use super::setting::{Setting, mesh_text};
-use super::timing::{Runs, median_time};
-use super::trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
-use crate::assembly::{Mass, System};
+use super::timing::median_time;
+use super::trade::{Ending, Measurement, Meshed, MotionFigures, Study, StudyReference};
+use crate::assembly::Mass;
 use crate::dynamics::critical_step;
 use crate::progress::{Observer, Progress};
-use crate::scene::{MethodKind, Scene};
+use crate::scene::Scene;
 use crate::sentence::sentence;
 use crate::simulation::{Simulation, Status};
 use crate::timings::Timings;
 
 mod plan;
 mod reference;
-pub(super) mod steps;
 
 /// Largest computing time per simulated second, ms, for which a motion runs in real time.
 pub const REAL_TIME: f64 = 1e3;
 
-/// Largest number of timed runs per setting.
-const RUNS: usize = 5;
 /// Number of steps after which the time of a shortened motion is known.
 const MIN_STEPS: u32 = 500;
 
@@ -56,154 +53,107 @@ pub(super) fn study(
     observe: Observer<'_>,
     partial: &mut dyn FnMut(&Study),
 ) -> Result<Study, StudyError> {
-    let plan = extent.plan();
     let reference = MotionReference::new(scene, extent, &|progress| {
         observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
     })?;
-    let studied = Studied { scene, samples: reference.samples(), plan };
-    let meshes = MeshPlan::all(scene, extent);
-    let own = |mesh: &MeshPlan, observe: Observer<'_>| Meshed::new(studied, mesh, observe);
-    let meshed = all_done(parallel::map(&meshes, own, |done| {
-        let fraction = REFERENCE_SHARE + OWN_SHARE * done as f64 / meshes.len() as f64;
-        observe(Progress { fraction, now: Some(&sentence!("the motion on every mesh")) })
-    }))?;
     let study = Study::begin(scene, StudyReference::Motion(reference.clone()), reference.error_percent);
-    let weighted = meshes.iter().zip(&meshed).map(|(mesh, meshed)| ((mesh, meshed), mesh.weight()));
-    study.measure_meshes(REFERENCE_SHARE + OWN_SHARE, weighted, observe, partial, |study, (mesh, meshed), observe| {
-        measure(study, &reference, studied, mesh, meshed, observe)
+    let studied = Studied { scene, extent, reference };
+    let (begun, now) = (REFERENCE_SHARE + OWN_SHARE, sentence!("the motion on every mesh"));
+    let meshed = parallel::all(&meshes(scene, extent), observe, [REFERENCE_SHARE, begun], &now, |mesh, observe| {
+        let (samples, steps) = (studied.reference.samples(), extent.plan().reference_steps());
+        Meshed::new(scene, *mesh, |scene, system| fine_path(scene, system, samples, steps, observe))
+    })?;
+    // Every mesh has the same settings.
+    let weighted: Vec<_> = meshed.iter().map(|mesh| (mesh, 1.0)).collect();
+    study.measure_meshes(begun, &weighted, observe, partial, |study, mesh, observe| {
+        studied.measure(study, mesh, observe)
     })
 }
 
-/// Measures every setting on a mesh. A cancelled measurement keeps its results.
-fn measure(
-    study: &mut Study,
-    reference: &MotionReference,
-    studied: Studied<'_>,
-    mesh: &MeshPlan,
-    meshed: &Meshed,
-    observe: Observer<'_>,
-) -> Result<(), StudyError> {
-    // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-    let first = |job: &Job, observe: Observer<'_>| {
-        let (setting, steps) = job.setting(mesh, meshed.critical, studied.samples);
-        FirstRun::new(studied, meshed, setting, steps, observe)
-    };
-    let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
-    let first = all_done(parallel::map(&mesh.jobs, first, |done| {
-        observe(Progress { fraction: FIRST_RUNS_SHARE * done as f64 / mesh.jobs.len() as f64, now: Some(&now) })
-    }))?;
-    let mut done = 0.0;
-    for (job, first) in mesh.jobs.iter().zip(first) {
-        let part = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * done / mesh.weight();
-        let now = (&first.setting).into();
-        check(observe(Progress { fraction: part, now: Some(&now) }))?;
-        let converged = first.figures.ending == Ending::Finished;
-        let [total, rms_percent] = reference.distance(&first.path, &reference.path);
-        let own = if first.setting.method.moves_linearly() { &meshed.linear } else { &meshed.exact };
-        study.measurements.push(Measurement {
-            setting: first.setting,
-            dofs: meshed.system.dofs(),
-            converged,
-            milliseconds: first.milliseconds(studied, meshed)?,
-            error: converged.then(|| ErrorSplit {
-                total,
-                discretization: reference.distance(&meshed.exact, &reference.path)[0],
-                iteration: reference.distance(&first.path, own)[0],
-                model: reference.distance(own, &meshed.exact)[0],
-            }),
-            time: Timings::default(),
-            motion: Some(MotionFigures { rms_percent, ..first.figures }),
-            pareto: false,
-        });
-        done += job.weight;
-    }
-    Ok(())
-}
+/// Mesh with the paths of the first probe on it, with the reference's steps.
+type MeshedPath = Meshed<Vec<Vector2<f64>>>;
 
-/// Scene with the sampling times and extent of the study.
-#[derive(Clone, Copy)]
+/// Scene with the reference and the extent of its study.
 struct Studied<'a> {
     scene: &'a Scene,
-    samples: Samples,
-    plan: &'a Plan,
+    extent: Extent,
+    reference: MotionReference,
 }
 
-/// Mesh with data computed once for it.
-struct Meshed {
-    system: Arc<System>,
-    /// Path of the first probe on this mesh with the reference's steps.
-    exact: Vec<Vector2<f64>>,
-    /// The same path by linear theory.
-    linear: Vec<Vector2<f64>>,
-    /// Critical step of the explicit integrator, s.
-    critical: Option<f64>,
-}
-
-impl Meshed {
-    fn new(studied: Studied<'_>, mesh: &MeshPlan, observe: Observer<'_>) -> Result<Self, StudyError> {
-        let Studied { scene, samples, plan } = studied;
-        let MeshPlan { element, cells, .. } = *mesh;
-        let scene = Setting { element, cells, method: MethodKind::Newton, iterations: 0, stepping: None }.apply(scene);
-        let system = system_of(&scene)?;
+impl Studied<'_> {
+    /// Measures every setting on a mesh. A cancelled measurement keeps its results.
+    fn measure(&self, study: &mut Study, meshed: &MeshedPath, observe: Observer<'_>) -> Result<(), StudyError> {
+        let Meshed { mesh, system, .. } = meshed;
+        let scene = mesh.apply(self.scene);
         let simulation = Simulation::with_system(&scene, system.clone())?;
-        let mass = Mass::new(&system, scene.material.area_density());
+        let mass = Mass::new(system, scene.material.area_density());
         let critical = critical_step(simulation.problem(), &mass, scene.dynamics.damping);
-        let own = |method| fine_path(&scene, method, &system, samples, plan.reference_steps(), observe);
-        let (exact, linear) = (own(MethodKind::Newton)?, own(MethodKind::Linear)?);
-        Ok(Self { system, exact, linear, critical })
+        let settings = &settings(*mesh, critical, self.reference.samples(), self.extent);
+        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
+        let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
+        let first = parallel::all(settings, observe, [0.0, FIRST_RUNS_SHARE], &now, |setting, observe| {
+            self.first_run(meshed, *setting, observe)
+        })?;
+        for (done, ((_, steps_of_sample), (mut measurement, steps))) in settings.iter().zip(first).enumerate() {
+            let part = done as f64 / settings.len() as f64;
+            let fraction = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * part;
+            let now = (&measurement.setting).into();
+            check(observe(Progress { fraction, now: Some(&now) }))?;
+            let scene = measurement.setting.apply(self.scene);
+            let mut simulation = Simulation::with_system(&scene, system.clone())?;
+            let timing = self.extent.plan().timing;
+            let warm_up = steps.min(*steps_of_sample);
+            measurement.milliseconds = milliseconds_per_second(&mut simulation, warm_up, steps, timing, &|| true);
+            study.measurements.push(measurement);
+        }
+        Ok(())
     }
-}
 
-/// Untimed first run of a setting: records path, energy and counts. It needs much less memory than the simulation.
-struct FirstRun {
-    setting: Setting,
-    /// Number of steps between samples.
-    steps_of_sample: u32,
-    /// Total number of steps.
-    steps: u32,
-    /// Displacement of the first probe at the samples, m; empty if the run was shortened.
-    path: Vec<Vector2<f64>>,
-    /// Figures without the error.
-    figures: MotionFigures,
-}
-
-impl FirstRun {
-    fn new(
-        studied: Studied<'_>,
-        mesh: &Meshed,
-        setting: Setting,
-        steps_of_sample: u32,
+    /// Runs a setting without timing it, and records path, energy and counts. Returns its measurement without the time, and
+    /// the number of its steps: a long motion is shortened.
+    fn first_run(
+        &self,
+        meshed: &MeshedPath,
+        (setting, steps_of_sample): (Setting, u32),
         observe: Observer<'_>,
-    ) -> Result<Self, StudyError> {
-        let Studied { scene, samples, plan } = studied;
-        let mut simulation = Simulation::with_system(&setting.apply(scene), mesh.system.clone())?;
-        let cut = u64::from(steps_of_sample) * u64::from(samples.count) > u64::from(plan.most_steps);
-        let (steps, path) = if cut {
+    ) -> Result<(Measurement, u32), StudyError> {
+        let Self { scene, reference, .. } = self;
+        let samples = reference.samples();
+        let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
+        let steps = u64::from(steps_of_sample) * u64::from(samples.count);
+        let is_cut = steps > u64::from(self.extent.plan().most_steps);
+        let (steps, path) = if is_cut {
             run(&mut simulation, MIN_STEPS);
             (MIN_STEPS, Vec::new())
         } else {
-            (steps_of_sample * samples.count, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
+            (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
         };
-        let stopped = matches!(simulation.status(), Status::Stopped(_));
-        let ending = match (stopped, cut) {
-            (true, _) => Ending::Stopped,
-            (false, true) => Ending::CutShort,
-            (false, false) => Ending::Finished,
+        let ending = match simulation.status() {
+            Status::Stopped(_) => Ending::Stopped,
+            _ if is_cut => Ending::CutShort,
+            _ => Ending::Finished,
         };
+        let converged = ending == Ending::Finished;
+        let [_, rms_percent] = reference.distance(&path, &reference.path);
+        let is_linear = setting.method.moves_linearly();
+        let error = || meshed.error(&path, is_linear, &reference.path, |a, b| reference.distance(a, b)[0]);
         let of_motion = simulation.motion().map(|motion| {
             let ledger = motion.ledger();
             (motion.counts(), 100.0 * ledger.drift(), 100.0 * ledger.drift_of_input())
         });
         let (counts, drift_percent, drift_of_input_percent) = of_motion.unwrap_or_default();
-        let figures = MotionFigures { ending, rms_percent: 0.0, drift_percent, drift_of_input_percent, counts };
-        Ok(Self { setting, steps_of_sample, steps, path, figures })
-    }
-
-    /// Returns the computing time per simulated second, ms, measured by repeating the run.
-    fn milliseconds(&self, studied: Studied<'_>, mesh: &Meshed) -> Result<f64, StudyError> {
-        let mut simulation = Simulation::with_system(&self.setting.apply(studied.scene), mesh.system.clone())?;
-        let warm_up = self.steps.min(self.steps_of_sample);
-        Ok(milliseconds_per_second(&mut simulation, warm_up, self.steps, studied.plan.timing, &|| true))
+        let motion = MotionFigures { ending, rms_percent, drift_percent, drift_of_input_percent, counts };
+        let measurement = Measurement {
+            setting,
+            dofs: meshed.system.dofs(),
+            converged,
+            milliseconds: 0.0,
+            error: converged.then(error),
+            time: Timings::default(),
+            motion: Some(motion),
+            pareto: false,
+        };
+        Ok((measurement, steps))
     }
 }
 
@@ -241,8 +191,7 @@ fn milliseconds_per_second(
     run(simulation, warm_up);
     let step = simulation.scene().dynamics.time_step;
     let mut simulated = 0.0;
-    let runs = Runs { count: 1..=RUNS, enough: timing };
-    let time = median_time(runs, simulation, Simulation::reset, |simulation| {
+    let time = median_time(simulation, timing, |simulation| {
         let mut left = steps;
         while left > 0 && goes_on() {
             run(simulation, left.min(STEPS_BETWEEN_QUESTIONS));

@@ -13,7 +13,7 @@ use crate::study::reference::system_of;
 use crate::study::setting::{Setting, Stepping};
 
 /// Size of a study.
-pub(super) struct Plan {
+pub(in crate::study) struct Plan {
     /// Longest simulated time, in periods of the body's lowest natural frequency and in time steps of the scene; the
     /// longer one counts.
     longest: (f64, f64),
@@ -76,7 +76,7 @@ impl Plan {
 }
 
 impl Extent {
-    pub(super) fn plan(self) -> &'static Plan {
+    pub(in crate::study) fn plan(self) -> &'static Plan {
         match self {
             Self::Quick => &QUICK,
             Self::Full => &FULL,
@@ -84,18 +84,9 @@ impl Extent {
     }
 }
 
-/// Returns the period of the body's lowest natural frequency about rest, s; `None` for a body that is free to move.
-fn lowest_period(scene: &Scene) -> Result<Option<f64>, StudyError> {
-    let system = system_of(scene)?;
-    let mass = Mass::new(&system, scene.material.area_density());
-    let problem = Problem::new(scene, system).map_err(SimulationError::from)?;
-    let frequency = lowest_frequency(&problem, &mass).filter(|frequency| *frequency > 0.0);
-    Ok(frequency.map(|frequency| TAU / frequency).filter(|period| period.is_finite()))
-}
-
 /// Sampling times of paths: multiples of the longest time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Samples {
+pub(in crate::study) struct Samples {
     /// Time between two samples, s.
     pub interval: f64,
     /// Number of samples, without the start.
@@ -104,13 +95,16 @@ pub(super) struct Samples {
 
 impl Samples {
     /// Returns the sampling times of a scene.
-    ///
-    /// # Errors
-    /// [`StudyError`] if the scene has no valid equations.
     pub fn of(scene: &Scene, plan: &Plan) -> Result<Self, StudyError> {
         let (periods, steps) = plan.longest;
         let own = scene.dynamics.time_step;
-        let longest = lowest_period(scene)?.map_or(0.0, |period| periods * period).max(steps * own);
+        let system = system_of(scene)?;
+        let mass = Mass::new(&system, scene.material.area_density());
+        let problem = Problem::new(scene, system).map_err(SimulationError::from)?;
+        // A body that is free to move has no lowest period.
+        let frequency = lowest_frequency(&problem, &mass).filter(|frequency| *frequency > 0.0);
+        let period = frequency.map(|frequency| TAU / frequency).filter(|period| period.is_finite());
+        let longest = period.map_or(0.0, |period| periods * period).max(steps * own);
         let duration = scene.dynamics.duration.min(longest);
         let mut interval = (plan.coarsest * own).min(duration / MIN_STEPS);
         // Doubled, so that the scene's own step remains one of the measured steps.
@@ -132,11 +126,13 @@ pub(super) fn slenderness(scene: &Scene) -> Option<f64> {
     Some(ratio.max(1.0 / ratio))
 }
 
-/// Returns the numbers of nodes in x and y that the shape of a scene's beam requires: `per_height` along for each height, at
-/// most `most`, and `across`; `None` for a mesh file.
-pub(super) fn nodes_of_shape(scene: &Scene, (per_height, most): (f64, f64), across: f64) -> Option<[f64; 2]> {
+/// Returns the numbers of nodes in x and y that the shape of a scene's beam requires: `per_height` along for each height, but
+/// not more than always suffice, and `across`; `None` for a mesh file.
+pub(super) fn nodes_of_shape(scene: &Scene, per_height: f64, across: f64) -> Option<[f64; 2]> {
+    /// Number of nodes along that always suffices.
+    const ALONG: f64 = 80.0;
     let beam = scene.beam.as_ref()?;
-    let along = (per_height * slenderness(scene)?).min(most);
+    let along = (per_height * slenderness(scene)?).min(ALONG);
     Some(if beam.length >= beam.height { [along, across] } else { [across, along] })
 }
 
@@ -144,90 +140,43 @@ pub(super) fn nodes_of_shape(scene: &Scene, (per_height, most): (f64, f64), acro
 /// shape of the beam requires if these are more: a scene with a coarse mesh, such as one that a study has recommended, is
 /// studied on the same meshes as one with a finer mesh. `None` for a mesh file.
 pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
-    /// Smallest number of nodes across, smallest number along per height, and the number along that always suffices.
-    const ACROSS: f64 = 2.0;
+    /// Smallest number of nodes along per height, and across.
     const PER_HEIGHT: f64 = 4.0;
-    const ALONG: f64 = 80.0;
+    const ACROSS: f64 = 2.0;
     let beam = scene.beam.as_ref()?;
     let pieces = |element: ElementKind| element.entry().degree() as f64;
-    let least = nodes_of_shape(scene, (PER_HEIGHT, ALONG), ACROSS)?;
+    let least = nodes_of_shape(scene, PER_HEIGHT, ACROSS)?;
     let own = [0, 1].map(|i| least[i].max(f64::from(beam.cells[i]) * pieces(beam.element)));
     // A scene with a very fine mesh is studied on coarser ones.
     let factor = factor * (MAX_NODES / (own[0] * own[1])).sqrt().min(1.0);
     Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
 }
 
-/// Mesh and the settings measured on it.
-pub(super) struct MeshPlan {
-    pub element: ElementKind,
-    pub cells: Option<[u32; 2]>,
-    pub jobs: Vec<Job>,
+/// Returns every mesh of a scene, from coarse to fine for each element.
+pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<Setting> {
+    let factors = extent.plan().meshes;
+    let of = |element| factors.iter().map(move |&factor| Setting::newton(element, cells(scene, element, factor)));
+    let mut meshes: Vec<Setting> = scene.elements().flat_map(of).collect();
+    meshes.dedup();
+    meshes
 }
 
-/// Setting measured on a mesh.
-#[derive(Clone, Copy)]
-pub(super) struct Job {
-    integrator: &'static IntegratorEntry,
-    /// Number of steps between samples; `None` for as many as stability requires.
-    steps: Option<u32>,
-    method: MethodKind,
-    iterations: u32,
-    /// Approximate cost relative to other settings.
-    pub weight: f64,
-}
-
-impl Job {
-    /// Returns the setting on a mesh with a known critical step, and its number of steps between samples.
-    pub fn setting(self, mesh: &MeshPlan, critical: Option<f64>, samples: Samples) -> (Setting, u32) {
-        let Self { integrator, method, iterations, .. } = self;
-        let MeshPlan { element, cells, .. } = *mesh;
-        let stable = || {
-            let longest = critical.map_or(samples.interval, |critical| BELOW_CRITICAL * critical);
-            (samples.interval / longest).ceil().max(1.0) as u32
-        };
-        let steps = self.steps.unwrap_or_else(stable);
-        let time_step = samples.interval / f64::from(steps);
-        let stepping = Some(Stepping { integrator: integrator.kind, time_step });
-        (Setting { element, cells, method, iterations, stepping }, steps)
-    }
-}
-
-impl MeshPlan {
-    /// Returns every mesh of a scene, from coarse to fine for each element.
-    pub fn all(scene: &Scene, extent: Extent) -> Vec<Self> {
-        let mut all = Vec::new();
-        for element in scene.elements() {
-            let mut meshes: Vec<_> = extent.plan().meshes.iter().map(|&factor| cells(scene, element, factor)).collect();
-            meshes.dedup();
-            all.extend(meshes.into_iter().map(|cells| Self { element, cells, jobs: jobs(cells, extent) }));
-        }
-        all
-    }
-
-    /// Returns the approximate cost of all its settings relative to other meshes.
-    pub fn weight(&self) -> f64 {
-        self.jobs.iter().map(|job| job.weight).sum()
-    }
-}
-
-/// Returns all settings measured on a mesh.
-fn jobs(cells: Option<[u32; 2]>, extent: Extent) -> Vec<Job> {
-    let plan = extent.plan();
-    let nodes = cells.map_or(1.0, |[along, across]| f64::from(along * across));
-    let mut jobs = Vec::new();
+/// Returns all settings measured on a mesh, each with its number of steps between samples. `critical` is the critical step
+/// of the explicit integrator there, s.
+pub(super) fn settings(mesh: Setting, critical: Option<f64>, samples: Samples, extent: Extent) -> Vec<(Setting, u32)> {
+    let (plan, interval) = (extent.plan(), samples.interval);
+    let stable = (interval / critical.map_or(interval, |critical| BELOW_CRITICAL * critical)).ceil().max(1.0) as u32;
+    let mut settings = Vec::new();
     for integrator in INTEGRATORS {
-        let explicit = integrator.is_explicit();
-        let steps: Vec<_> = if explicit { vec![None] } else { plan.steps.iter().map(|&n| Some(n)).collect() };
-        for steps in steps {
+        for &steps in if integrator.is_explicit() { std::slice::from_ref(&stable) } else { plan.steps } {
+            let stepping = Stepping { integrator: integrator.kind, time_step: interval / f64::from(steps) };
             for method in methods(integrator, extent) {
-                for &iterations in solves(integrator, method, plan) {
-                    let weight = nodes * f64::from(steps.unwrap_or(1) * integrator.stages.max(1));
-                    jobs.push(Job { integrator, steps, method, iterations, weight });
-                }
+                let of = |&iterations| (Setting { method, iterations, stepping: Some(stepping), ..mesh }, steps);
+                settings.extend(solves(integrator, method, plan).iter().map(of));
             }
         }
     }
-    jobs
+    settings
 }
 
 /// Returns the methods that give different results.

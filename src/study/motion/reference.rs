@@ -7,16 +7,15 @@ use nalgebra::Vector2;
 use super::plan::{Plan, Samples, cells, nodes_of_shape, slenderness};
 use crate::assembly::System;
 use crate::format::percent;
-use crate::mesh::Mesh;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::scene::{Analysis, ElementKind, IntegratorKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::fine::finest_element;
 use crate::study::parallel;
-use crate::study::progress::{Extent, StudyError, all_done, check};
+use crate::study::progress::{Extent, StudyError, check};
 use crate::study::reference::{first_probe, system_of};
-use crate::study::setting::{Setting, Stepping, mesh_text, step_text};
+use crate::study::setting::{Setting, mesh_text, step_text};
 
 /// Reference path of the first probe.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -63,31 +62,12 @@ impl From<&MotionReference> for Sentence {
 
 /// Number of elements of a mesh file above which motions on the refined mesh take too long.
 const MAX_ELEMENTS: usize = 4000;
+/// Length of a beam relative to its height from which on its path converges as fast as its mesh.
+const SLENDER: f64 = 5.0;
 
 impl MotionReference {
     /// Computes the reference for a study of this extent.
-    ///
-    /// # Errors
-    /// [`StudyError`].
     pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
-        Self::check(scene)?;
-        let plan = extent.plan();
-        Self::of(scene, plan, Samples::of(scene, plan)?, observe)
-    }
-
-    /// Returns the studied time, s.
-    #[must_use]
-    pub fn duration(&self) -> f64 {
-        self.samples().duration()
-    }
-
-    /// Returns the sampling times of the path.
-    pub(super) fn samples(&self) -> Samples {
-        Samples { interval: self.interval, count: self.path.len() as u32 }
-    }
-
-    /// Refuses a scene without a motion.
-    fn check(scene: &Scene) -> Result<(), StudyError> {
         scene.validate().map_err(SimulationError::from)?;
         if scene.analysis != Analysis::Dynamic {
             return Err(StudyError::AtRest);
@@ -95,23 +75,15 @@ impl MotionReference {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        Ok(())
-    }
-
-    fn of(scene: &Scene, plan: &Plan, samples: Samples, observe: Observer<'_>) -> Result<Self, StudyError> {
-        let steps = plan.reference_steps();
+        let plan = extent.plan();
+        let (samples, steps) = (Samples::of(scene, plan)?, plan.reference_steps());
         let [coarse, fine] = meshes(scene, plan)?;
         // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
-        let follow = |&(mesh, steps): &(&ReferenceMesh, u32), observe: Observer<'_>| {
-            fine_path(&mesh.scene, MethodKind::Newton, &mesh.system, samples, steps, observe)
-        };
-        let paths = all_done(parallel::map(&paths, follow, |done| {
-            observe(Progress {
-                fraction: done as f64 / paths.len() as f64,
-                now: Some(&sentence!("the reference solution")),
-            })
-        }))?;
+        let now = sentence!("the reference solution");
+        let paths = parallel::all(&paths, observe, [0.0, 1.0], &now, |((scene, system), steps), observe| {
+            fine_path(scene.clone(), system, samples, *steps, observe)
+        })?;
         let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
         let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);
         if size == 0.0 {
@@ -123,16 +95,28 @@ impl MotionReference {
             size,
             error_percent: 0.0,
             time_step: samples.interval / f64::from(steps),
-            element: fine.scene.element(),
-            cells: fine.cells,
+            element: fine.0.element(),
+            cells: fine.0.beam.as_ref().map(|beam| beam.cells),
             scene_duration: scene.dynamics.duration,
             own_mesh: cells(scene, finest_element(scene), 1.0),
         };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
-        let part_of_mesh = if is_slender(scene) { 1.0 / 3.0 } else { 1.0 };
+        let is_slender = slenderness(scene).is_some_and(|ratio| ratio >= SLENDER);
+        let part_of_mesh = if is_slender { 1.0 / 3.0 } else { 1.0 };
         reference.error_percent = part_of_mesh * of_mesh + of_step / 3.0;
         Ok(reference)
+    }
+
+    /// Returns the studied time, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.samples().duration()
+    }
+
+    /// Returns the sampling times of the path.
+    pub(in crate::study) fn samples(&self) -> Samples {
+        Samples { interval: self.interval, count: self.path.len() as u32 }
     }
 
     /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
@@ -147,17 +131,14 @@ impl MotionReference {
     }
 }
 
-/// Computes the path of the first probe by the energy–momentum method, with `steps` steps between samples.
-pub(super) fn fine_path(
-    scene: &Scene,
-    method: MethodKind,
+/// Computes the path of the first probe of a scene by the energy–momentum method, with `steps` steps between samples.
+pub(in crate::study) fn fine_path(
+    mut scene: Scene,
     system: &Arc<System>,
     samples: Samples,
     steps: u32,
     observe: Observer<'_>,
 ) -> Result<Vec<Vector2<f64>>, StudyError> {
-    let mut scene = scene.clone();
-    scene.solver.method = method;
     let dynamics = &mut scene.dynamics;
     (dynamics.integrator, dynamics.iterations) = (IntegratorKind::EnergyMomentum, 0);
     dynamics.time_step = samples.interval / f64::from(steps);
@@ -170,51 +151,34 @@ pub(super) fn fine_path(
     }
 }
 
-/// Mesh of the reference.
-struct ReferenceMesh {
-    scene: Scene,
-    system: Arc<System>,
-    cells: Option<[u32; 2]>,
-}
-
-/// Returns `true` for a beam whose length is several times its height.
-fn is_slender(scene: &Scene) -> bool {
-    const SLENDER: f64 = 5.0;
-    slenderness(scene).is_some_and(|ratio| ratio >= SLENDER)
-}
-
 /// Returns the cells of the reference's mesh, for a beam at least as many as its shape requires: on one cell across, the
 /// path converges to another one.
 fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
-    /// Smallest number of nodes across, smallest number along per height, and the number along that always suffices.
-    const ACROSS: f64 = 4.0;
+    /// Smallest number of nodes along per height, and across.
     const PER_HEIGHT: f64 = 8.0;
-    const ALONG: f64 = 80.0;
-    let own = cells(scene, element, factor)?;
-    let least = nodes_of_shape(scene, (PER_HEIGHT, ALONG), ACROSS)?;
+    const ACROSS: f64 = 4.0;
+    let (own, least) = (cells(scene, element, factor)?, nodes_of_shape(scene, PER_HEIGHT, ACROSS)?);
     let pieces = element.entry().degree() as f64;
     Some([0, 1].map(|i| own[i].max((least[i] / pieces).ceil() as u32)))
 }
 
-/// Returns the mesh with half as many cells in each direction, and the fine mesh.
-fn meshes(scene: &Scene, plan: &Plan) -> Result<[ReferenceMesh; 2], StudyError> {
+/// Returns the scene with half as many cells in each direction, and with the fine mesh, each with its equations.
+fn meshes(scene: &Scene, plan: &Plan) -> Result<[(Scene, Arc<System>); 2], StudyError> {
     let element = finest_element(scene);
     let fine = reference_cells(scene, element, plan.reference_mesh);
-    let with = |cells: Option<[u32; 2]>| {
-        let stepping = Stepping { integrator: IntegratorKind::EnergyMomentum, time_step: scene.dynamics.time_step };
-        let setting = Setting { element, cells, method: MethodKind::Newton, iterations: 0, stepping: Some(stepping) };
-        let scene = setting.apply(scene);
-        Ok::<_, StudyError>(ReferenceMesh { system: system_of(&scene)?, scene, cells: setting.cells })
+    let with = |cells| {
+        let scene = Setting::newton(element, cells).apply(scene);
+        let system = system_of(&scene)?;
+        Ok::<_, StudyError>((scene, system))
     };
-    let half = fine.map(|cells| cells.map(|n| n.div_ceil(2)));
-    let (coarse, mut fine) = (with(half)?, with(fine)?);
+    let (coarse, mut fine) = (with(fine.map(|cells| cells.map(|n| n.div_ceil(2))))?, with(fine)?);
     if scene.beam.is_none() {
-        let mesh: &Mesh = fine.system.mesh();
-        if mesh.element_count() > MAX_ELEMENTS {
-            return Err(StudyError::TooFine { elements: mesh.element_count() });
+        let (scene, system) = &mut fine;
+        let elements = system.mesh().element_count();
+        if elements > MAX_ELEMENTS {
+            return Err(StudyError::TooFine { elements });
         }
-        let refined = System::with_mesh(&fine.scene, mesh.refined()).map_err(SimulationError::from)?;
-        fine.system = Arc::new(refined);
+        *system = Arc::new(System::with_mesh(scene, system.mesh().refined()).map_err(SimulationError::from)?);
     }
     Ok([coarse, fine])
 }
@@ -230,7 +194,7 @@ pub(super) fn run(simulation: &mut Simulation, steps: u32) {
 
 /// Returns the displacements of the first probe at the samples, m, from the start of a motion until it stops. `each`
 /// receives the motion at every sample.
-pub(super) fn path(
+pub(in crate::study) fn path(
     simulation: &mut Simulation,
     samples: Samples,
     steps: u32,

@@ -100,7 +100,7 @@ impl LimitMap {
         if let Some(done) = progress {
             ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
         }
-        let mut axis = limits::axis(&base);
+        let mut axis = LoadAxis::of(&base);
         if let Some(Beam { cells: [n, m], .. }) = &base.beam {
             axis.name = sentence!("%{load} on %{n} × %{m} cells", load = axis.name, n = *n, m = *m);
         }
@@ -350,7 +350,7 @@ impl<'a> StripChart<'a> {
         let at = pos2(strips.center().x, strips.bottom() + LINE);
         let name = said(&limits::axis_text(self.limits, self.axis));
         self.text(ui, at, Align2::CENTER_TOP, &name, palette.secondary);
-        if let Some(critical) = self.limits.critical_in_range() {
+        if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
             let x = self.x(critical);
             let ends = [pos2(x, curve.top()), pos2(x, strips.bottom())];
             painter.add(egui::Shape::dashed_line(&ends, Stroke::new(1.5, palette.error), 6.0, 4.0));

@@ -10,29 +10,27 @@ use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
-#[cfg(feature = "app")]
-use super::motion::steps::POWERS;
-use super::motion::steps::{StepResult, StepStudy};
-use super::progress::{StudyError, all_done, check};
-use super::reference::first_probe;
+use super::progress::{StudyError, check};
+use super::reference::{first_probe, system_of};
 use super::{Effort, ProbeReference, Reference, parallel};
 use crate::assembly::System;
-use crate::dynamics::INTEGRATORS;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, number, percent, three_digits};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Deformation, Simulation, SimulationError};
+use crate::simulation::{Deformation, Simulation};
 use crate::stress::LAW_HOLDS;
+
+mod motion;
 
 /// Smallest and largest part of the scene's loads and prescribed displacements.
 pub const RANGE: [f64; 2] = [0.01, 10.0];
 /// Returns the smallest and the largest part of the time step of a motion.
 #[cfg(feature = "app")]
 pub(crate) fn time_step_range() -> [f64; 2] {
-    POWERS.map(|power| 2f64.powi(power))
+    motion::POWERS.map(|power| 2f64.powi(power))
 }
 
 /// Loads per decade; at every second one the error is measured too, which takes longest.
@@ -91,46 +89,26 @@ pub struct Piece {
     pub is_beyond_law: bool,
 }
 
-/// Load that a method was tried at, or time step of an integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Load that a method was tried at, or time step of an integrator, and its result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LimitPoint {
     /// Part of the scene's loads and prescribed displacements, or of its time step.
     pub factor: f64,
     /// `false` if the method does not converge, or the motion stops early.
     pub converges: bool,
-    /// Result; `None` if there is none, or only convergence was tried.
-    pub result: Option<LimitResult>,
-}
-
-/// Result of a method at a load, or of an integrator with a time step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LimitResult {
     /// Displacement of the first probe, m; of a motion at its end.
     pub displacement: Vector2<f64>,
-    /// Largest strain, of a motion over its time.
-    pub max_strain: f64,
+    /// Largest strain, of a motion over its time; `None` if there is no result, or only convergence was tried.
+    pub max_strain: Option<f64>,
     /// Number of inverted elements.
     pub inverted_elements: usize,
-    /// Comparison with the reference; `None` if only the strains were sought.
-    pub error: Option<LimitError>,
-}
-
-/// Error of a result against the reference solution.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LimitError {
+    /// `true` if the result was compared with the reference solution.
+    pub is_compared: bool,
     /// Largest error, percent of the reference's displacement, its own error included; `None` if the reference solution is
     /// not known, or is too inaccurate to tell if the error is within [`USABLE`].
-    pub percent: Option<f64>,
-    /// Error of the reference solution, a part of [`Self::percent`]; `None` without a reference solution.
+    pub error_percent: Option<f64>,
+    /// Error of the reference solution, a part of [`Self::error_percent`]; `None` without a reference solution.
     pub reference_percent: Option<f64>,
-}
-
-impl LimitResult {
-    /// Returns `true` if elements are inverted, or strains are beyond those of the linear law.
-    #[must_use]
-    pub fn is_beyond_law(&self) -> bool {
-        self.inverted_elements > 0 || self.max_strain > LAW_HOLDS
-    }
 }
 
 /// Property of a result whose limits are sought.
@@ -142,10 +120,6 @@ enum Property {
     Converges,
     /// Strains are those of the linear law.
     Law,
-}
-
-impl Property {
-    const ALL: [Self; 4] = [Self::Within(GOOD), Self::Within(USABLE), Self::Converges, Self::Law];
 }
 
 /// Answer to the question if a load has a property.
@@ -163,18 +137,16 @@ impl LimitPoint {
         let of = |holds: bool| if holds { Ternary::Yes } else { Ternary::No };
         match property {
             Property::Converges => Some(of(self.converges)),
-            Property::Law if self.converges => Some(of(!self.result?.is_beyond_law())),
-            Property::Law => None,
+            Property::Law => {
+                let is_beyond = self.max_strain? > LAW_HOLDS || self.inverted_elements > 0;
+                Some(of(!is_beyond))
+            }
             Property::Within(_) if !self.converges => Some(Ternary::No),
-            Property::Within(limit) => Some(match self.result?.error? {
-                LimitError { percent: None, .. } => Ternary::Unknown,
-                LimitError { percent: Some(error), .. } if error <= limit => Ternary::Yes,
+            Property::Within(limit) => self.is_compared.then_some(match (self.error_percent, self.reference_percent) {
+                (None, _) => Ternary::Unknown,
+                (Some(error), _) if error <= limit => Ternary::Yes,
                 // Without the error of the reference, which is large, it may be within the limit.
-                LimitError { percent: Some(error), reference_percent: Some(own) }
-                    if error - own <= limit && own > LARGE_OWN * limit =>
-                {
-                    Ternary::Unknown
-                }
+                (Some(error), Some(own)) if error - own <= limit && own > LARGE_OWN * limit => Ternary::Unknown,
                 _ => Ternary::No,
             }),
         }
@@ -182,15 +154,14 @@ impl LimitPoint {
 
     /// Returns the rating of the error; `None` if it was not sought.
     fn rating(&self) -> Option<Rating> {
-        if !self.converges {
-            return Some(Rating::NotConverged);
+        match self.error_percent {
+            _ if !self.converges => Some(Rating::NotConverged),
+            _ if !self.is_compared => None,
+            None => Some(Rating::Unknown),
+            Some(error) if error <= GOOD => Some(Rating::Good),
+            Some(error) if error <= USABLE => Some(Rating::Usable),
+            Some(_) => Some(Rating::Beyond),
         }
-        Some(match self.result?.error?.percent {
-            None => Rating::Unknown,
-            Some(error) if error <= GOOD => Rating::Good,
-            Some(error) if error <= USABLE => Rating::Usable,
-            Some(_) => Rating::Beyond,
-        })
     }
 }
 
@@ -389,7 +360,7 @@ impl Strip {
         let found = [GOOD, USABLE].map(|percent| Some((percent, self.first_run(Property::Within(percent))?.0)));
         let is_far = |(_, run): &(f64, Run)| run.before.is_none() && run.range[1] > NEAR * range[0];
         let best = found.iter().copied().flatten().find(is_far).or(found[1]);
-        let own = || first.result?.error?.reference_percent;
+        let own = || first.reference_percent;
         Some(match (best, self.runs(Property::Converges).first()) {
             (Some((limit, run)), _) => {
                 let ([from, to], percent) = (run.range.map(load), number(limit));
@@ -418,7 +389,8 @@ impl Strip {
     /// Returns the middle between two neighbouring loads at which a property that `is_sought` at the larger one differs,
     /// unless they lie next to each other; and `true` if the property is an error.
     fn change(&self, is_sought: &dyn Fn(Property, f64) -> bool) -> Option<(f64, bool)> {
-        Property::ALL.iter().find_map(|&property| {
+        let all = [Property::Within(GOOD), Property::Within(USABLE), Property::Converges, Property::Law];
+        all.into_iter().find_map(|property| {
             let answers: Vec<(f64, Ternary)> = self.answers(property).collect();
             let is_change = |pair: &&[(f64, Ternary)]| {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
@@ -437,7 +409,7 @@ impl Strip {
         const CLOSE: f64 = 0.5;
         /// Ratio of two loads between which no peak is sought.
         const NARROW: f64 = 1.05;
-        let errors = self.points.iter().filter_map(|point| Some((point.factor, point.result?.error?.percent?)));
+        let errors = self.points.iter().filter_map(|point| Some((point.factor, point.error_percent?)));
         let errors: Vec<(f64, f64)> = errors.collect();
         let peaks = errors.windows(3).filter_map(|near| {
             let [(before, a), (at, peak), (after, b)] = [near[0], near[1], near[2]];
@@ -459,21 +431,6 @@ impl Strip {
         let end = self.runs(Property::Converges).first().filter(|run| run.ends)?.range[1];
         let is_tried = |factor: &f64| self.points.iter().any(|point| (point.factor / factor - 1.0).abs() < 0.5 * STEP);
         (NEXT[0]..=NEXT[1]).map(|n| end * (1.0 + STEP * f64::from(n))).find(|factor| !is_tried(factor))
-    }
-
-    /// Adds a load that was tried.
-    fn insert(&mut self, point: LimitPoint) {
-        let place = self.points.partition_point(|other| other.factor < point.factor);
-        self.points.insert(place, point);
-    }
-}
-
-/// Returns the axis of a scene's loads, or of the time step of a motion.
-#[must_use]
-pub fn axis(scene: &Scene) -> LoadAxis {
-    match scene.analysis {
-        Analysis::Static => LoadAxis::of(scene),
-        Analysis::Dynamic => LoadAxis { name: sentence!("time step"), unit: "s", full: scene.dynamics.time_step },
     }
 }
 
@@ -520,7 +477,7 @@ impl MethodLimits {
     #[must_use]
     pub fn large_reference_error_percent(&self) -> Option<f64> {
         let points = self.strips.iter().flat_map(|strip| &strip.points);
-        let errors = points.filter_map(|point| point.result?.error?.reference_percent);
+        let errors = points.filter_map(|point| point.reference_percent);
         errors.max_by(f64::total_cmp).filter(|error| *error > LARGE_OWN * GOOD)
     }
 
@@ -558,12 +515,6 @@ impl MethodLimits {
         Some(sentence!("each error includes %{error} of the mesh", error))
     }
 
-    /// Returns the critical part of the load if it is in the range of the limits.
-    #[must_use]
-    pub fn critical_in_range(&self) -> Option<f64> {
-        self.critical().filter(|&critical| self.contains(critical))
-    }
-
     /// Returns `true` if a part of the scene's loads, or of its time step, is in the range of the limits: that of a very
     /// short time step is not.
     #[must_use]
@@ -575,26 +526,14 @@ impl MethodLimits {
     }
 
     /// Computes the limits of a scene with a probe, on the scene's cells. The reference solution is that of
-    /// [`Reference`] at every load, or that of a quick study of the motion.
+    /// [`Reference`] at every load, or that of a quick study of the motion. `partial` receives the limits so far each time a
+    /// load has been solved; strips with the scene's own element and method are computed first.
     ///
     /// # Errors
     /// [`StudyError`]: the scene has no probe or cannot be simulated, or `observe` cancelled the computation.
-    pub fn of(scene: &Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
-        Self::with_partial(scene, observe, &|_| {})
-    }
-
-    /// Computes as [`Self::of`]; `partial` receives the limits so far each time a load has been solved. Strips with the
-    /// scene's own element and method are computed first.
-    ///
-    /// # Errors
-    /// [`StudyError`].
-    pub fn with_partial(
-        scene: &Scene,
-        observe: Observer<'_>,
-        partial: &(dyn Fn(&Self) + Sync),
-    ) -> Result<Self, StudyError> {
+    pub fn of(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(&Self) + Sync)) -> Result<Self, StudyError> {
         if scene.analysis == Analysis::Dynamic {
-            return Self::of_motion(scene, observe, partial);
+            return motion::limits(scene, observe, partial);
         }
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
@@ -603,179 +542,75 @@ impl MethodLimits {
         let systems = scene.elements().map(|element| {
             let mut own = scene.clone();
             own.set_element(element);
-            let system = System::new(&own).map_err(SimulationError::from)?;
-            Ok((own, Arc::new(system)))
+            Ok((system_of(&own)?, own))
         });
-        let systems = systems.collect::<Result<Vec<_>, SimulationError>>()?;
-        let now = [sentence!("reference solutions"), sentence!("following each method")];
+        let mut systems = systems.collect::<Result<Vec<_>, StudyError>>()?;
         let methods = || METHODS.iter().map(|method| method.kind).filter(|method| *method != MethodKind::Auto);
-        let iterated = |own: &Scene, method: MethodKind| {
-            let mut own = own.clone().with_method(method);
-            own.solver.accept_after = 0;
-            own
-        };
-        let all = systems.iter().flat_map(|(own, system)| methods().map(move |method| (iterated(own, method), system)));
+        let all = systems.iter().flat_map(|(system, own)| {
+            methods().map(move |method| {
+                let mut own = own.clone().with_method(method);
+                own.solver.accept_after = 0;
+                (own, system.clone())
+            })
+        });
         // The scene's own early stop has a strip too.
-        let is_own = |(own, _): &&(Scene, _)| own.element() == scene.element();
-        let early = systems.iter().find(is_own).filter(|_| scene.solver.accept_after > 0);
-        let own = early.into_iter().map(|(own, system)| (own.clone(), system)).chain(all);
-        let mut settings: Vec<(usize, (Scene, &Arc<System>))> = own.enumerate().collect();
-        let mut elements: Vec<_> = systems.iter().collect();
-        elements.sort_by_key(|(own, _)| own.element() != scene.element());
-        let criticals = parallel::map(
-            &elements,
-            |(own, system), observe| (own.element(), critical(own, system, observe)),
-            |_| observe(Progress::at(0.0)),
-        );
-        let criticals: Vec<_> = criticals.into_iter().collect::<Option<_>>().ok_or(StudyError::Cancelled)?;
+        let early = systems.iter().find(|(_, own)| own.element() == scene.element() && scene.solver.accept_after > 0);
+        let early = early.map(|(system, own)| (own.clone(), system.clone()));
+        let mut rows: Vec<(usize, (Scene, Arc<System>))> = early.into_iter().chain(all).enumerate().collect();
+        let strips = rows.iter().map(|(_, (own, _))| Strip::new(own)).collect();
+        systems.sort_by_key(|(_, own)| own.element() != scene.element());
+        let now = sentence!("reference solutions");
+        let criticals = parallel::all(&systems, observe, [0.0; 2], &now, |(system, own), observe| {
+            Ok((own.element(), critical(own, system, observe)))
+        })?;
         let between = factors().into_iter().skip(1).step_by(2);
         let factors: Vec<f64> = factors().into_iter().step_by(2).collect();
-        let all = (factors.len() + settings.len()) as f64;
-        let limits = Self {
-            range: RANGE,
-            duration: None,
-            mesh_error_percent: None,
-            criticals,
-            reference: factors.iter().map(|&factor| (factor, None)).collect(),
-            strips: settings.iter().map(|(_, (own, _))| Strip::new(own)).collect(),
-        };
-        let so_far = SoFar { limits: Mutex::new(limits), partial };
-        let references = References { scene, known: Mutex::default() };
+        let all = (factors.len() + rows.len()) as f64;
+        let reference = factors.iter().map(|&factor| (factor, None)).collect();
+        let limits = Self { range: RANGE, duration: None, mesh_error_percent: None, criticals, reference, strips };
+        let sweep = Sweep { scene, limits: Mutex::new(limits), references: Mutex::default(), partial };
         let solve_references = |factors: &[f64], before: usize| {
-            let found = parallel::map(
-                factors,
-                |&factor, observe| {
-                    let displacement = references.at(factor, observe)?.map(|known| known.displacement);
-                    so_far.change(|limits| {
-                        let known = limits.reference.iter_mut().find(|(own, _)| *own == factor);
-                        let _ = known.map(|(_, u)| *u = displacement);
-                    });
-                    Ok(())
-                },
-                |done| observe(Progress { fraction: ((before + done) as f64 / all).min(1.0), now: Some(&now[0]) }),
-            );
-            // A reference may have been found before that of a smaller load.
-            let is_beyond = |(factor, _): &&mut (f64, _)| references.is_beyond_folds(*factor);
-            so_far.change(|limits| limits.reference.iter_mut().filter(is_beyond).for_each(|(_, u)| *u = None));
-            all_done(found)
+            let shares = [before, before + factors.len()].map(|done| (done as f64 / all).min(1.0));
+            sweep.solve_references(factors, shares, observe)
         };
         solve_references(&factors, 0)?;
-        let added = steep(&so_far.limits().reference);
-        so_far.change(|limits| {
+        let added = steep(&sweep.limits().reference);
+        sweep.change(|limits| {
             limits.reference.extend(added.iter().map(|&factor| (factor, None)));
             limits.reference.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         });
         solve_references(&added, factors.len())?;
-        let compared: Vec<f64> = so_far.limits().reference.iter().map(|(factor, _)| *factor).collect();
+        let compared: Vec<f64> = sweep.limits().reference.iter().map(|(factor, _)| *factor).collect();
         let is_new = |factor: &f64| compared.iter().all(|other| (other / factor).ln().abs() > FINE.ln());
         let between: Vec<(f64, bool)> = between.filter(is_new).map(|factor| (factor, false)).collect();
-        let all = (compared.len() + settings.len()) as f64;
-        settings.sort_by_key(|(_, (own, _))| {
+        rows.sort_by_key(|(_, (own, _))| {
             u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
         });
-        let solve = |own: &Scene, system: &Arc<System>, factor: f64, observe: Observer<'_>| {
-            let mut simulation = Simulation::with_system(&at(own, factor), system.clone())?;
-            let flow = simulation.solve_watched(&mut |_| observe(Progress::at(0.0)));
-            check(flow).map(|()| Some(simulation).filter(|s| s.status().is_success()))
-        };
-        let point = |(own, system): (&Scene, &Arc<System>), factor: f64, is_compared: bool, observe: Observer<'_>| {
-            let Some(solved) = solve(own, system, factor, observe)? else {
-                return Ok(LimitPoint { factor, converges: false, result: None });
-            };
-            let displacement = first_probe(&solved)?;
-            let Deformation { max_strain, inverted_elements, .. } =
-                Deformation::of(solved.problem(), solved.state(), &solved.nodal_stress());
-            let mut error = None;
-            if is_compared {
-                let known = references.at(factor, &|_| observe(Progress::at(0.0)))?;
-                error = Some(LimitError {
-                    percent: known.and_then(|known| known_error(&known, displacement)),
-                    reference_percent: known.map(|known| known.own_error_percent),
-                });
-            }
-            let result = Some(LimitResult { displacement, max_strain, inverted_elements, error });
-            Ok(LimitPoint { factor, converges: true, result })
-        };
-        all_done(parallel::map(
-            &settings,
-            |(row, (own, system)), observe| {
-                let point = |factor: f64, is_compared: bool| point((own, system), factor, is_compared, observe);
-                let is_sought = |property: Property, factor: f64| match property {
-                    Property::Within(_) => !references.folds(factor),
-                    _ => true,
-                };
-                let critical = so_far.limits().critical_of(own.element());
-                let near = critical.into_iter().flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
-                let near = near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor));
-                let mut factors: Vec<(f64, bool)> = compared.iter().copied().chain(near).map(|at| (at, true)).collect();
-                factors.extend(&between);
-                factors.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-                follow(Strip::new(own), &factors, &point, &is_sought, &|strip| so_far.set(*row, strip))
-            },
-            |done| observe(Progress { fraction: (compared.len() + done) as f64 / all, now: Some(&now[1]) }),
-        ))?;
-        Ok(so_far.end())
-    }
-
-    /// Computes the limits of the integrators of a motion: each with time steps of powers of two, from short to long.
-    fn of_motion(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(&Self) + Sync)) -> Result<Self, StudyError> {
-        /// Approximate fraction of the time spent on the reference solution.
-        const REFERENCE: f64 = 0.3;
-        let study = StepStudy::new(scene, &|progress| {
-            observe(Progress { fraction: REFERENCE * progress.fraction, ..progress })
+        let now = sentence!("following each method");
+        let begun = compared.len() as f64 / (compared.len() + rows.len()) as f64;
+        parallel::all(&rows, observe, [begun, 1.0], &now, |(row, (own, system)), observe| {
+            let is_sought =
+                |property: Property, factor: f64| !matches!(property, Property::Within(_)) || !sweep.folds(factor);
+            let critical = sweep.limits().critical_of(own.element());
+            let near = critical.into_iter().flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
+            let near = near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor));
+            let mut factors: Vec<(f64, bool)> = compared.iter().copied().chain(near).map(|at| (at, true)).collect();
+            factors.extend(&between);
+            factors.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+            let point = |factor, is_compared| sweep.point(own, system, (factor, is_compared), observe);
+            sweep.follow(*row, &factors, &point, &is_sought)
         })?;
-        let steps = study.steps();
-        let factors: Vec<(f64, bool)> = steps.iter().map(|&(_, factor)| (factor, true)).collect();
-        let (Some(&(first, _)), Some(&(last, _))) = (factors.first(), factors.last()) else {
-            return Err(StudyError::NoReference);
-        };
-        let strips = INTEGRATORS.iter().map(|entry| Strip { integrator: Some(entry.kind), ..Strip::new(scene) });
-        let mut settings: Vec<(usize, (IntegratorKind, Strip))> =
-            INTEGRATORS.iter().map(|entry| entry.kind).zip(strips).enumerate().collect();
-        let limits = Self {
-            range: [first, last],
-            duration: Some(study.duration()),
-            mesh_error_percent: Some(study.mesh_error_percent()),
-            criticals: Vec::new(),
-            reference: Vec::new(),
-            strips: settings.iter().map(|(_, (_, strip))| strip.clone()).collect(),
-        };
-        let so_far = SoFar { limits: Mutex::new(limits), partial };
-        settings.sort_by_key(|(_, (integrator, _))| *integrator != scene.dynamics.integrator);
-        all_done(parallel::map(
-            &settings,
-            |(row, (integrator, strip)), observe| {
-                // Only paths with steps of powers of two have the samples of the reference.
-                let point = |factor: f64, _| {
-                    let Some(&(power, _)) = steps.iter().find(|(_, own)| *own == factor) else {
-                        let converges = study.finishes(*integrator, factor, observe)?;
-                        return Ok(LimitPoint { factor, converges, result: None });
-                    };
-                    let solved = study.solve(*integrator, power, observe)?;
-                    let result =
-                        solved.map(|StepResult { displacement, error_percent, max_strain, inverted_elements }| {
-                            let reference_percent = Some(study.reference_error_percent());
-                            let error = Some(LimitError { percent: Some(error_percent), reference_percent });
-                            LimitResult { displacement, max_strain, inverted_elements, error }
-                        });
-                    Ok(LimitPoint { factor, converges: result.is_some(), result })
-                };
-                let is_sought = |property: Property, _| property == Property::Converges;
-                follow(strip.clone(), &factors, &point, &is_sought, &|strip| so_far.set(*row, strip))
-            },
-            |done| {
-                let fraction = REFERENCE + (1.0 - REFERENCE) * done as f64 / settings.len() as f64;
-                observe(Progress { fraction, now: Some(&sentence!("following each integrator")) })
-            },
-        ))?;
-        Ok(so_far.end())
+        Ok(sweep.end())
     }
 }
 
-/// Reference solutions of a scene's first probe under parts of its load, each computed once.
-struct References<'a> {
+/// Limits that become known in parts, on several threads, and the reference solutions of a scene at rest.
+struct Sweep<'a> {
     scene: &'a Scene,
-    known: Mutex<Vec<KnownReference>>,
+    limits: Mutex<MethodLimits>,
+    /// References of the first probe under parts of the load, each computed once.
+    references: Mutex<Vec<KnownReference>>,
+    partial: &'a (dyn Fn(&MethodLimits) + Sync),
 }
 
 /// Reference of a scene's first probe under a part of its load.
@@ -787,14 +622,46 @@ struct KnownReference {
     folds: bool,
 }
 
-impl References<'_> {
+impl Sweep<'_> {
+    fn limits(&self) -> MutexGuard<'_, MethodLimits> {
+        self.limits.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn known(&self) -> MutexGuard<'_, Vec<KnownReference>> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+        self.references.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn end(self) -> MethodLimits {
+        self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes the limits, and reports them.
+    fn change(&self, change: impl FnOnce(&mut MethodLimits)) {
+        let mut limits = self.limits();
+        change(&mut limits);
+        (self.partial)(&limits);
+    }
+
+    /// Computes the reference solutions under these parts of the load, and reports the progress between two fractions.
+    fn solve_references(&self, factors: &[f64], shares: [f64; 2], observe: Observer<'_>) -> Result<(), StudyError> {
+        let now = sentence!("reference solutions");
+        let solved = parallel::all(factors, observe, shares, &now, |&factor, observe| {
+            let displacement = self.reference(factor, observe)?.map(|known| known.displacement);
+            self.change(|limits| {
+                let known = limits.reference.iter_mut().find(|(own, _)| *own == factor);
+                let _ = known.map(|(_, u)| *u = displacement);
+            });
+            Ok(())
+        });
+        // A reference may have been found before that of a smaller load.
+        let is_beyond = |(factor, _): &&mut (f64, _)| self.is_beyond_folds(*factor);
+        self.change(|limits| limits.reference.iter_mut().filter(is_beyond).for_each(|(_, u)| *u = None));
+        solved.map(|_| ())
     }
 
     /// Returns the reference under a part of the load; `None` if there is none, so that the error is not known, or if it is
     /// beyond a load at which the material folds and the reference does not tell good results from others.
-    fn at(&self, factor: f64, observe: Observer<'_>) -> Result<Option<ProbeReference>, StudyError> {
+    fn reference(&self, factor: f64, observe: Observer<'_>) -> Result<Option<ProbeReference>, StudyError> {
         if self.is_beyond_folds(factor) {
             return Ok(None);
         }
@@ -821,32 +688,62 @@ impl References<'_> {
     fn folds(&self, factor: f64) -> bool {
         self.known().iter().any(|known| known.factor == factor && known.folds)
     }
-}
 
-/// Limits that become known in parts, on several threads.
-struct SoFar<'a> {
-    limits: Mutex<MethodLimits>,
-    partial: &'a (dyn Fn(&MethodLimits) + Sync),
-}
-
-impl SoFar<'_> {
-    fn limits(&self) -> MutexGuard<'_, MethodLimits> {
-        self.limits.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Solves a scene from rest under a part of its load, and compares the result with the reference if `is_compared`.
+    fn point(
+        &self,
+        own: &Scene,
+        system: &Arc<System>,
+        (factor, is_compared): (f64, bool),
+        observe: Observer<'_>,
+    ) -> Result<LimitPoint, StudyError> {
+        let mut solved = Simulation::with_system(&at(own, factor), system.clone())?;
+        check(solved.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
+        if !solved.status().is_success() {
+            return Ok(LimitPoint { factor, ..LimitPoint::default() });
+        }
+        let displacement = first_probe(&solved)?;
+        let known = if is_compared { self.reference(factor, &|_| observe(Progress::at(0.0)))? } else { None };
+        let deformation = Deformation::of(solved.problem(), solved.state(), &solved.nodal_stress());
+        Ok(LimitPoint {
+            factor,
+            converges: true,
+            displacement,
+            max_strain: Some(deformation.max_strain),
+            inverted_elements: deformation.inverted_elements,
+            is_compared,
+            error_percent: known.and_then(|known| known_error(&known, displacement)),
+            reference_percent: known.map(|known| known.own_error_percent),
+        })
     }
 
-    /// Changes the limits, and reports them.
-    fn change(&self, change: impl FnOnce(&mut MethodLimits)) {
-        let mut limits = self.limits();
-        change(&mut limits);
-        (self.partial)(&limits);
-    }
-
-    fn set(&self, row: usize, strip: &Strip) {
-        self.change(|limits| _ = limits.strips.get_mut(row).map(|old| old.clone_from(strip)));
-    }
-
-    fn end(self) -> MethodLimits {
-        self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
+    /// Tries a strip's loads, from small to large, and then those between which a property changes that `is_sought`, beside a
+    /// peak of the error, and next to the end of convergence. `factors` have `true` where the result is compared with the
+    /// reference, as the second argument of `solve` says, which starts from rest.
+    fn follow(
+        &self,
+        row: usize,
+        factors: &[(f64, bool)],
+        solve: &dyn Fn(f64, bool) -> Result<LimitPoint, StudyError>,
+        is_sought: &dyn Fn(Property, f64) -> bool,
+    ) -> Result<(), StudyError> {
+        let mut strip = self.limits().strips[row].clone();
+        let report = |strip: &Strip| self.change(|limits| limits.strips[row].clone_from(strip));
+        for (i, &(factor, is_compared)) in factors.iter().enumerate() {
+            strip.points.push(solve(factor, is_compared)?);
+            strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
+            report(&strip);
+        }
+        for _ in 0..MAX_ADDED {
+            let peak = || Some((strip.beside_peak(is_sought)?, true));
+            let next = strip.change(is_sought).or_else(peak).or_else(|| Some((strip.untried()?, false)));
+            let Some((factor, is_error)) = next else { break };
+            let place = strip.points.partition_point(|other| other.factor < factor);
+            strip.points.insert(place, solve(factor, is_error)?);
+        }
+        strip.done = 1.0;
+        report(&strip);
+        Ok(())
     }
 }
 
@@ -891,7 +788,7 @@ fn critical(scene: &Scene, system: &Arc<System>, observe: Observer<'_>) -> Optio
     }
     let scene = at(scene, RANGE[1]).with_method(MethodKind::Newton);
     let simulation = Simulation::with_system(&scene, system.clone()).ok()?;
-    LoadPath::first_event(&simulation, observe).map(|factor| RANGE[1] * factor)
+    Some(RANGE[1] * LoadPath::followed(&simulation, true, observe)?.summary.first_event()?)
 }
 
 /// Returns the scene under a part of its loads and prescribed displacements.
@@ -901,41 +798,21 @@ fn at(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Tries a strip's loads, from small to large, and then those between which a property changes that `is_sought`, beside a
-/// peak of the error, and next to the end of convergence. `factors` have `true` where the result is compared with the
-/// reference, as the second argument of `solve` says, which starts from rest. `report` receives the strip so far.
-fn follow(
-    mut strip: Strip,
-    factors: &[(f64, bool)],
-    solve: &dyn Fn(f64, bool) -> Result<LimitPoint, StudyError>,
-    is_sought: &dyn Fn(Property, f64) -> bool,
-    report: &dyn Fn(&Strip),
-) -> Result<(), StudyError> {
-    for (i, &(factor, is_compared)) in factors.iter().enumerate() {
-        strip.points.push(solve(factor, is_compared)?);
-        strip.done = (i + 1) as f64 / (factors.len() + 1) as f64;
-        report(&strip);
-    }
-    for _ in 0..MAX_ADDED {
-        let peak = || Some((strip.beside_peak(is_sought)?, true));
-        let next = strip.change(is_sought).or_else(peak).or_else(|| Some((strip.untried()?, false)));
-        let Some((factor, is_error)) = next else { break };
-        strip.insert(solve(factor, is_error)?);
-    }
-    strip.done = 1.0;
-    report(&strip);
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Returns a load with an error and one of the reference, percent, and a strain.
     fn compared(factor: f64, percent: Option<f64>, own: f64, max_strain: f64) -> LimitPoint {
-        let error = Some(LimitError { percent, reference_percent: Some(own) });
-        let result = Some(LimitResult { displacement: Vector2::zeros(), max_strain, inverted_elements: 0, error });
-        LimitPoint { factor, converges: true, result }
+        LimitPoint {
+            factor,
+            converges: true,
+            max_strain: Some(max_strain),
+            is_compared: true,
+            error_percent: percent,
+            reference_percent: Some(own),
+            ..LimitPoint::default()
+        }
     }
 
     fn point(factor: f64, percent: Option<f64>) -> LimitPoint {
@@ -944,7 +821,7 @@ mod tests {
 
     /// Returns a load at which the method does not converge.
     fn failed(factor: f64) -> LimitPoint {
-        LimitPoint { factor, converges: false, result: None }
+        LimitPoint { factor, ..LimitPoint::default() }
     }
 
     fn strip(points: Vec<LimitPoint>) -> Strip {
@@ -953,7 +830,7 @@ mod tests {
 
     /// Axis of a force of 1 kN.
     fn one_kilonewton() -> LoadAxis {
-        axis(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]))
+        LoadAxis::of(&Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1000.0]))
     }
 
     /// An error that only the reference's own error puts above a limit is not said to be above it.
@@ -1002,7 +879,7 @@ mod tests {
     /// Pieces cover the whole range, with the rating of the loads in them.
     #[test]
     fn each_load_has_the_piece_around_it() {
-        let only_converges = LimitPoint { result: None, ..point(3.0, None) };
+        let only_converges = LimitPoint { factor: 3.0, converges: true, ..LimitPoint::default() };
         let points = vec![
             point(1.0, Some(0.2)),
             only_converges,
@@ -1063,7 +940,7 @@ mod tests {
     fn the_peak_of_the_error_of_an_imperfect_column_is_found() {
         let source = crate::scene::Source { name: "column".into(), assignments: Vec::new() };
         let column = crate::scene::open(&source).unwrap();
-        let limits = MethodLimits::of(&column, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+        let limits = MethodLimits::of(&column, &|_| std::ops::ControlFlow::Continue(()), &|_| {}).unwrap();
         for factor in [0.68, 500.0 / 700.0, 0.73] {
             let reference = Reference::of(&at(&column, factor)).unwrap().first().unwrap();
             for element in [ElementKind::T6, ElementKind::Q4] {
