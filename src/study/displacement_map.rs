@@ -16,15 +16,6 @@ pub(crate) struct DisplacementMap {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Triangles by the cells of a grid that their bounding boxes meet, so that a point is compared with few of them.
-struct TriangleIndex {
-    low: Vector2<f64>,
-    /// Size of a cell, m.
-    cell: Vector2<f64>,
-    counts: [usize; 2],
-    triangles: Vec<Vec<u32>>,
-}
-
 impl DisplacementMap {
     /// Returns the displacement of a simulation, from node to node.
     pub(crate) fn of(simulation: &Simulation) -> Self {
@@ -49,11 +40,38 @@ impl DisplacementMap {
     pub(crate) fn at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
         /// Largest distance outside a triangle, relative to its height.
         const OUTSIDE: f64 = 0.5;
-        let index = TriangleIndex::new(self);
+        let bounds = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
+            let infinity = Vector2::repeat(f64::INFINITY);
+            points.fold([infinity, -infinity], |[low, high], x| [low.inf(x), high.sup(x)])
+        };
+        let [low, high] = bounds(&mut self.rest.iter());
+        // A point is compared with the triangles whose bounding boxes meet its cell of a grid. Cells are about as many as
+        // triangles, and about square.
+        let size = (high - low).map(|v| if v > 0.0 { v } else { 1.0 });
+        let side = (size.x * size.y / self.triangles.len().max(1) as f64).sqrt();
+        let [columns, rows] = [size.x, size.y].map(|v| (v / side).ceil().clamp(1.0, 2000.0) as usize);
+        let cell = Vector2::new(size.x / columns as f64, size.y / rows as f64);
+        // Column and row of the cell at a point, or of the nearest one; `None` if the point is not finite.
+        let place = |at: &Vector2<f64>| {
+            let place = (at - low).component_div(&cell);
+            let one = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
+            Some([one(place.x, columns)?, one(place.y, rows)?])
+        };
+        let mut candidates: Vec<Vec<&[u32; 3]>> = vec![Vec::new(); columns * rows];
+        for triangle in &self.triangles {
+            let [first, last] = bounds(&mut triangle.iter().filter_map(|&corner| self.rest.get(corner as usize)));
+            // A point outside the body finds the triangles of the neighbouring cell.
+            let (Some(first), Some(last)) = (place(&(first - cell * 0.5)), place(&(last + cell * 0.5))) else {
+                continue;
+            };
+            for row in first[1]..=last[1] {
+                let cells = row * columns + first[0]..=row * columns + last[0];
+                candidates[cells].iter_mut().for_each(|own| own.push(triangle));
+            }
+        }
         let value = |at: &Vector2<f64>| {
-            let candidates = index.triangles.get(index.cell_at(at)?)?.iter();
-            let inside = candidates.filter_map(|&t| {
-                let triangle = self.triangles.get(t as usize)?;
+            let [column, row] = place(at)?;
+            let inside = candidates[row * columns + column].iter().filter_map(|&triangle| {
                 let weights = self.weights(triangle, at)?;
                 Some((weights.into_iter().fold(f64::INFINITY, f64::min), triangle, weights))
             });
@@ -71,48 +89,6 @@ impl DisplacementMap {
         let (a, b, c) = (a?, b?, c?);
         let part = Matrix2::from_columns(&[b - a, c - a]).try_inverse()? * (at - a);
         Some([1.0 - part.x - part.y, part.x, part.y])
-    }
-}
-
-impl TriangleIndex {
-    fn new(map: &DisplacementMap) -> Self {
-        let infinity = Vector2::repeat(f64::INFINITY);
-        let bounds = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
-            points.fold([infinity, -infinity], |[low, high], x| [low.inf(x), high.sup(x)])
-        };
-        let [low, high] = bounds(&mut map.rest.iter());
-        // Cells are about as many as triangles, and about square.
-        let size = (high - low).map(|v| if v > 0.0 { v } else { 1.0 });
-        let side = (size.x * size.y / map.triangles.len().max(1) as f64).sqrt();
-        let counts = [size.x, size.y].map(|v| (v / side).ceil().clamp(1.0, 2000.0) as usize);
-        let cell = Vector2::new(size.x / counts[0] as f64, size.y / counts[1] as f64);
-        let mut index = Self { low, cell, counts, triangles: vec![Vec::new(); counts[0] * counts[1]] };
-        for (number, triangle) in (0..).zip(&map.triangles) {
-            let [first, last] = bounds(&mut triangle.iter().filter_map(|&corner| map.rest.get(corner as usize)));
-            // A point outside the body finds the triangles of the neighbouring cell.
-            let (Some(first), Some(last)) = (index.place(&(first - cell * 0.5)), index.place(&(last + cell * 0.5)))
-            else {
-                continue;
-            };
-            for row in first[1]..=last[1] {
-                for column in first[0]..=last[0] {
-                    index.triangles[row * counts[0] + column].push(number);
-                }
-            }
-        }
-        index
-    }
-
-    /// Returns column and row of the cell at a point, or of the nearest one; `None` if the point is not finite.
-    fn place(&self, at: &Vector2<f64>) -> Option<[usize; 2]> {
-        let place = (at - self.low).component_div(&self.cell);
-        let cell = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
-        Some([cell(place.x, self.counts[0])?, cell(place.y, self.counts[1])?])
-    }
-
-    fn cell_at(&self, at: &Vector2<f64>) -> Option<usize> {
-        let [column, row] = self.place(at)?;
-        Some(row * self.counts[0] + column)
     }
 }
 

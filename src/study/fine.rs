@@ -65,6 +65,8 @@ const MIN_MESHES: usize = 3;
 const NARROWEST: f64 = 1e-4;
 /// Iteration limit of Newton's method per mesh.
 const MAX_ITERATIONS: u32 = 1000;
+/// Number of solves on a mesh for which there must be work left.
+const FEW: f64 = 4.0;
 /// Part of the work that a solve towards a fold may add.
 const FOLD_SHARE: f64 = 1.5;
 /// Distance of the folds on still finer meshes, relative to that of the first: a fold has no limit, and grows with them.
@@ -136,7 +138,7 @@ impl Reference {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        if near.is_some_and(is_unstable) {
+        if near.is_some_and(|near| is_unstable(near, true)) {
             return Err(StudyError::Unstable);
         }
         match on_fine_meshes(scene, near, effort, observe) {
@@ -146,11 +148,7 @@ impl Reference {
     }
 }
 
-/// Computes the reference solution: on each mesh the end of the load path from rest. With `near`, a simulation of the
-/// scene on a mesh of its own, that mesh is refined.
-///
-/// # Errors
-/// [`StudyError`] if the mesh is too fine to be refined, no mesh has an equilibrium, or the search was cancelled.
+/// Computes the reference solution as [`Reference::find`]: on each mesh the end of the load path from rest.
 fn on_fine_meshes(
     original: &Scene,
     near: Option<&Simulation>,
@@ -161,7 +159,7 @@ fn on_fine_meshes(
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
     let has_point = scene.acts_on_points();
-    let mut search = FineSearch { effort, work: 0.0, observe };
+    let mut work = 0.0;
     let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
     let mut start: Option<Vec<Vector2<f64>>> = None;
     let mut finest = None;
@@ -172,16 +170,16 @@ fn on_fine_meshes(
         if let Some(start) = &start {
             simulation.start_from(start).map_err(|_| StudyError::NoReference)?;
         }
-        let mut status = search.solve(&mut simulation)?;
+        let mut status = solve(&mut simulation, effort, &mut work, observe)?;
         if status == Status::Converged && start.as_ref().is_some_and(|start| is_far(start, &simulation)) {
             // Near a critical load, the coarser solution may lead to another equilibrium.
             simulation.reset();
-            status = search.solve(&mut simulation)?;
+            status = solve(&mut simulation, effort, &mut work, observe)?;
         }
         if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
-            search.work -= FOLD_SHARE * effort.most_work();
-            status = search.solve(&mut simulation)?;
+            work -= FOLD_SHARE * effort.most_work();
+            status = solve(&mut simulation, effort, &mut work, observe)?;
         }
         let converged = match status {
             Status::Converged => true,
@@ -204,7 +202,8 @@ fn on_fine_meshes(
             return Err(StudyError::NoReference);
         }
         let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
-        let next_fits = 4 * unknowns <= effort.most_unknowns() && search.has_work_for(4 * unknowns);
+        let next = 4 * unknowns;
+        let next_fits = next <= effort.most_unknowns() && work + FEW * next as f64 <= effort.most_work();
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {
             finest = Some(simulation);
@@ -234,7 +233,8 @@ fn on_fine_meshes(
 /// Returns a scene with element and method of fine solutions.
 pub(super) fn prepared(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
-    scene.set_element(element(&scene));
+    // Quadrilaterals of beams lock neither in bending nor near incompressibility.
+    scene.set_element(if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(&scene) });
     scene.solver.method = MethodKind::Newton;
     scene.solver.max_iterations = MAX_ITERATIONS;
     scene.solver.accept_after = 0;
@@ -255,22 +255,18 @@ fn is_far(start: &[Vector2<f64>], simulation: &Simulation) -> bool {
 fn has_fold(scene: &Scene, simulation: &Simulation) -> bool {
     /// Angle between two elements at a node, rad; without folds `article` has up to 46°, with folds 94° to 180°.
     const FOLDED: f64 = 60.0 * std::f64::consts::PI / 180.0;
-    scene.beam.is_some() && largest_kink(simulation) > FOLDED
-}
-
-/// Returns the largest angle, rad, between the rotations of two elements that meet at a node.
-fn largest_kink(simulation: &Simulation) -> f64 {
+    if scene.beam.is_none() {
+        return false;
+    }
     let mesh = simulation.system().mesh();
     let mut first: Vec<Option<Rotation>> = vec![None; mesh.nodes().len()];
-    let mut largest = 0.0_f64;
-    for (nodes, rotation) in mesh.elements().zip(simulation.element_rotations()) {
-        for &node in nodes {
+    mesh.elements().zip(simulation.element_rotations()).any(|(nodes, rotation)| {
+        nodes.iter().any(|&node| {
             let first = first[node as usize].get_or_insert(rotation);
             let relative = rotation.apply_inverse(first.apply(Vector2::x()));
-            largest = largest.max(relative.y.atan2(relative.x).abs());
-        }
-    }
-    largest
+            relative.y.atan2(relative.x).abs() > FOLDED
+        })
+    })
 }
 
 /// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.
@@ -279,12 +275,6 @@ fn stands(simulation: &Simulation) -> Result<bool, StudyError> {
     let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
     let mut forces = Forces::new(state.displacement().len());
     Ok(is_stable(problem, state, 1.0, &mut forces, &mut workspace))
-}
-
-/// Returns the element used in the search: for beams four-node quadrilaterals, which lock neither in bending nor near
-/// incompressibility; for a mesh file, the element of its shape that converges fastest.
-fn element(scene: &Scene) -> ElementKind {
-    if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(scene) }
 }
 
 /// Returns the bounds of the errors of the last solution, m, for each probe.
@@ -304,34 +294,23 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
     counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= effort.good_enough() * u.norm()))
 }
 
-/// Solver with a budget and progress reports.
-struct FineSearch<'a> {
+/// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
+fn solve(
+    simulation: &mut Simulation,
     effort: Effort,
-    /// Unknowns, summed over all solves.
-    work: f64,
-    observe: Observer<'a>,
-}
-
-impl FineSearch<'_> {
-    /// Iterates until the status is final or the budget is spent; returns the status.
-    fn solve(&mut self, simulation: &mut Simulation) -> Result<Status, StudyError> {
-        let unknowns = simulation.system().dofs();
-        let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
-        let fraction = (unknowns as f64 / self.effort.most_unknowns() as f64).min(1.0);
-        while *simulation.status() == Status::Running && self.work <= self.effort.most_work() {
-            check((self.observe)(Progress { fraction, now: Some(&now) }))?;
-            let before = simulation.iterations();
-            simulation.step();
-            self.work += f64::from(simulation.iterations() - before) * unknowns as f64;
-        }
-        Ok(simulation.status().clone())
+    work: &mut f64,
+    observe: Observer<'_>,
+) -> Result<Status, StudyError> {
+    let unknowns = simulation.system().dofs();
+    let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
+    let fraction = (unknowns as f64 / effort.most_unknowns() as f64).min(1.0);
+    while *simulation.status() == Status::Running && *work <= effort.most_work() {
+        check(observe(Progress { fraction, now: Some(&now) }))?;
+        let before = simulation.iterations();
+        simulation.step();
+        *work += f64::from(simulation.iterations() - before) * unknowns as f64;
     }
-
-    /// Returns `true` if the remaining budget is enough for a few solves with this number of unknowns.
-    fn has_work_for(&self, unknowns: usize) -> bool {
-        const FEW: f64 = 4.0;
-        self.work + FEW * unknowns as f64 <= self.effort.most_work()
-    }
+    Ok(simulation.status().clone())
 }
 
 /// Sequence of meshes, each with every element of the previous one cut into four.
@@ -349,35 +328,24 @@ impl Meshes {
         near: Option<&Simulation>,
         effort: Effort,
     ) -> Result<(Self, Vec<MovedPoint>), StudyError> {
-        match scene.beam.clone() {
-            Some(beam) => {
-                let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
-                let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
-                let moved = moved_points(scene, &meshes.mesh()?);
-                Ok((meshes, moved))
-            }
-            None => {
-                let own = match near {
-                    Some(near) => near.system().mesh().clone(),
-                    None => System::mesh_of(scene).map_err(SimulationError::from)?,
-                };
-                // A mesh given by the caller is kept.
-                let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-                let entry = element.entry();
-                if 4 * unknowns_of(&own, entry) > effort.most_unknowns() {
-                    return Err(StudyError::TooFine { elements: own.element_count() });
-                }
-                // The same nodes are used for the scene's points on every mesh, including the scene's own.
-                let moved = moved_points(scene, &own);
-                snap(scene, &own);
-                let straight = if own.element() == element {
-                    own
-                } else {
-                    System::mesh_of(scene).map_err(SimulationError::from)?
-                };
-                Ok((Self { straight, arch: None }, moved))
-            }
+        if let Some(beam) = scene.beam.clone() {
+            let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
+            let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
+            let moved = moved_points(scene, &meshes.mesh()?);
+            return Ok((meshes, moved));
         }
+        let meshed = |scene: &Scene| System::mesh_of(scene).map_err(SimulationError::from);
+        let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
+        // A mesh given by the caller is kept.
+        let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
+        if 4 * unknowns_of(&own, element.entry()) > effort.most_unknowns() {
+            return Err(StudyError::TooFine { elements: own.element_count() });
+        }
+        // The same nodes are used for the scene's points on every mesh, including the scene's own.
+        let moved = moved_points(scene, &own);
+        snap(scene, &own);
+        let straight = if own.element() == element { own } else { meshed(scene)? };
+        Ok((Self { straight, arch: None }, moved))
     }
 
     /// Returns the current mesh.
@@ -418,28 +386,18 @@ struct ScenePoint<'a> {
     width: f64,
 }
 
-impl ScenePoint<'_> {
-    /// Returns `true` if the support or force acts on the node of a mesh that is nearest to the point.
-    fn acts_on_node(&self, mesh: &Mesh) -> bool {
-        !self.at_point || mesh.locate((*self.at).into()).is_none()
-    }
-}
-
 /// Returns every point at which a scene has a support or a force.
-fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
-    fn of<'a>(kind: &str, i: usize, place: &'a Place, (at_point, width): (bool, f64)) -> Option<ScenePoint<'a>> {
-        match place {
-            Place::At(at) => Some(ScenePoint { key: format!("{kind}.{i}"), at, at_point, width }),
-            Place::Edge(_) => None,
-        }
-    }
-    let supports =
-        scene.supports.iter().enumerate().filter_map(|(i, s)| of("support", i, &s.place, (s.at_point, s.width)));
+fn points(scene: &Scene) -> impl Iterator<Item = ScenePoint<'_>> {
+    let supports = scene.supports.iter().enumerate();
+    let supports = supports.map(|(i, s)| (format!("support.{i}"), &s.place, s.at_point, s.width));
     let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
-        Load::Force { place, at_point, width, .. } => of("load", i, place, (*at_point, *width)),
+        Load::Force { place, at_point, width, .. } => Some((format!("load.{i}"), place, *at_point, *width)),
         _ => None,
     });
-    supports.chain(loads).collect()
+    supports.chain(loads).filter_map(|(key, place, at_point, width)| match place {
+        Place::At(at) => Some(ScenePoint { key, at, at_point, width }),
+        Place::Edge(_) => None,
+    })
 }
 
 /// Returns the points of a scene, of supports and forces that act on nodes, whose nearest node of its mesh is farther away
@@ -448,7 +406,7 @@ fn points(scene: &Scene) -> Vec<ScenePoint<'_>> {
 pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();
-    let on_nodes = points(scene).into_iter().filter(|point| point.acts_on_node(mesh));
+    let on_nodes = points(scene).filter(|point| !point.at_point || mesh.locate((*point.at).into()).is_none());
     let distances = on_nodes.map(|ScenePoint { key, at, .. }| {
         let nearest = mesh.node(mesh.nearest_node((*at).into()));
         MovedPoint { key, at: *at, distance: (nearest - Vector2::from(*at)).norm() }
@@ -482,7 +440,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
         0.0 => vec![[*x, *y]],
         width => vec![[x - 0.5 * width, *y], [x + 0.5 * width, *y]],
     };
-    let points = points(scene).into_iter().flat_map(lines_of).chain(probes.copied());
+    let points = points(scene).flat_map(lines_of).chain(probes.copied());
     let points = points.map(|at| straightened(beam, at.into())).map(|[along, across]| [along * size[0], across]);
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);

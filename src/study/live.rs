@@ -59,7 +59,14 @@ impl LiveReference {
 
     /// Returns the reference solution of a scene under another load; `None` if it is not found soon.
     pub(crate) fn follow(&mut self, scene: &Scene) -> Option<Reference> {
-        let own = self.with_loads_of(scene);
+        // The points of the solutions are at nodes.
+        let mut own = Scene { beam: self.own.beam.clone(), ..prepared(scene) };
+        own.supports.iter_mut().zip(&self.own.supports).for_each(|(to, from)| to.place.clone_from(&from.place));
+        for pair in own.loads.iter_mut().zip(&self.own.loads) {
+            if let (Load::Force { place: to, .. }, Load::Force { place: from, .. }) = pair {
+                to.clone_from(from);
+            }
+        }
         let goes_on = std::mem::replace(&mut self.is_started, false);
         if !(goes_on && self.solve(&own, MOST_WORK)) {
             // Far from the last load.
@@ -93,18 +100,6 @@ impl LiveReference {
             *level.status() == Status::Converged
                 && level.system().elements().smallest_area_ratio(level.displacement()) > 0.0
         })
-    }
-
-    /// Returns the scene of the solutions with the loads of `scene`.
-    fn with_loads_of(&self, scene: &Scene) -> Scene {
-        let mut own = Scene { beam: self.own.beam.clone(), ..prepared(scene) };
-        own.supports.iter_mut().zip(&self.own.supports).for_each(|(to, from)| to.place.clone_from(&from.place));
-        for pair in own.loads.iter_mut().zip(&self.own.loads) {
-            if let (Load::Force { place: to, .. }, Load::Force { place: from, .. }) = pair {
-                to.clone_from(from);
-            }
-        }
-        own
     }
 }
 

@@ -44,7 +44,7 @@ pub use ranking::Demand;
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
-pub(crate) use reference::{FOLDS, is_known_unstable};
+pub(crate) use reference::{FOLDS, is_unstable};
 pub use reference::{MovedPoint, ProbeReference, Reference, ReferenceSource};
 pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};

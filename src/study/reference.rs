@@ -9,14 +9,11 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::displacement_map::DisplacementMap;
-use super::progress::check;
 use crate::assembly::System;
 use crate::exact_beam::{ExactBeam, error_percent};
 use crate::format::{engineering, engineering_pair, number, two_digits};
 use crate::mesh::{Mesh, Segment};
-use crate::method::Certificate;
-use crate::progress::{Observer, Progress};
-use crate::scene::{MethodKind, Place, Probe, Scene};
+use crate::scene::{Place, Probe, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
 
@@ -30,18 +27,6 @@ pub enum ReferenceSource {
     FineMesh,
     /// A solution on the scene's own mesh, refined.
     RefinedMesh,
-}
-
-impl ReferenceSource {
-    /// Returns the identifier in JSON.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::ExactBeam => "exact_beam",
-            Self::FineMesh => "fine_mesh",
-            Self::RefinedMesh => "refined_mesh",
-        }
-    }
 }
 
 impl From<&ReferenceSource> for Sentence {
@@ -132,7 +117,7 @@ pub struct Reference {
     /// Reference of every probe of the scene; `None` if the probe does not move, or no bound of the error is known.
     probes: Vec<Option<ProbeReference>>,
     /// Reason why the first probe has no reference, if it has none.
-    missing: Missing,
+    missing: Sentence,
     /// Distance of the exact beam from the fine solution used instead, percent; `None` if the beam is used, or there is
     /// none.
     pub beam_off_by_percent: Option<f64>,
@@ -157,51 +142,24 @@ pub struct Reference {
     pub unknowns: usize,
 }
 
-/// Reason why a probe has no reference.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-enum Missing {
-    /// The probe does not move.
-    AtRest,
-    /// The solutions on finer meshes give no bound of the error.
-    #[default]
-    NoBound,
-    /// The bound exceeds [`LARGEST_OWN_ERROR`].
-    LargeBound,
-    /// A support or force acts on a point, under which the displacement has no limit on finer meshes.
-    Point,
-}
-
-impl Missing {
-    /// Returns the reason for a displacement of a scene with this bound of its error, m, if it has no reference; `largest`
-    /// is the largest displacement of the body, m.
-    fn of(scene: &Scene, displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Self {
-        /// Displacement relative to the largest one that is only rounding error.
-        const ROUNDING: f64 = 1e-9;
-        match error {
-            _ if displacement.norm() <= ROUNDING * largest => Self::AtRest,
-            _ if scene.acts_on_points() => Self::Point,
-            None => Self::NoBound,
-            Some(_) => Self::LargeBound,
+/// Returns the reason for which a displacement of a scene with this bound of its error, m, has no reference, if it has none;
+/// `largest` is the largest displacement of the body, m.
+fn missing(scene: &Scene, displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Sentence {
+    /// Displacement relative to the largest one that is only rounding error.
+    const ROUNDING: f64 = 1e-9;
+    match error {
+        _ if displacement.norm() <= ROUNDING * largest => {
+            sentence!("no reference solution: the probe does not move")
         }
-    }
-}
-
-impl From<&Missing> for Sentence {
-    fn from(missing: &Missing) -> Self {
-        match missing {
-            Missing::AtRest => sentence!("no reference solution: the probe does not move"),
-            Missing::Point => sentence!(
-                "no reference solution: under a point the displacement grows without limit on finer meshes; give the \
-                 support or force there a width"
-            ),
-            Missing::NoBound => {
-                sentence!("no reference solution: finer and finer meshes give no bound of its error at the probe")
-            }
-            Missing::LargeBound => sentence!(
-                "no reference solution: its error at the probe may be more than %{percent} %",
-                percent = number(LARGEST_OWN_ERROR)
-            ),
-        }
+        _ if scene.acts_on_points() => sentence!(
+            "no reference solution: under a point the displacement grows without limit on finer meshes; give the \
+             support or force there a width"
+        ),
+        None => sentence!("no reference solution: finer and finer meshes give no bound of its error at the probe"),
+        Some(_) => sentence!(
+            "no reference solution: its error at the probe may be more than %{percent} %",
+            percent = number(LARGEST_OWN_ERROR)
+        ),
     }
 }
 
@@ -250,7 +208,7 @@ impl Reference {
         let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
         let mut reference = Self {
             probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
-            missing: solved.first().map_or(Missing::NoBound, |&(u, error)| Missing::of(scene, u, error, largest)),
+            missing: solved.first().map(|&(u, error)| missing(scene, u, error, largest)).unwrap_or_default(),
             linear: first_probe(linear).ok(),
             moved,
             folds,
@@ -320,25 +278,20 @@ impl Reference {
     /// Returns sentences about limitations of the reference.
     #[must_use]
     pub fn limits(&self) -> Vec<String> {
-        let mut limits: Vec<String> =
-            self.moved.iter().map(|point| format!("in the reference solution, {point}")).collect();
-        if self.folds {
-            limits.push(FOLDS.to_owned());
-        }
-        if self.is_polygon {
-            limits.push(
-                "errors refer to the polygon of the file's straight sides, not to the curved part it stands for"
-                    .to_owned(),
-            );
-        }
-        if self.probes.contains(&None) {
-            limits.push(
+        let limits = [
+            (self.folds, FOLDS),
+            (
+                self.is_polygon,
+                "errors refer to the polygon of the file's straight sides, not to the curved part it stands for",
+            ),
+            (
+                self.probes.contains(&None),
                 "the error of some probes is unknown: they do not move, or their displacement does not converge on \
-                 finer meshes"
-                    .to_owned(),
-            );
-        }
-        limits
+                 finer meshes",
+            ),
+        ];
+        let moved = self.moved.iter().map(|point| format!("in the reference solution, {point}"));
+        moved.chain(limits.into_iter().filter(|(holds, _)| *holds).map(|(_, text)| text.to_owned())).collect()
     }
 
     /// Returns the reference of the first probe, by which settings are compared.
@@ -352,23 +305,13 @@ impl Reference {
 /// than the solve or its reference.
 pub(crate) const MAX_CERTIFIED: usize = 100_000;
 
-/// Returns `true` for an equilibrium whose exact tangent is not positive definite. A small one is examined if it has
-/// not been.
-pub(super) fn is_unstable(simulation: &Simulation) -> bool {
-    let is_small = simulation.system().dofs() <= MAX_CERTIFIED;
-    let examine =
-        |search: Equilibrium<'_>| search.certificate().or_else(|| is_small.then(|| search.snapshot().certify()));
-    is_unstable_by(simulation, examine)
-}
-
-/// Returns `true` for an equilibrium whose exact tangent is known not to be positive definite. Such a state has no
-/// reference solution, because a solve on another mesh leads to another equilibrium.
-#[cfg(feature = "app")]
-pub(crate) fn is_known_unstable(simulation: &Simulation) -> bool {
-    is_unstable_by(simulation, |search| search.certificate())
-}
-
-fn is_unstable_by(simulation: &Simulation, certificate: impl FnOnce(Equilibrium<'_>) -> Option<Certificate>) -> bool {
+/// Returns `true` for an equilibrium whose exact tangent is not positive definite. Such a state has no reference solution,
+/// because a solve on another mesh leads to another equilibrium. One that has not been examined is examined if it is small
+/// and `may_examine`, otherwise it counts as stable.
+pub(crate) fn is_unstable(simulation: &Simulation, may_examine: bool) -> bool {
+    let examines = may_examine && simulation.system().dofs() <= MAX_CERTIFIED;
+    let certificate =
+        |search: Equilibrium<'_>| search.certificate().or_else(|| examines.then(|| search.snapshot().certify()));
     *simulation.status() == Status::Converged
         && !simulation.is_linear()
         && simulation.equilibrium().and_then(certificate).and_then(|c| c.stable) == Some(false)
@@ -393,25 +336,6 @@ fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Opt
 /// Returns the equations of a scene.
 pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
-}
-
-/// Returns the final displacements of the probes by a method, with a sufficient number of iterations.
-pub(super) fn end(
-    scene: &Scene,
-    method: MethodKind,
-    system: &Arc<System>,
-    observe: Observer<'_>,
-) -> Result<Vec<Vector2<f64>>, StudyError> {
-    let mut scene = scene.clone();
-    scene.solver.method = method;
-    scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
-    scene.solver.accept_after = 0;
-    let mut simulation = Simulation::with_system(&scene, system.clone())?;
-    check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
-    if *simulation.status() != Status::Converged && method == MethodKind::Newton {
-        return Err(StudyError::NoReference);
-    }
-    Ok(probes_of(&simulation))
 }
 
 /// Returns the displacement of every probe, m.

@@ -43,7 +43,7 @@ use crate::scene::{Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
-use crate::study::{Reference, SolveFromRest, StudyError, is_known_unstable};
+use crate::study::{Reference, SolveFromRest, StudyError, is_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.
@@ -262,7 +262,7 @@ impl Session {
     /// there is none; `None` while neither is known.
     pub(crate) fn reference(&self) -> Option<Result<&Reference, &Sentence>> {
         static UNSTABLE: LazyLock<Sentence> = LazyLock::new(|| (&StudyError::Unstable).into());
-        if is_known_unstable(&self.simulation) {
+        if is_unstable(&self.simulation, false) {
             return Some(Err(&UNSTABLE));
         }
         let facts = &self.facts.reference;
