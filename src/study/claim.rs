@@ -255,7 +255,6 @@ impl From<&Claim> for Sentence {
 
 impl Claim {
     /// Returns the kind of the claim in JSON.
-    #[must_use]
     pub fn id(&self) -> &'static str {
         match self {
             Self::Converged { .. } => "converged",
@@ -287,7 +286,6 @@ impl Claim {
     /// Returns the claims of the result of a simulation at rest; none of a motion. `rho` is the spectral radius of the
     /// warped iteration at its equilibrium, `path` its path from rest, and `reference` its reference solution, each if
     /// known.
-    #[must_use]
     pub fn of_result(
         simulation: &Simulation,
         rho: Option<f64>,
@@ -340,14 +338,12 @@ impl Claim {
     }
 
     /// Returns the claim about disturbances of an equilibrium that a method has led to.
-    #[must_use]
     pub(crate) fn disturbance(rho: f64, method: MethodKind, status: &Status) -> Self {
         Self::Disturbance { rho, has_converged: method == MethodKind::Warped && *status == Status::Converged }
     }
 
     /// Returns the claims of a load path in its order: the largest reaction of its moving support, bifurcations, the jump,
     /// and its end.
-    #[must_use]
     pub fn of_path(scene: &Scene, path: &LoadPath) -> Vec<Self> {
         let limit = path.limit_under_force().and_then(|state| {
             let ([motion, reaction], rotates) = (path.driven_pair(scene, state)?, path.rotates(scene));
@@ -362,7 +358,6 @@ impl Claim {
     }
 
     /// Returns the claims of a load–deflection curve: where linear theory fails, and where the exact beam ends.
-    #[must_use]
     pub fn of_curve(curve: &LoadCurve) -> Vec<Self> {
         let last = curve.samples.last().map(|sample| sample.factor).filter(|factor| *factor < 1.0);
         let end = curve.buckles_at.map(Self::BeamBuckles).or_else(|| last.map(Self::BeamEnds));
@@ -370,7 +365,6 @@ impl Claim {
     }
 
     /// Returns the claim about the fastest setting of a study with an error of at most a limit, percent.
-    #[must_use]
     pub fn of_study(study: &Study, percent: f64) -> Self {
         let own_percent = study.own_error_percent;
         if own_percent >= percent {
@@ -384,7 +378,6 @@ impl Claim {
     }
 
     /// Returns the claim about the settings that meet a demand.
-    #[must_use]
     pub fn of_tuning(tuning: &Tuning) -> Self {
         let Tuning { chosen, demand, met, measured, meeting, study, .. } = tuning;
         let reason = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {

@@ -22,7 +22,6 @@ const OTHER: [[u8; 3]; 2] = [[110, 110, 110], [170, 170, 170]];
 /// use warpbeam::study::color;
 /// assert_eq!(color("newton", false), [0, 100, 180]);
 /// ```
-#[must_use]
 pub fn color(id: &str, dark: bool) -> [u8; 3] {
     let own = COLORS.iter().find(|(name, _)| *name == id).map_or(OTHER, |(_, colors)| *colors);
     own[usize::from(dark)]

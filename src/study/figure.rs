@@ -17,7 +17,6 @@ pub struct FigureQuantity {
 
 impl FigureQuantity {
     /// Returns a quantity with its unit.
-    #[must_use]
     pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
         Self { name: name.into(), unit }
     }
@@ -60,7 +59,6 @@ pub enum Mark {
 
 impl Mark {
     /// Returns `true` if the points are joined.
-    #[must_use]
     pub fn is_line(self) -> bool {
         matches!(self, Self::Line | Self::Dashes | Self::Dots)
     }
@@ -79,7 +77,6 @@ pub struct FigurePoint {
 
 impl FigurePoint {
     /// Returns a point that has all values.
-    #[must_use]
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
         Self { values: values.into_iter().map(Some).collect(), ..Self::default() }
     }
@@ -105,7 +102,6 @@ pub struct FigureSeries {
 
 impl FigureSeries {
     /// Returns a series that stretches the picture, with an empty value in the table.
-    #[must_use]
     pub fn new(name: String, ink: Ink, mark: Mark, points: Vec<FigurePoint>) -> Self {
         Self { name, ink, mark, may_leave: false, points, value: Some(String::new()) }
     }
@@ -140,20 +136,17 @@ impl Figure {
     }
 
     /// Returns the quantity along an axis: 0 is horizontal, 1 vertical.
-    #[must_use]
     pub fn quantity(&self, axis: usize) -> Option<&FigureQuantity> {
         self.quantities.get(*self.axes.get(axis)?)
     }
 
     /// Returns the values of a point along both axes; `None` if one is missing.
-    #[must_use]
     pub fn place(&self, point: &FigurePoint) -> Option<[f64; 2]> {
         let value = |axis: usize| point.values.get(axis).copied().flatten().filter(|v| v.is_finite());
         Some([value(self.axes[0])?, value(self.axes[1])?])
     }
 
     /// Returns `true` if both axes are displacements: the picture then has one scale.
-    #[must_use]
     pub fn has_one_scale(&self) -> bool {
         let unit = |axis| self.quantity(axis).map(|quantity| quantity.unit);
         unit(0) == Some("m") && unit(1) == Some("m")
@@ -161,7 +154,6 @@ impl Figure {
 
     /// Returns the lower left and upper right corner of the picture, around the origin and all points. Points that may
     /// leave it extend it by at most 35 % of the extent of the others, of the larger one where both axes have one scale.
-    #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 2] {
         const LEAVES: f64 = 0.35;
         /// Margin around the points, as a fraction of the picture.
@@ -196,7 +188,6 @@ impl Figure {
     }
 
     /// Formats the series as CSV, a row per point, in the units of the headings.
-    #[must_use]
     pub fn csv(&self) -> String {
         let has_states = self.series.iter().flat_map(|series| &series.points).any(|p| !p.state.is_empty());
         let mut head = vec!["series".to_owned()];
@@ -236,7 +227,6 @@ pub struct LoadAxis {
 impl LoadAxis {
     /// Returns the axis of the only load, or of the first of several with the same unit; otherwise that of the load
     /// factor.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         if scene.analysis == Analysis::Dynamic {
             return Self { name: sentence!("time step"), unit: "s", full: scene.dynamics.time_step };
@@ -264,7 +254,6 @@ fn kind(load: &Load) -> (&'static str, &'static str, f64) {
 }
 
 /// Returns the axis of the larger component: 0 is x.
-#[must_use]
 pub fn dominant_axis(displacements: impl Iterator<Item = Vector2<f64>>) -> usize {
     let [x, y] = displacements.fold([0.0_f64; 2], |[x, y], u| [x.max(u.x.abs()), y.max(u.y.abs())]);
     usize::from(y >= x)

@@ -402,7 +402,6 @@ fn points(scene: &Scene) -> impl Iterator<Item = ScenePoint<'_>> {
 
 /// Returns the points of a scene, of supports and forces that act on nodes, whose nearest node of its mesh is farther away
 /// than rounding errors.
-#[must_use]
 pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();

@@ -25,7 +25,6 @@ pub struct Sample {
 
 impl Sample {
     /// Returns the difference between linear theory and the exact beam, relative to the exact displacement, percent.
-    #[must_use]
     pub fn linear_error_percent(&self) -> f64 {
         error_percent(self.linear, self.exact).unwrap_or(0.0)
     }
@@ -80,7 +79,6 @@ const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 impl LoadCurve {
     /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip; `None` also if it is
     /// cancelled.
-    #[must_use]
     pub fn new(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         // A scene that cannot be simulated has no curve.

@@ -160,7 +160,6 @@ pub struct PathFromRest {
 
 impl PathFromRest {
     /// Compares a result, a displacement in m, with the end of the path.
-    #[must_use]
     pub fn to(&self, result: &[Vector2<f64>]) -> PathSummary {
         let Some(end) = &self.end else { return self.summary };
         let distance = largest_distance(end, result);
@@ -216,13 +215,11 @@ fn is_taken_for_path(simulation: &Simulation) -> bool {
 
 impl LoadPath {
     /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
-    #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         Self::observed(scene, &|_| ControlFlow::Continue(()))
     }
 
     /// Follows the path as [`Self::of`] with progress reports; a cancelled path ends early.
-    #[must_use]
     pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let can_be_followed = scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear;
         let simulation = can_be_followed.then(|| Simulation::new(scene).ok())??;
@@ -231,7 +228,6 @@ impl LoadPath {
 
     /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion or a
     /// result that has not converged, if the model is too large, or if the path cannot be followed.
-    #[must_use]
     pub fn to_result(simulation: &Simulation, observe: Observer<'_>) -> Option<PathSummary> {
         let search = simulation.equilibrium()?;
         if !simulation.status().is_success() {
@@ -331,34 +327,29 @@ impl LoadPath {
 
     /// Follows the load path of a scene to its end; `None` for a motion, if the path cannot be followed, or is cancelled,
     /// or the model is too large.
-    #[must_use]
     pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
         let simulation = (scene.analysis == Analysis::Static).then(|| Simulation::new(scene).ok())??;
         Self::from_rest(&simulation, observe)
     }
 
     /// Returns `true` if the path reaches the full load without a jump or a bifurcation.
-    #[must_use]
     pub fn is_plain(&self) -> bool {
         self.bifurcations.is_empty() && self.jump.is_none() && self.end.is_none()
     }
 
     /// Returns the first state, before the body becomes unstable, beyond which it is unstable under force control.
-    #[must_use]
     pub(super) fn limit_under_force(&self) -> Option<&PathState> {
         let stable = self.states.windows(2).take_while(|pair| pair[1].unstable_modes == 0);
         stable.filter(|pair| [pair[0].stable, pair[1].stable] == [Some(true), Some(false)]).map(|pair| &pair[0]).next()
     }
 
     /// Returns `true` if the moving support only rotates.
-    #[must_use]
     pub fn rotates(&self, scene: &Scene) -> bool {
         self.driven.and_then(|i| scene.supports.get(i)).is_some_and(|support| support.displacement == [0.0; 2])
     }
 
     /// Returns the motion of the moving support at a state: its displacement, m, or its rotation, rad, if it only
     /// rotates; and the reaction along it, N or N m. `None` if no support moves.
-    #[must_use]
     pub fn driven_pair(&self, scene: &Scene, state: &PathState) -> Option<[f64; 2]> {
         let (support, reaction) = (scene.supports.get(self.driven?)?, state.reactions.get(self.driven?)?);
         let increment = Vector2::from(support.displacement);
@@ -571,13 +562,11 @@ impl Tracer {
 }
 
 /// Describes a support: `support left`, `support (0.1, 0.0085)`.
-#[must_use]
 pub fn support_text(scene: &Scene, number: usize) -> String {
     scene.supports.get(number).map_or_else(|| "support".to_owned(), |support| format!("support {}", support.place))
 }
 
 /// Returns the name of a support in tables: its edge, or its table in the scene.
-#[must_use]
 pub fn support_name(scene: &Scene, number: usize) -> String {
     match scene.supports.get(number).map(|s| &s.place) {
         Some(Place::Edge(edge)) => edge.clone(),

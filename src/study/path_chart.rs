@@ -28,7 +28,6 @@ pub type Render<'a> = &'a dyn Fn(&Sentence) -> String;
 
 /// Draws the path over the displacement or angle of the moving support, or over the load; `render` translates its
 /// names.
-#[must_use]
 pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Render<'_>) -> Figure {
     let probe = match ordinate {
         Ordinate::Path(i) | Ordinate::Component(i, _) | Ordinate::Probe(i) => *i,

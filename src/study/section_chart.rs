@@ -30,7 +30,6 @@ pub const COMPONENTS: [SectionComponent; 3] = [
 
 /// Returns the contexts of the [`COMPONENTS`] of sections of one state: results below the rounding errors of the solve
 /// are 0.
-#[must_use]
 pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
     let size = simulation.system().size();
     let inexact = simulation.scene().solver.tolerance.max(simulation.residual()).min(Context::MAX_INEXACT);
@@ -47,7 +46,6 @@ pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
 }
 
 /// Formats the forces of a section: "N 12 kN, V 0 N, M -3.4 kN m".
-#[must_use]
 pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
     let values = COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
         format!("{symbol} {}", within.engineering(of(&section.forces), unit))
@@ -56,7 +54,6 @@ pub fn text(section: &Section, contexts: &[Context; 3]) -> String {
 }
 
 /// Formats the forces of a section of a state as [`text`], in the contexts of this section alone.
-#[must_use]
 pub fn text_of(section: &Section, simulation: &Simulation) -> String {
     text(section, &contexts(std::slice::from_ref(section), simulation))
 }
@@ -72,7 +69,6 @@ pub const STRESSES: [(&str, &str, [&str; 2]); 2] = [
 
 /// Draws the normal stress and the shear stress along a cut of a scene: recovered and by beam theory, against the distance
 /// from the middle; the forces have these contexts, and `render` translates the names.
-#[must_use]
 pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 2] {
     [0, 1].map(|component| {
         let (_, name, names) = STRESSES[component];
@@ -123,7 +119,6 @@ pub(crate) fn largest(sections: &[Section], component: &SectionComponent, within
 }
 
 /// Draws N, V and M along a beam, each with its largest value; `render` translates the names.
-#[must_use]
 pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 3] {
     let of = |i: usize| {
         let SectionComponent { name, unit, of: value, .. } = COMPONENTS[i];

@@ -44,7 +44,6 @@ pub struct SolveFromRest {
 
 /// Times the solve of a scene from rest; returns `None` for a motion, and if the scene cannot be solved or the
 /// computation is cancelled.
-#[must_use]
 pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
     // Without a load there is no iteration.
@@ -66,7 +65,6 @@ impl SolveFromRest {
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,
 /// `None` if the computation is cancelled. Only one thread of the process measures at a time.
-#[must_use]
 pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Observer<'_>) -> Option<Vec<Timings>> {
     let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
     let mut runs: Vec<Vec<Timings>> = Vec::new();

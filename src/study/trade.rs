@@ -112,7 +112,6 @@ pub enum Ending {
 
 impl Ending {
     /// Returns the identifier in tables.
-    #[must_use]
     pub fn id(self) -> &'static str {
         match self {
             Self::Finished => "finished",
@@ -141,7 +140,6 @@ pub struct MotionFigures {
 impl MotionFigures {
     /// Returns the effect of the integrator on the energy: `kept` if it changes by less than a ten-thousandth of the largest
     /// kinetic energy, else `lost` or `gained`.
-    #[must_use]
     pub fn energy(&self) -> &'static str {
         const KEPT: f64 = 0.01;
         match self.drift_percent {

@@ -28,7 +28,6 @@ pub struct MotionCase {
 const STEPS: u32 = 100;
 
 /// Returns all cases, with the numbers of solves that make a difference for each integrator.
-#[must_use]
 pub fn cases(extent: Extent) -> Vec<MotionCase> {
     let pick = |quick: &'static [f64], all: &'static [f64]| if extent == Extent::Full { all } else { quick };
     let youngs = pick(&[1e3, 1e6, 1e12], &[1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12]);
@@ -98,7 +97,6 @@ impl Case for MotionCase {
 }
 
 /// Formats the counts for display.
-#[must_use]
 pub fn summary(entries: &[Entry<MotionCase>]) -> String {
     let series = labels(entries, |case| Some(case.series()));
     format!(

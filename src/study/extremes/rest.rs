@@ -68,7 +68,6 @@ pub struct RestCase {
 
 /// Returns all cases, a few hundred or many thousand: a grid of loads and shapes from rest, all initial states,
 /// distorted cells, and scenes with mesh files.
-#[must_use]
 pub fn cases(extent: Extent) -> Vec<RestCase> {
     let pick = |quick: &'static [f64], all: &'static [f64]| if extent == Extent::Full { all } else { quick };
     let alphas = pick(&[0.1, 10.0, 1e3], &[1e-6, 1e-2, 0.1, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e6]);
@@ -125,7 +124,6 @@ impl RestCase {
     }
 
     /// Returns the scene of the case.
-    #[must_use]
     pub fn scene(&self) -> Scene {
         if let Variant::File(id) = self.variant
             && let Some(mut scene) = built_in(id)
@@ -233,7 +231,6 @@ fn distorted(scene: &Scene, distortion: f64) -> Option<Mesh> {
 }
 
 /// Formats the counts for display, and where each method stops converging.
-#[must_use]
 pub fn summary(entries: &[Entry<RestCase>]) -> String {
     let series = labels(entries, |case| Some(case.series()));
     let alphas = labels(entries, |case| Some(number(case.alpha)));

@@ -66,7 +66,6 @@ pub enum Rating {
 
 impl Rating {
     /// All classes, with their names at rest or in motion.
-    #[must_use]
     pub fn all(moves: bool) -> [(Self, Sentence); 5] {
         [
             (Self::Good, sentence!("within %{percent} %", percent = number(GOOD))),
@@ -207,14 +206,12 @@ impl Strip {
     }
 
     /// Returns the name of the method, translated by `text`, with the number of iterations of an early stop: `warped:2`.
-    #[must_use]
     pub fn method_name(&self, text: impl Fn(&'static str) -> String) -> String {
         let method = text(self.method.id());
         if self.accept_after == 0 { method } else { format!("{method}:{}", self.accept_after) }
     }
 
     /// Returns the name of the integrator, or the names of element and method, translated by `text`.
-    #[must_use]
     pub fn name(&self, text: impl Fn(&'static str) -> String) -> String {
         match self.integrator {
             Some(integrator) => text(integrator.id()),
@@ -259,7 +256,6 @@ impl Strip {
 
     /// Returns the part of the load up to which the error is at most `percent`: 0 if it is larger at the smallest load, and
     /// `None` if it is not larger up to [`Self::last_known`].
-    #[must_use]
     pub fn within(&self, percent: f64) -> Option<f64> {
         match self.answers(Property::Within(percent)).next()? {
             (_, Ternary::Unknown) => None,
@@ -273,7 +269,6 @@ impl Strip {
 
     /// Returns the largest part of the load up to which the error is known at every load; `None` if it is not known at the
     /// smallest load.
-    #[must_use]
     pub fn last_known(&self) -> Option<f64> {
         let compared = self.points.iter().filter_map(|point| Some((point.factor, point.rating()?)));
         let is_known = |rating: Rating| !matches!(rating, Rating::Unknown | Rating::NotConverged);
@@ -282,7 +277,6 @@ impl Strip {
 
     /// Returns the pairs of loads between which the method does not converge, from small to large; the first is 0 if it does
     /// not converge at the smallest load, and the last the largest load if it does not converge there.
-    #[must_use]
     pub fn fails(&self) -> Vec<[f64; 2]> {
         let runs = self.runs(Property::Converges);
         let Some(last) = self.points.last().map(|point| point.factor) else { return Vec::new() };
@@ -292,14 +286,12 @@ impl Strip {
     }
 
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
-    #[must_use]
     pub fn law_ends_at(&self) -> Option<f64> {
         self.answers(Property::Law).find(|(_, answer)| *answer == Ternary::No).map(|(factor, _)| factor)
     }
 
     /// Returns the strip in pieces: each load has the middle between it and its neighbours. The pieces of a strip that is
     /// not complete end at its last load. `range` is that of the limits.
-    #[must_use]
     pub fn pieces(&self, range: [f64; 2]) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = Vec::new();
         for (i, point) in self.points.iter().enumerate() {
@@ -325,7 +317,6 @@ impl Strip {
 
     /// Returns in words the loads up to which the error is within 1 % and 5 %, that up to which the method converges, and
     /// that from which strains exceed 10 %. `axis` is that of the scene, and `range` that of the limits.
-    #[must_use]
     pub fn words(&self, axis: &LoadAxis, range: [f64; 2]) -> [Sentence; 4] {
         let load = |factor: f64| load_text(axis, factor);
         let of = |property: Property| {
@@ -351,7 +342,6 @@ impl Strip {
     /// Returns in words the load up to which the error is within 1 %, or within 5 % if it is larger near the smallest load;
     /// or the load from which it is within 5 %, or else up to which the method converges; `None` before the first load is
     /// solved. `range` is that of the limits.
-    #[must_use]
     pub fn end(&self, axis: &LoadAxis, range: [f64; 2]) -> Option<Sentence> {
         /// Ratio of the loads that are near the smallest one.
         const NEAR: f64 = 2.0;
@@ -436,7 +426,6 @@ impl Strip {
 
 /// Returns the name of the axis, with the critical load of the scene's mesh if there is one, or with the error of a
 /// motion's mesh.
-#[must_use]
 pub fn axis_text(limits: &MethodLimits, axis: &LoadAxis) -> Sentence {
     match (limits.critical(), limits.mesh_error_text()) {
         (Some(factor), _) => {
@@ -448,7 +437,6 @@ pub fn axis_text(limits: &MethodLimits, axis: &LoadAxis) -> Sentence {
 }
 
 /// Formats a part of a scene's load or time step.
-#[must_use]
 pub fn load_text(axis: &LoadAxis, factor: f64) -> String {
     engineering(three_digits(factor * axis.full), axis.unit)
 }
@@ -474,7 +462,6 @@ pub struct MethodLimits {
 
 impl MethodLimits {
     /// Returns the largest error of the reference solution, percent, if it decides about a rating of [`GOOD`].
-    #[must_use]
     pub fn large_reference_error_percent(&self) -> Option<f64> {
         let points = self.strips.iter().flat_map(|strip| &strip.points);
         let errors = points.filter_map(|point| point.reference_percent);
@@ -482,19 +469,16 @@ impl MethodLimits {
     }
 
     /// Returns the part of the load at which the load path from rest buckles or jumps on the scene's mesh.
-    #[must_use]
     pub fn critical(&self) -> Option<f64> {
         self.criticals.first()?.1
     }
 
     /// Returns the part of the load at which the load path from rest buckles or jumps on the mesh of an element.
-    #[must_use]
     pub fn critical_of(&self, element: ElementKind) -> Option<f64> {
         self.criticals.iter().find(|(own, _)| *own == element)?.1
     }
 
     /// Returns the critical loads of the meshes in words; `None` if there are none.
-    #[must_use]
     pub fn criticals_text(&self, axis: &LoadAxis) -> Option<String> {
         let of = |(element, critical): &(ElementKind, Option<f64>)| {
             Some(format!("{} with {}", load_text(axis, (*critical)?), element.id()))
@@ -507,7 +491,6 @@ impl MethodLimits {
     }
 
     /// Returns the error of a motion's mesh in words: however short its time steps are, no integrator has a smaller error.
-    #[must_use]
     pub fn mesh_error_text(&self) -> Option<Sentence> {
         /// Smallest error that is worth a sentence, percent.
         const SEEN: f64 = 1e-3;
@@ -517,7 +500,6 @@ impl MethodLimits {
 
     /// Returns `true` if a part of the scene's loads, or of its time step, is in the range of the limits: that of a very
     /// short time step is not.
-    #[must_use]
     pub fn contains(&self, factor: f64) -> bool {
         /// Relative rounding error of a factor with three digits.
         const ROUNDING: f64 = 1e-2;

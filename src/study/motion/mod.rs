@@ -160,7 +160,6 @@ impl Studied<'_> {
 /// Returns the computing time per simulated second of a scene's motion from its start, ms, measured over the time that a
 /// quick study simulates, or the beginning of it where it takes long; `None` for a scene at rest, and if the scene cannot
 /// be solved or the computation is cancelled.
-#[must_use]
 pub fn time_of_motion(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     let goes_on = || observe(Progress::at(0.0)).is_continue();
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_some() && goes_on())?;

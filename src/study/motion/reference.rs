@@ -109,7 +109,6 @@ impl MotionReference {
     }
 
     /// Returns the studied time, s.
-    #[must_use]
     pub fn duration(&self) -> f64 {
         self.samples().duration()
     }
@@ -121,7 +120,6 @@ impl MotionReference {
 
     /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
     /// the size.
-    #[must_use]
     pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
         let distances = a.iter().zip(b).map(|(a, b)| (a - b).norm());
         let percent = 100.0 / self.size;
