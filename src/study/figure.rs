@@ -231,12 +231,10 @@ impl LoadAxis {
         if scene.analysis == Analysis::Dynamic {
             return Self { name: sentence!("time step"), unit: "s", full: scene.dynamics.time_step };
         }
-        let pulling: Vec<(&'static str, &'static str, f64)> =
-            scene.loads.iter().map(kind).filter(|(_, _, size)| *size > 0.0).collect();
-        let one_unit = pulling.windows(2).all(|pair| pair[0].1 == pair[1].1);
-        match pulling.first() {
-            Some(&(name, unit, full)) if pulling.len() == 1 => Self { name: name.into(), unit, full },
-            Some(&(name, unit, full)) if one_unit => {
+        let pulling: Vec<_> = scene.loads.iter().map(kind).filter(|(.., size)| *size > 0.0).collect();
+        match pulling[..] {
+            [(name, unit, full)] => Self { name: name.into(), unit, full },
+            [(name, unit, full), ref others @ ..] if others.iter().all(|(_, other, _)| *other == unit) => {
                 Self { name: sentence!("first %{load}, the others in proportion", load = name), unit, full }
             }
             _ => Self { name: sentence!("load factor"), unit: "", full: 1.0 },

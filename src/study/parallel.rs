@@ -15,8 +15,9 @@ pub fn all<T: Sync, R: Send>(
     now: &Sentence,
     work: impl Fn(&T, Observer<'_>) -> Result<R, StudyError> + Sync,
 ) -> Result<Vec<R>, StudyError> {
+    let part = |done: usize| done as f64 / items.len() as f64;
     let results = map(items, work, |done| {
-        observe(Progress { fraction: from + (to - from) * done as f64 / items.len() as f64, now: Some(now) })
+        observe(Progress { fraction: (from + (to - from) * part(done)).min(to), now: Some(now) })
     });
     results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }

@@ -253,7 +253,7 @@ impl Study {
         let all: f64 = meshes.iter().map(|(_, weight)| weight).sum();
         let mut done = 0.0;
         for &(mesh, weight) in meshes {
-            let fraction = |part: f64| begun + (1.0 - begun) * (done + part * weight) / all;
+            let fraction = |part: f64| begun + (1.0 - begun) * ((done + part * weight) / all);
             let measured =
                 measure(&mut self, mesh, &|part| observe(Progress { fraction: fraction(part.fraction), ..part }));
             self.mark_pareto();
