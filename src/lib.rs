@@ -164,8 +164,7 @@ pub use nalgebra;
 pub use mesh::{GmshError, Mesh, MeshError, Segment};
 pub use scene::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MeshFile, MethodKind, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SectionLine, SolverSettings, Start,
-    Support,
+    MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SectionLine, SolverSettings, Start, Support,
 };
 // Solve it.
 pub use assembly::SystemError;

@@ -50,7 +50,6 @@ impl From<RequiredSceneArgs> for scene::Source {
 pub(super) fn within(limit: Limit) -> impl Fn(&str) -> Result<f64, CliError> + Clone + Send + Sync {
     move |text| {
         let value = units::parse(text, limit.unit)?;
-        limit.check(value)?;
-        Ok(value)
+        Ok(limit.check(value).map(|()| value).map_err(|message| message.to_string())?)
     }
 }

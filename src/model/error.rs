@@ -1,7 +1,6 @@
 //! Errors of scenes, with file, line and expected value.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -44,42 +43,15 @@ impl From<&Invalid> for Sentence {
     }
 }
 
-/// Reason why the text of a scene could not be read.
-#[derive(Clone, Debug, Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// I/O error of the operating system.
-    #[error("{0}")]
-    System(Arc<std::io::Error>),
-    /// The path is a folder or a device.
-    #[error("not a file")]
-    NoFile,
-    /// The text is larger than the limit for scenes.
-    #[error("{bytes} bytes, more than the {most} a scene may have")]
-    TooLarge {
-        /// Bytes read; for a stream, at most one over the limit.
-        bytes: u64,
-        /// The limit.
-        most: u64,
-    },
-}
-
-impl From<std::io::Error> for ReadError {
-    fn from(error: std::io::Error) -> Self {
-        Self::System(Arc::new(error))
-    }
-}
-
 /// Reason why a scene could not be opened.
 ///
 /// ```
-/// use warpbeam::{ReadError, Scene, SceneError};
+/// use warpbeam::{Scene, SceneError};
 ///
 /// let advice = match Scene::from_toml("name = \"Beam\"\nlength = 10.0").unwrap_err() {
 ///     SceneError::Syntax { line: Some(line), .. } | SceneError::Invalid { line: Some(line), .. } => {
 ///         format!("edit line {line}")
 ///     }
-///     SceneError::Read { reason: ReadError::TooLarge { most, .. }, .. } => format!("write at most {most} bytes"),
 ///     other => other.to_string(),
 /// };
 /// assert_eq!(advice, "edit line 2"); // `length` belongs to the table [beam]
@@ -92,10 +64,8 @@ pub enum SceneError {
     Read {
         /// Path or name given.
         path: PathBuf,
-        /// Reason why it could not be read.
-        reason: ReadError,
-        /// Names of the built-in scenes.
-        built_in: String,
+        /// Reason why it could not be read, and the names of the built-in scenes.
+        message: String,
     },
     /// Not TOML, an unknown key, or a value of the wrong type.
     Syntax {
@@ -127,10 +97,7 @@ pub enum SceneError {
 impl From<&SceneError> for Sentence {
     fn from(error: &SceneError) -> Self {
         let (place, message) = match error {
-            SceneError::Read { path, reason, built_in } => {
-                let expected = "expected a scene file, or one of the built-in scenes";
-                (Some(path.display().to_string()), format!("{reason}; {expected}: {built_in}").into())
-            }
+            SceneError::Read { path, message } => (Some(path.display().to_string()), message.as_str().into()),
             SceneError::Syntax { file, line, message } => (at(file.as_deref(), *line), message.as_str().into()),
             SceneError::Invalid { file, line, invalid } => (at(file.as_deref(), *line), invalid.into()),
             SceneError::Set { assignment, message } => (Some(format!("--set {assignment}")), message.as_str().into()),

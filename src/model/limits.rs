@@ -1,7 +1,5 @@
 //! Ranges of numbers: those that the window, the commands and the list of keys share.
 
-use thiserror::Error;
-
 use crate::format::number;
 use crate::sentence::{Sentence, sentence};
 
@@ -14,23 +12,6 @@ pub struct Limit {
     pub min: f64,
     /// Largest accepted value.
     pub max: f64,
-}
-
-/// Value out of range.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{}", Sentence::from(self))]
-pub struct OutOfRange {
-    /// The range.
-    pub limit: Limit,
-    /// Value given, as written.
-    pub got: String,
-}
-
-impl From<&OutOfRange> for Sentence {
-    fn from(OutOfRange { limit, got }: &OutOfRange) -> Self {
-        let [low, high] = limit.ends();
-        sentence!("expected %{low} to %{high}, got %{got}", low, high, got)
-    }
 }
 
 impl Limit {
@@ -47,15 +28,16 @@ impl Limit {
     /// Checks that `value` is in the range.
     ///
     /// # Errors
-    /// [`OutOfRange`] for values out of range, NaN and infinities.
-    pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
+    /// The message for values out of range, NaN and infinities.
+    pub fn check(&self, value: f64) -> Result<(), Sentence> {
         if value >= self.min && value <= self.max { Ok(()) } else { Err(self.expected(&number(value))) }
     }
 
-    /// Returns the error for `got`, which is not a number in the range.
+    /// Returns the message for `got`, which is not a number in the range.
     #[must_use]
-    pub fn expected(&self, got: &str) -> OutOfRange {
-        OutOfRange { limit: *self, got: got.to_owned() }
+    pub fn expected(&self, got: &str) -> Sentence {
+        let [low, high] = self.ends();
+        sentence!("expected %{low} to %{high}, got %{got}", low, high, got)
     }
 }
 

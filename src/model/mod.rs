@@ -17,9 +17,8 @@ pub mod units;
 
 pub use build::{LoadId, SupportId};
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
-pub use error::{Invalid, ReadError, SceneError};
-pub use limits::OutOfRange;
-pub use place::{Axis, Load, Place, Probe, SectionLine, Support, TableError};
+pub use error::{Invalid, SceneError};
+pub use place::{Axis, Load, Place, Probe, SectionLine, Support};
 pub(crate) use table::{check, missing};
 #[cfg(feature = "cli")]
 pub(crate) use table::{keys_of, name_of};
@@ -308,7 +307,7 @@ impl Scene {
             return Err(Invalid::new("name", "expected a title, got an empty string"));
         }
         let poisson = self.material.plane.poisson_limit().check(self.material.poisson);
-        poisson.map_err(|e| Invalid::new("material.poisson", &e))?;
+        poisson.map_err(|message| Invalid::new("material.poisson", message))?;
         let dynamic = self.analysis == Analysis::Dynamic;
         if self.supports.is_empty() && !dynamic {
             return Err(Invalid::new("support", sentence!("expected at least one support, got none")));
@@ -364,11 +363,11 @@ const MAX_CELL_ASPECT: f64 = 1e5;
 impl Beam {
     fn validate(&self) -> Result<(), Invalid> {
         let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
-        limits::TOTAL_CELLS.check(total).map_err(|OutOfRange { limit, got }| {
-            let [low, high] = limit.ends();
+        if limits::TOTAL_CELLS.check(total).is_err() {
+            let ([low, high], got) = (limits::TOTAL_CELLS.ends(), number(total));
             let message = sentence!("expected %{low} to %{high}, got %{got} cells in all", low, high, got);
-            Invalid::new("beam.cells", message)
-        })?;
+            return Err(Invalid::new("beam.cells", message));
+        }
         let aspect = self.cell_aspect();
         if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
             return Ok(());

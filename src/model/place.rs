@@ -2,7 +2,6 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
@@ -46,30 +45,6 @@ impl From<Vector2<f64>> for Place {
     }
 }
 
-/// Reason why a table of a scene is not a support, load or probe.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum TableError {
-    /// The table names no place.
-    #[error("expected edge = \"…\" or at = [x, y], got neither")]
-    NoPlace,
-    /// The table names two places.
-    #[error("expected edge = \"…\" or at = [x, y], got both")]
-    TwoPlaces,
-    /// The keys are not those of a force.
-    #[error("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")]
-    Force,
-    /// The force or support acts on a point, and names an edge.
-    #[error("expected at = [x, y] with acts_on = \"point\" or a width, got an edge")]
-    PointOfEdge,
-    /// The keys are not those of gravity.
-    #[error("expected only acceleration = [ax, ay] in m/s² for a load of kind \"gravity\"")]
-    Gravity,
-    /// The keys are not those of a moment.
-    #[error("expected edge, and moment in N m, for a load of kind \"moment\"")]
-    Moment,
-}
-
 impl std::fmt::Display for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -84,12 +59,12 @@ impl std::fmt::Display for Place {
 
 impl Place {
     /// Makes a place from the two keys of a table, of which exactly one must be given.
-    fn new(edge: Option<String>, at: Option<[f64; 2]>) -> Result<Self, TableError> {
+    fn new(edge: Option<String>, at: Option<[f64; 2]>) -> Result<Self, &'static str> {
         match (edge, at) {
             (Some(edge), None) => Ok(Self::Edge(edge)),
             (None, Some(at)) => Ok(Self::At(at)),
-            (None, None) => Err(TableError::NoPlace),
-            (Some(_), Some(_)) => Err(TableError::TwoPlaces),
+            (None, None) => Err("expected edge = \"…\" or at = [x, y], got neither"),
+            (Some(_), Some(_)) => Err("expected edge = \"…\" or at = [x, y], got both"),
         }
     }
 
@@ -322,9 +297,9 @@ struct SupportTable {
 }
 
 impl TryFrom<SupportTable> for Support {
-    type Error = TableError;
+    type Error = &'static str;
 
-    fn try_from(table: SupportTable) -> Result<Self, TableError> {
+    fn try_from(table: SupportTable) -> Result<Self, Self::Error> {
         let SupportTable { edge, at, acts_on, width, fix, displacement, turn } = table;
         let (place, at_point) = acts_on.place(edge, at, width)?;
         Ok(Self { place, at_point, width, fix, displacement, turn })
@@ -351,9 +326,9 @@ struct ProbeTable {
 }
 
 impl TryFrom<ProbeTable> for Probe {
-    type Error = TableError;
+    type Error = &'static str;
 
-    fn try_from(ProbeTable { name, edge, at }: ProbeTable) -> Result<Self, TableError> {
+    fn try_from(ProbeTable { name, edge, at }: ProbeTable) -> Result<Self, Self::Error> {
         Ok(Self { name, place: Place::new(edge, at)? })
     }
 }
@@ -415,34 +390,38 @@ impl ActsOn {
     }
 
     /// Makes a place from the other keys, with `true` if its point is meant and not the nearest node.
-    fn place(self, edge: Option<String>, at: Option<[f64; 2]>, width: f64) -> Result<(Place, bool), TableError> {
+    fn place(self, edge: Option<String>, at: Option<[f64; 2]>, width: f64) -> Result<(Place, bool), &'static str> {
         match (Place::new(edge, at)?, self == Self::Point || width != 0.0) {
-            (Place::Edge(_), true) => Err(TableError::PointOfEdge),
+            (Place::Edge(_), true) => Err("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"),
             placed => Ok(placed),
         }
     }
 }
 
 impl TryFrom<LoadTable> for Load {
-    type Error = TableError;
+    type Error = &'static str;
 
-    fn try_from(table: LoadTable) -> Result<Self, TableError> {
+    fn try_from(table: LoadTable) -> Result<Self, Self::Error> {
         let LoadTable { kind, edge, at, acts_on, width, force, acceleration, moment, pulse } = table;
-        let at_point = acts_on == ActsOn::Point || width != 0.0;
-        match (kind, force, acceleration, moment) {
-            (LoadKind::Force, Some(force), None, None) => {
+        let is_whole = at.is_none() && acts_on == ActsOn::Node && width == 0.0;
+        match (kind, force, acceleration, moment, edge) {
+            (LoadKind::Force, Some(force), None, None, edge) => {
                 let (place, at_point) = acts_on.place(edge, at, width)?;
                 Ok(Self::Force { place, at_point, width, force, pulse })
             }
-            (LoadKind::Force, ..) => Err(TableError::Force),
-            (LoadKind::Gravity, None, Some(acceleration), None) if edge.is_none() && at.is_none() && !at_point => {
+            (LoadKind::Gravity, None, Some(acceleration), None, None) if is_whole => {
                 Ok(Self::Gravity { acceleration, pulse })
             }
-            (LoadKind::Gravity, ..) => Err(TableError::Gravity),
-            (LoadKind::Moment, None, None, Some(moment)) if at.is_none() && !at_point => {
-                Ok(Self::Moment { edge: edge.ok_or(TableError::Moment)?, moment, pulse })
+            (LoadKind::Moment, None, None, Some(moment), Some(edge)) if is_whole => {
+                Ok(Self::Moment { edge, moment, pulse })
             }
-            (LoadKind::Moment, ..) => Err(TableError::Moment),
+            (LoadKind::Force, ..) => {
+                Err("expected edge or at, and force = [fx, fy] in N, for a load of kind \"force\"")
+            }
+            (LoadKind::Gravity, ..) => {
+                Err("expected only acceleration = [ax, ay] in m/s² for a load of kind \"gravity\"")
+            }
+            (LoadKind::Moment, ..) => Err("expected edge, and moment in N m, for a load of kind \"moment\""),
         }
     }
 }

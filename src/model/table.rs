@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use super::error::Invalid;
 use super::keys::{KEYS, Key, KeyKind, Need};
-use super::{OutOfRange, units};
+use super::units;
 use crate::sentence::{Sentence, sentence};
 
 /// Checks that every key of a scene is in [`KEYS`], and its value of the kind and in the range that are said there. The
@@ -27,7 +27,7 @@ fn check_table(table: &Table, parent: &str, place: &str) -> Result<(), Invalid> 
         };
         let checked = match expected(key, value) {
             Some(expected) => Err(format!("expected {expected}, got {}", shown(value)).into()),
-            None => check_range(key.kind, value).map_err(|e| Sentence::from(&e)),
+            None => check_range(key.kind, value),
         };
         checked.map_err(|message| Invalid::new(place(), message))?;
         match value {
@@ -42,7 +42,7 @@ fn check_table(table: &Table, parent: &str, place: &str) -> Result<(), Invalid> 
 }
 
 /// Checks the numbers of a value, of a vector its length.
-fn check_range(kind: KeyKind, value: &Value) -> Result<(), OutOfRange> {
+fn check_range(kind: KeyKind, value: &Value) -> Result<(), Sentence> {
     let items = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
     let mut numbers = items.iter().filter_map(|value| value.as_float().or(value.as_integer().map(|n| n as f64)));
     match kind {

@@ -17,6 +17,6 @@ pub use open::{STANDARD_INPUT, Source, locate, open};
 
 pub use crate::model::{
     Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, LoadId,
-    Material, MeshFile, MethodKind, OutOfRange, Place, Plane, Probe, Pulse, ReadError, Scene, SceneError, SectionLine,
-    SolverSettings, Start, Support, SupportId, TableError, keys, limits, units,
+    Material, MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SectionLine, SolverSettings, Start,
+    Support, SupportId, keys, limits, units,
 };

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::mesh::read_mesh;
-use super::{Invalid, ReadError, Scene, SceneError, registry, units};
+use super::{Invalid, Scene, SceneError, registry, units};
 use crate::model::{check, missing};
 
 /// Largest accepted scene file, bytes; checked before reading.
@@ -69,7 +69,7 @@ impl Source {
         let bytes = match self.built_in() {
             Some(built_in) => return Ok(built_in.toml.to_owned()),
             None if self.is_stream() => self.read_stream(),
-            None => read(&self.name),
+            None => read(&self.name).map_err(|reason| unreadable(&self.name, &reason)),
         };
         decoded(&self.name, &bytes?)
     }
@@ -84,23 +84,23 @@ impl Source {
 
     /// Reads the text of a stream and keeps it for later calls.
     fn read_stream(&self) -> Result<Vec<u8>, SceneError> {
-        static TEXTS: Mutex<BTreeMap<PathBuf, Result<Vec<u8>, ReadError>>> = Mutex::new(BTreeMap::new());
+        static TEXTS: Mutex<BTreeMap<PathBuf, Result<Vec<u8>, String>>> = Mutex::new(BTreeMap::new());
         let is_input = self.name == Path::new(STANDARD_INPUT);
         let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
         let text = texts.entry(self.name.clone()).or_insert_with(|| match is_input {
             true => read_to_limit(std::io::stdin().lock()),
-            false => std::fs::File::open(&self.name).map_err(ReadError::from).and_then(read_to_limit),
+            false => std::fs::File::open(&self.name).map_err(|e| e.to_string()).and_then(read_to_limit),
         });
         let name = if is_input { Path::new("standard input") } else { &self.name };
-        text.clone().map_err(|reason| unreadable(name, reason))
+        text.clone().map_err(|reason| unreadable(name, &reason))
     }
 }
 
 /// Reads a text up to the size limit of scenes.
-fn read_to_limit(stream: impl Read) -> Result<Vec<u8>, ReadError> {
+fn read_to_limit(stream: impl Read) -> Result<Vec<u8>, String> {
     let mut text = Vec::new();
-    let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_end(&mut text)? as u64;
-    if bytes > MAX_FILE_BYTES { Err(too_large(bytes)) } else { Ok(text) }
+    let bytes = stream.take(MAX_FILE_BYTES + 1).read_to_end(&mut text).map_err(|e| e.to_string())?;
+    check_size(bytes as u64).map(|()| text)
 }
 
 /// Returns a scene's text; the error names the encoding and the line of the first byte that is not UTF-8.
@@ -123,13 +123,15 @@ fn decoded(name: &Path, bytes: &[u8]) -> Result<String, SceneError> {
     Err(SceneError::Syntax { file: Some(name.to_owned()), line: Some(line), message })
 }
 
-fn too_large(bytes: u64) -> ReadError {
-    ReadError::TooLarge { bytes, most: MAX_FILE_BYTES }
+fn check_size(bytes: u64) -> Result<(), String> {
+    let refusal = || format!("{bytes} bytes, more than the {MAX_FILE_BYTES} a scene may have");
+    if bytes > MAX_FILE_BYTES { Err(refusal()) } else { Ok(()) }
 }
 
-fn unreadable(path: &Path, reason: ReadError) -> SceneError {
+fn unreadable(path: &Path, reason: &str) -> SceneError {
     let built_in = registry::BUILT_IN.iter().map(|b| b.id).collect::<Vec<_>>().join(", ");
-    SceneError::Read { path: path.to_owned(), reason, built_in }
+    let message = format!("{reason}; expected a scene file, or one of the built-in scenes: {built_in}");
+    SceneError::Read { path: path.to_owned(), message }
 }
 
 impl Scene {
@@ -161,16 +163,13 @@ impl Scene {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let failed = |reason: ReadError| unreadable(path, reason);
-    let metadata = std::fs::metadata(path).map_err(|e| failed(e.into()))?;
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let metadata = std::fs::metadata(path).map_err(|e| e.to_string())?;
     if !metadata.is_file() {
-        return Err(failed(ReadError::NoFile));
+        return Err("not a file".to_owned());
     }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(failed(too_large(metadata.len())));
-    }
-    std::fs::read(path).map_err(|e| failed(e.into()))
+    check_size(metadata.len())?;
+    std::fs::read(path).map_err(|e| e.to_string())
 }
 
 /// Reads a scene from the text of `file`, applies assignments, and reads its mesh from `folder`.

@@ -12,21 +12,21 @@ use crate::files::rust_files;
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_391),
     ("study", &["src/study"], 7_028),
-    ("model", &["src/model", "src/scene"], 3_380),
+    ("model", &["src/model", "src/scene"], 3_306),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_822),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_568),
+    ("cli", &["src/cli"], 2_567),
     ("dynamics", &["src/dynamics"], 1_999),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
-    ("the rest of src", &["src"], 5_153),
+    ("the rest of src", &["src"], 5_152),
     ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 63_424;
+const SRC: usize = 63_348;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -246,14 +246,14 @@ impl NumberField {
         if self.whole && value.fract() != 0.0 {
             return Err(sentence!("expected a whole number, got %{got}", got = number(value)));
         }
-        self.limit.check(value).map_err(|error| (&error).into())
+        self.limit.check(value)
     }
 }
 
 /// Reads a number within a limit; the error says what was expected.
 pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
     match parse(text, limit.unit) {
-        Ok(number) if number.is_finite() => limit.check(number).map(|()| number).map_err(|error| (&error).into()),
+        Ok(number) if number.is_finite() => limit.check(number).map(|()| number),
         Ok(_) | Err(UnitError { has_number: false, .. }) => {
             let example = editable(12.0, limit.unit);
             Err(sentence!(
