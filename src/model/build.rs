@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{
     Analysis, Axis, Beam, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
-    MethodKind, Place, Plane, Probe, Pulse, Scene, SectionLine, SolverSettings, Start, Support,
+    MethodKind, Place, Plane, Probe, Pulse, Scene, SectionLine, Start, Support,
 };
 use crate::format::{engineering, rounded};
 
@@ -47,21 +47,7 @@ impl Scene {
     /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
     #[must_use]
     pub fn named(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            about: String::new(),
-            analysis: Analysis::default(),
-            beam: None,
-            mesh: None,
-            material: Material::default(),
-            supports: Vec::new(),
-            loads: Vec::new(),
-            probes: Vec::new(),
-            sections: Vec::new(),
-            solver: SolverSettings::default(),
-            dynamics: DynamicsSettings::default(),
-            start: Start::default(),
-        }
+        Self { name: name.into(), ..Self::default() }
     }
 
     /// Returns a rubber rectangle [0, length] × [−height/2, height/2], m, on one row of six-node triangles, without
@@ -81,14 +67,7 @@ impl Scene {
         // The cells are about as long as high.
         let along = (length / height).round().clamp(4.0, 100.0);
         let along = if along.is_finite() { along as u32 } else { 4 };
-        let beam = Beam {
-            length,
-            height,
-            rise: 0.0,
-            cells: [along, 1],
-            element: ElementKind::T6,
-            diagonals: Diagonals::default(),
-        };
+        let beam = Beam { length, height, cells: [along, 1], element: ElementKind::T6, ..Beam::default() };
         Self { beam: Some(beam), ..Self::named("Beam") }
     }
 
@@ -595,12 +574,6 @@ impl Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            young: 1e6,
-            poisson: 0.3,
-            density: super::default_density(),
-            thickness: super::default_thickness(),
-            plane: Plane::default(),
-        }
+        Self { young: 1e6, poisson: 0.3, density: 1000.0, thickness: 1.0, plane: Plane::default() }
     }
 }

@@ -19,7 +19,7 @@ pub use build::{LoadId, SupportId};
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, SceneError};
 pub use place::{Axis, Load, Place, Probe, SectionLine, Support};
-pub(crate) use table::{check, missing};
+pub(crate) use table::{check, check_required};
 #[cfg(feature = "cli")]
 pub(crate) use table::{keys_of, name_of};
 
@@ -27,46 +27,41 @@ use crate::format::number;
 use crate::sentence::sentence;
 
 /// Complete description of a simulation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct Scene {
     /// Title.
     pub name: String,
     /// One sentence for the scene list.
-    #[serde(default)]
     pub about: String,
     /// Equilibrium or motion.
-    #[serde(default)]
     pub analysis: Analysis,
     /// Meshed rectangle; given exactly if `mesh` is not.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub beam: Option<Beam>,
     /// Mesh from a file; given exactly if `beam` is not.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshFile>,
     /// Elastic material.
     pub material: Material,
     /// Supports, which fix nodes.
-    #[serde(rename = "support", default)]
+    #[serde(rename = "support")]
     pub supports: Vec<Support>,
     /// Forces, moments and gravity.
-    #[serde(rename = "load", default)]
+    #[serde(rename = "load")]
     pub loads: Vec<Load>,
     /// Places whose displacements are measured.
-    #[serde(rename = "probe", default)]
+    #[serde(rename = "probe")]
     pub probes: Vec<Probe>,
     /// Lines along which the body is cut to print its section forces.
-    #[serde(rename = "section", default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "section", skip_serializing_if = "Vec::is_empty")]
     pub sections: Vec<SectionLine>,
     /// Settings of the equilibrium solver.
-    #[serde(default)]
     pub solver: SolverSettings,
     /// Time integration settings of dynamic scenes.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub dynamics: DynamicsSettings,
     /// Initial velocities of dynamic scenes.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub start: Start,
 }
 
@@ -94,8 +89,8 @@ pub enum Analysis {
 /// assert_eq!(beam.point(0.5, 0.5), [5.0, 0.5]); // the middle of the upper side
 /// # Ok::<(), &str>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct Beam {
     /// Length, m.
@@ -103,15 +98,13 @@ pub struct Beam {
     /// Height, m.
     pub height: f64,
     /// Rise of the axis in the middle, along a parabola from end to end, m: a shallow arch, stress-free.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub rise: f64,
     /// Cells along and across; each is a quadrilateral, or is cut into two triangles.
     pub cells: [u32; 2],
     /// Element type of every cell, or of each of its triangles.
-    #[serde(default)]
     pub element: ElementKind,
     /// Direction in which cells are cut into triangles; quadrilaterals are not cut.
-    #[serde(default)]
     pub diagonals: Diagonals,
 }
 
@@ -123,10 +116,8 @@ pub struct MeshFile {
     /// Path of the file, relative to the scene file. Its physical curves name the edges.
     pub file: String,
     /// Element type; if `None`, the type in the file is used, which is determined when the scene is opened.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub element: Option<ElementKind>,
     /// Metres per unit of the file; `None` means 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
     /// Contents of the file, read when the scene is opened.
     #[serde(skip)]
@@ -161,34 +152,23 @@ pub enum Diagonals {
 
 /// Linear elastic, isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct Material {
     /// Young's modulus E, Pa.
     pub young: f64,
     /// Poisson ratio ν.
     pub poisson: f64,
     /// Density ρ, kg/m³; used for gravity and motion.
-    #[serde(default = "default_density")]
     pub density: f64,
     /// Thickness t out of the plane, m.
-    #[serde(default = "default_thickness")]
     pub thickness: f64,
     /// Plane stress or plane strain.
-    #[serde(default)]
     pub plane: Plane,
 }
 
 /// Returns `true` for the default value of a type, such as 0; predicate for keys that scene files then omit.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
-}
-
-fn default_density() -> f64 {
-    1000.0
-}
-
-fn default_thickness() -> f64 {
-    1.0
 }
 
 /// Conditions out of the plane.

@@ -278,21 +278,19 @@ impl Load {
 // Tables as written in TOML. `#[serde(tag)]` and `#[serde(flatten)]` are not used, because they lose the line of an
 // error.
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 struct SupportTable {
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     edge: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     acts_on: ActsOn,
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     width: f64,
     fix: Vec<Axis>,
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     displacement: [f64; 2],
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     turn: f64,
 }
 
@@ -319,9 +317,7 @@ impl From<Support> for SupportTable {
 #[serde(deny_unknown_fields)]
 struct ProbeTable {
     name: String,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     edge: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
 }
 
@@ -340,31 +336,26 @@ impl From<Probe> for ProbeTable {
     }
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 struct LoadTable {
     kind: LoadKind,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     edge: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     at: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     acts_on: ActsOn,
-    #[serde(skip_serializing_if = "is_default", default)]
+    #[serde(skip_serializing_if = "is_default")]
     width: f64,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     force: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     acceleration: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     moment: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
     pulse: Option<Pulse>,
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum LoadKind {
+    #[default]
     Force,
     Gravity,
     Moment,
@@ -428,28 +419,19 @@ impl TryFrom<LoadTable> for Load {
 
 impl From<Load> for LoadTable {
     fn from(load: Load) -> Self {
-        let pulse = load.pulse();
-        let empty = |kind| Self {
-            kind,
-            edge: None,
-            at: None,
-            acts_on: ActsOn::Node,
-            width: 0.0,
-            force: None,
-            acceleration: None,
-            moment: None,
-            pulse,
-        };
+        let table = Self { pulse: load.pulse(), ..Self::default() };
         match load {
             Load::Force { place, at_point, width, force, .. } => {
                 let (edge, at) = place.keys();
                 let (acts_on, width) = ActsOn::of(at_point, width, at);
-                Self { acts_on, width, edge, at, force: Some(force), ..empty(LoadKind::Force) }
+                Self { edge, at, acts_on, width, force: Some(force), ..table }
             }
             Load::Moment { edge, moment, .. } => {
-                Self { edge: Some(edge), moment: Some(moment), ..empty(LoadKind::Moment) }
+                Self { kind: LoadKind::Moment, edge: Some(edge), moment: Some(moment), ..table }
             }
-            Load::Gravity { acceleration, .. } => Self { acceleration: Some(acceleration), ..empty(LoadKind::Gravity) },
+            Load::Gravity { acceleration, .. } => {
+                Self { kind: LoadKind::Gravity, acceleration: Some(acceleration), ..table }
+            }
         }
     }
 }

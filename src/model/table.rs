@@ -7,38 +7,69 @@ use super::keys::{KEYS, Key, KeyKind, Need};
 use super::units;
 use crate::sentence::{Sentence, sentence};
 
+/// Adds a table and those in it, each after the one that contains it, in the order of [`KEYS`], with its place there and
+/// the one with indices.
+fn collect<'a>(
+    table: &'a Table,
+    parent: &'static str,
+    place: &str,
+    tables: &mut Vec<(&'a Table, &'static str, String)>,
+) {
+    tables.push((table, parent, place.to_owned()));
+    for key in keys_of(parent) {
+        let place = format!("{place}{}.", name_of(key));
+        match table.get(name_of(key)) {
+            Some(Value::Table(table)) => collect(table, key.path, &place, tables),
+            Some(Value::Array(items)) => {
+                let inner = items.iter().enumerate().filter_map(|(i, item)| Some((i, item.as_table()?)));
+                inner.for_each(|(i, table)| collect(table, key.path, &format!("{place}{i}."), tables));
+            }
+            _ => {}
+        }
+    }
+}
+
 /// Checks that every key of a scene is in [`KEYS`], and its value of the kind and in the range that are said there. The
 /// parser checks the types of numbers.
 ///
 /// # Errors
 /// The first other key, as in `--set`, or key with another value.
-pub(crate) fn check(table: &Table) -> Result<(), Invalid> {
-    check_table(table, "", "")
-}
-
-/// Checks the keys of a table: `parent` is its place in [`KEYS`], `place` the one with indices.
-fn check_table(table: &Table, parent: &str, place: &str) -> Result<(), Invalid> {
-    let known: Vec<&Key> = keys_of(parent).collect();
-    table.iter().try_for_each(|(name, value)| {
-        let place = || if place.is_empty() { name.clone() } else { format!("{place}.{name}") };
-        let Some(key) = known.iter().find(|key| name_of(key) == name) else {
-            let known: Vec<&str> = known.iter().map(|key| name_of(key)).collect();
-            return Err(Invalid::new(place(), format!("unknown key, expected one of {}", known.join(", "))));
+pub(crate) fn check(scene: &Table) -> Result<(), Invalid> {
+    let mut tables = Vec::new();
+    collect(scene, "", "", &mut tables);
+    let mut values = tables.iter().flat_map(|(table, parent, place)| table.iter().map(move |v| (v, *parent, place)));
+    values.try_for_each(|((name, value), parent, place)| {
+        let place = format!("{place}{name}");
+        let Some(key) = keys_of(parent).find(|key| name_of(key) == name) else {
+            let known: Vec<&str> = keys_of(parent).map(name_of).collect();
+            return Err(Invalid::new(place, format!("unknown key, expected one of {}", known.join(", "))));
         };
         let checked = match expected(key, value) {
             Some(expected) => Err(format!("expected {expected}, got {}", shown(value)).into()),
             None => check_range(key.kind, value),
         };
-        checked.map_err(|message| Invalid::new(place(), message))?;
-        match value {
-            Value::Table(table) => check_table(table, key.path, &place()),
-            Value::Array(items) => items.iter().enumerate().try_for_each(|(i, item)| match item {
-                Value::Table(table) => check_table(table, key.path, &format!("{}.{i}", place())),
-                _ => Ok(()),
-            }),
-            _ => Ok(()),
-        }
+        checked.map_err(|message| Invalid::new(place, message))
     })
+}
+
+/// Checks that no table of a scene lacks a key that it needs.
+///
+/// # Errors
+/// The first missing key, as in `--set`; those of the scene itself come last.
+pub(crate) fn check_required(scene: &Table) -> Result<(), Invalid> {
+    let mut tables = Vec::new();
+    collect(scene, "", "", &mut tables);
+    tables.rotate_left(1);
+    tables.iter().flat_map(|placed| keys_of(placed.1).map(move |key| (placed, key))).try_for_each(
+        |((table, _, place), key)| match key.need {
+            Need::Required(description) if !table.contains_key(name_of(key)) => {
+                let expected = units::quantity_of(key.path).unwrap_or_else(|| description.into());
+                let message = sentence!("expected %{what}, got nothing", what = expected);
+                Err(Invalid::new(format!("{place}{}", name_of(key)), message))
+            }
+            _ => Ok(()),
+        },
+    )
 }
 
 /// Checks the numbers of a value, of a vector its length.
@@ -111,33 +142,4 @@ pub(crate) fn keys_of(path: &str) -> impl Iterator<Item = &'static Key> {
 /// Returns the name of a key in its table.
 pub(crate) fn name_of(key: &Key) -> &'static str {
     key.path.rsplit('.').next().unwrap_or_default()
-}
-
-/// Returns the required key that a table lacks, if the parser's message says so.
-pub(crate) fn missing(table: &Table, message: &str) -> Option<Invalid> {
-    let field = message.strip_prefix("missing field `")?.strip_suffix('`')?;
-    let scene = Value::Table(table.clone());
-    // The parser checks the keys of the scene itself last.
-    let (outer, inner): (Vec<&Key>, Vec<&Key>) = KEYS.iter().partition(|key| !key.path.contains('.'));
-    inner.into_iter().chain(outer).filter(|key| name_of(key) == field).find_map(|key| {
-        let Need::Required(description) = key.need else { return None };
-        let parts: Vec<&str> = key.path.split('.').collect();
-        let place = place_without(&scene, &parts)?;
-        let expected = units::quantity_of(key.path).unwrap_or_else(|| description.into());
-        Some(Invalid::new(place, sentence!("expected %{what}, got nothing", what = expected)))
-    })
-}
-
-/// Returns the path, as in `--set`, of the first table that exists but lacks the key.
-fn place_without(value: &Value, key: &[&str]) -> Option<String> {
-    match (value, key) {
-        (Value::Array(items), _) => {
-            items.iter().enumerate().find_map(|(i, item)| Some(format!("{i}.{}", place_without(item, key)?)))
-        }
-        (Value::Table(table), [last]) => (!table.contains_key(*last)).then(|| (*last).to_owned()),
-        (Value::Table(table), [first, rest @ ..]) => {
-            Some(format!("{first}.{}", place_without(table.get(*first)?, rest)?))
-        }
-        _ => None,
-    }
 }

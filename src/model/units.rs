@@ -2,6 +2,7 @@
 //! Results are in the unit of the value's [`limits`](super::limits).
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use thiserror::Error;
 use toml::Spanned;
@@ -359,9 +360,7 @@ pub(crate) fn plain<'a>(text: &'a str, rename: impl Fn(&str) -> String) -> Resul
     Ok(Cow::Owned(plain))
 }
 
-type FoundUnits = Vec<(std::ops::Range<usize>, f64)>;
-
-fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut FoundUnits) -> Result<(), Invalid> {
+fn collect(key: &str, value: &Spanned<DeValue<'_>>, found: &mut Vec<(Range<usize>, f64)>) -> Result<(), Invalid> {
     match value.get_ref() {
         DeValue::String(text) => {
             if let Some(number) = number_for(key, text) {

@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use super::mesh::read_mesh;
 use super::{Invalid, Scene, SceneError, registry, units};
-use crate::model::{check, missing};
+use crate::model::{check, check_required};
 
 /// Largest accepted scene file, bytes; checked before reading.
 const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -179,13 +179,14 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
     let text = plain.as_ref();
     let syntax = |e: toml::de::Error| {
         let (file, line) = (file.map(Path::to_owned), e.span().map(|span| line_of(text, span.start)));
-        match toml::from_str(text).ok().and_then(|table| missing(&table, e.message())) {
-            Some(invalid) => SceneError::Invalid { file, line, invalid },
-            None => SceneError::Syntax { file, line, message: syntax_message(text, &e) },
-        }
+        SceneError::Syntax { file, line, message: syntax_message(text, &e) }
     };
     let mut table: Table = toml::from_str(text).map_err(syntax)?;
     check(&table).map_err(|invalid| located(text, file, invalid))?;
+    check_required(&table).map_err(|invalid| {
+        let line = line_of_key(text, &invalid.key).or(Some(1));
+        SceneError::Invalid { file: file.map(Path::to_owned), line, invalid }
+    })?;
     // Read the file without assignments first, so that its own errors have lines.
     let mut scene: Scene = toml::from_str(text).map_err(syntax)?;
     for assignment in assignments {
@@ -194,11 +195,10 @@ fn parse(text: &str, file: Option<&Path>, folder: Option<&Path>, assignments: &[
         check(&table).map_err(|invalid| {
             failed(if same_key(&key, &invalid.key) { invalid.message() } else { invalid.to_string() })
         })?;
-        scene = Scene::deserialize_table(&table).map_err(|e| {
-            let missing = missing(&table, e.message()).map(|invalid| invalid.to_string());
-            let message = missing.unwrap_or_else(|| e.message().trim().replace('\n', ", "));
-            failed(format!("{message} (got {key} = {value})"))
-        })?;
+        let parsed = check_required(&table).map_err(|invalid| invalid.to_string()).and_then(|()| {
+            table.clone().try_into().map_err(|e: toml::de::Error| e.message().trim().replace('\n', ", "))
+        });
+        scene = parsed.map_err(|message| failed(format!("{message} (got {key} = {value})")))?;
     }
     let valid = scene.validate().and_then(|()| folder.map_or(Ok(()), |folder| read_mesh(&mut scene, folder)));
     valid.map_err(|invalid| blame(text, file, assignments, invalid))?;
@@ -230,8 +230,7 @@ fn blame(text: &str, file: Option<&Path>, assignments: &[String], invalid: Inval
 
 /// Returns an error with the line of the invalid key, if the key is written in the text.
 fn located(text: &str, file: Option<&Path>, invalid: Invalid) -> SceneError {
-    let line = DeTable::parse(text).ok().and_then(|table| find_line(text, table.get_ref(), &invalid.key));
-    SceneError::Invalid { file: file.map(Path::to_owned), line, invalid }
+    SceneError::Invalid { file: file.map(Path::to_owned), line: line_of_key(text, &invalid.key), invalid }
 }
 
 fn same_key(typed: &str, key: &str) -> bool {
@@ -239,12 +238,6 @@ fn same_key(typed: &str, key: &str) -> bool {
     typed == key
         || typed.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'))
         || key.strip_prefix(typed).is_some_and(|rest| rest.starts_with('.'))
-}
-
-impl Scene {
-    fn deserialize_table(table: &Table) -> Result<Self, toml::de::Error> {
-        Value::Table(table.clone()).try_into()
-    }
 }
 
 /// Sets `a.0.b=value` in the table; returns the reason if the assignment cannot be applied. A value that is not TOML is
@@ -297,10 +290,11 @@ fn value(key: &str, text: &str) -> Result<Value, Invalid> {
 }
 
 /// Returns the line of the longest prefix of `key` that is written in the file.
-fn find_line(text: &str, table: &DeTable<'_>, key: &str) -> Option<usize> {
+fn line_of_key(text: &str, key: &str) -> Option<usize> {
+    let table = DeTable::parse(text).ok()?;
     let mut parts = key.split('.');
     let first = parts.next()?;
-    let (written, mut value) = table.iter().find(|(k, _)| k.get_ref() == first)?;
+    let (written, mut value) = table.get_ref().iter().find(|(k, _)| k.get_ref() == first)?;
     let mut line = Some(line_of(text, written.span().start));
     for part in parts {
         let next = match value.get_ref() {

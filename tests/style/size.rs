@@ -12,7 +12,7 @@ use crate::files::rust_files;
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 27_391),
     ("study", &["src/study"], 7_028),
-    ("model", &["src/model", "src/scene"], 3_306),
+    ("model", &["src/model", "src/scene"], 3_236),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_822),
     ("assembly", &["src/assembly"], 3_055),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 63_348;
+const SRC: usize = 63_278;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
