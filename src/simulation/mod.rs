@@ -12,7 +12,7 @@ use self::search::Search;
 use crate::assembly::{
     Change, Forces, Kinematics, Mass, Matrix, MouseSpring, NodalProbe, Problem, System, SystemError,
 };
-use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
+use crate::dynamics::{Counts, Ledger, Momentum, MotionReport, StopReason};
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
@@ -179,15 +179,17 @@ pub struct MotionResult {
 pub struct Simulation {
     body: Body,
     process: Process,
-    status: Status,
 }
 
-/// Scene with its equations and current state.
+/// Scene with its equations, current state, status and computing times.
 #[derive(Clone, Debug)]
 struct Body {
     scene: Scene,
     problem: Problem,
     state: State,
+    status: Status,
+    timings: Timings,
+    last_iteration: Timings,
 }
 
 impl Body {
@@ -255,30 +257,16 @@ impl Simulation {
 
     fn with_problem(scene: Scene, problem: Problem) -> Result<Self, SimulationError> {
         let state = start_of(&scene, &problem);
-        let mut body = Body { scene, problem, state };
+        let (status, timings) = (Status::Running, Timings::default());
+        let mut body = Body { scene, problem, state, status, timings, last_iteration: timings };
         let process = Process::new(&mut body)?;
-        let mut simulation = Self { body, process, status: Status::Running };
-        simulation.update_status();
-        Ok(simulation)
-    }
-
-    fn update_status(&mut self) {
-        self.status = match &self.process {
-            Process::Search(search) => search.outcome.status.clone(),
-            Process::Motion(motion) => motion.status(&self.body.scene, &self.body.state),
-        };
+        Ok(Self { body, process })
     }
 
     /// Returns to the initial state of the scene: at rest, or with its initial velocity.
     pub fn reset(&mut self) {
-        match &mut self.process {
-            Process::Search(search) => {
-                self.body.state.reset();
-                search.restart(&mut self.body, Restart::AtRest);
-            }
-            Process::Motion(motion) => motion.reset(&mut self.body),
-        }
-        self.update_status();
+        self.body.state = start_of(&self.body.scene, &self.body.problem);
+        self.begin();
     }
 
     /// Restarts from this displacement, m, one vector per node, with zero velocity; fixed components are set to the
@@ -333,7 +321,6 @@ impl Simulation {
             Process::Search(_) => return self.restore(moment.state()),
             Process::Motion(motion) => motion.return_to(&mut self.body, moment),
         }
-        self.update_status();
         Ok(())
     }
 
@@ -343,7 +330,6 @@ impl Simulation {
             Process::Search(search) => search.restart(&mut self.body, Restart::AtRest),
             Process::Motion(motion) => motion.begin(&mut self.body),
         }
-        self.update_status();
     }
 
     /// Changes the scene, recomputing only what has changed. The state is kept if the mesh is unchanged: a search
@@ -355,7 +341,7 @@ impl Simulation {
     /// # Errors
     /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
-        let Self { body, process, .. } = self;
+        let Self { body, process } = self;
         let change = body.problem.update(scene)?;
         if change == Change::Mesh {
             *self = Self::with_problem(scene.clone(), body.problem.clone())?;
@@ -376,7 +362,6 @@ impl Simulation {
                 Process::Motion(motion) => motion.edit(body, &before, change)?,
             }
         }
-        self.update_status();
         Ok(())
     }
 
@@ -457,12 +442,12 @@ impl Simulation {
     /// at 5 Hz, and ten times the body's stiffness at the point. Its force is capped at an elongation of a quarter of the
     /// body's size, in a motion also at 0.4 E times thickness times the size of the element, so that no throw inverts it.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
-        let Body { scene, problem, state } = &mut self.body;
+        let Body { scene, problem, state, .. } = &mut self.body;
         let mass = Mass::new(problem.system(), scene.material.area_density()).total();
         let axial = scene.material.young * scene.material.thickness;
-        let most = match self.process {
-            Process::Search(_) => f64::INFINITY,
-            Process::Motion(_) => MouseSpring::strength(problem.system(), point, axial),
+        let most = match scene.analysis {
+            Analysis::Static => f64::INFINITY,
+            Analysis::Dynamic => MouseSpring::strength(problem.system(), point, axial),
         };
         let omega = std::f64::consts::TAU * SPRING_FREQUENCY;
         let mut stiffness = mass * omega * omega;
@@ -487,13 +472,10 @@ impl Simulation {
         if !is_finite(&[position]) {
             return Err(StateError::NotFinite { what: "position of the pointer" });
         }
-        let within = match self.process {
-            Process::Search(_) => 0.0,
-            Process::Motion(_) => self.body.scene.dynamics.time_step,
-        };
-        let now = self.body.state.time;
-        if let Some(spring) = self.body.problem.mouse_spring_mut() {
-            spring.lead(position, now, within);
+        let Body { scene, problem, state, .. } = &mut self.body;
+        let within = if scene.analysis == Analysis::Dynamic { scene.dynamics.time_step } else { 0.0 };
+        if let Some(spring) = problem.mouse_spring_mut() {
+            spring.lead(position, state.time, within);
             self.pulled(true);
         }
         Ok(())
@@ -523,7 +505,6 @@ impl Simulation {
             Process::Search(search) => search.pulled(&mut self.body, moved_only),
             Process::Motion(motion) => motion.pulled(&self.body),
         }
-        self.update_status();
     }
 
     /// Performs one iteration (factorize, solve, advance, linearize the new state), or one time step. A search does
@@ -533,8 +514,7 @@ impl Simulation {
             Process::Search(search) => search.step(&mut self.body),
             Process::Motion(motion) => motion.step(&mut self.body),
         }
-        self.update_status();
-        &self.status
+        &self.body.status
     }
 
     /// Returns `true` if another step would change nothing: the search has ended, or the motion has stopped or come to
@@ -543,24 +523,22 @@ impl Simulation {
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         match &self.process {
-            Process::Search(_) => self.status != Status::Running,
-            Process::Motion(motion) => {
-                matches!(self.status, Status::Stopped(_)) || motion.is_at_rest(&self.body.scene, &self.body.state)
-            }
+            Process::Search(_) => self.body.status != Status::Running,
+            Process::Motion(motion) => matches!(self.body.status, Status::Stopped(_)) || motion.is_at_rest(&self.body),
         }
     }
 
     /// Steps until the status is final: to the equilibrium, or to the end of the scene's duration.
     pub fn solve(&mut self) -> &Status {
-        while self.status == Status::Running {
+        while self.body.status == Status::Running {
             self.step();
         }
-        &self.status
+        &self.body.status
     }
 
     /// Steps as [`Self::solve`], calls `watch` before each step, and ends early if it breaks.
     pub(crate) fn solve_watched(&mut self, watch: &mut dyn FnMut(&Self) -> ControlFlow<()>) -> ControlFlow<()> {
-        while self.status == Status::Running {
+        while self.body.status == Status::Running {
             watch(self)?;
             self.step();
         }
@@ -570,10 +548,10 @@ impl Simulation {
     /// Interrupts a search or a motion, leaving the best available state.
     pub fn stop(&mut self) {
         match &mut self.process {
+            _ if self.body.status != Status::Running => {}
             Process::Search(search) => search.stop(&mut self.body),
-            Process::Motion(motion) => motion.stop(&self.body),
+            Process::Motion(_) => self.body.status = Status::Stopped(StopReason::Interrupted),
         }
-        self.update_status();
     }
 
     /// Computes properties of the final state that do not depend on the method, at the cost of some solves; the result
@@ -592,7 +570,7 @@ impl Simulation {
     /// ```
     pub fn certify(&mut self) -> Certificate {
         match &mut self.process {
-            Process::Search(search) => search.certify(&self.body.problem, &self.body.state),
+            Process::Search(search) => search.certify(&mut self.body),
             Process::Motion(_) => Certificate::default(),
         }
     }
@@ -646,7 +624,7 @@ impl Simulation {
         let supports = self.support_reactions();
         Solution {
             dofs: problem.system().dofs(),
-            status: self.status.clone(),
+            status: self.body.status.clone(),
             iterations: self.iterations(),
             load_steps: search.map_or(1, Equilibrium::load_steps),
             load_factor,
@@ -705,7 +683,10 @@ impl Simulation {
 
     /// Returns the strain measure of the current state.
     pub(crate) fn kinematics(&self) -> Kinematics {
-        if self.is_linear() { Kinematics::Linear } else { Kinematics::Corotated }
+        match &self.process {
+            Process::Search(search) => search.kinematics(),
+            Process::Motion(motion) => motion.kinematics(),
+        }
     }
 
     /// Replaces `values` by the field at every quadrature point, in [`Field::unit`]: element by element in the mesh's
@@ -828,7 +809,7 @@ impl Simulation {
     pub fn forces(&self) -> &Forces {
         match &self.process {
             Process::Search(search) => &search.forces,
-            Process::Motion(motion) => motion.forces(),
+            Process::Motion(motion) => &motion.memory.forces,
         }
     }
 
@@ -842,24 +823,21 @@ impl Simulation {
     /// elements.
     #[must_use]
     pub fn is_linear(&self) -> bool {
-        match &self.process {
-            Process::Search(search) => search.kinematics() == Kinematics::Linear,
-            Process::Motion(motion) => motion.is_linear(),
-        }
+        self.kinematics() == Kinematics::Linear
     }
 
     /// Returns the status of the simulation.
     #[must_use]
     pub fn status(&self) -> &Status {
-        &self.status
+        &self.body.status
     }
 
     /// Returns the number of solves since the last edit, or since the start of the motion.
     #[must_use]
     pub fn iterations(&self) -> u32 {
         match &self.process {
-            Process::Search(search) => search.outcome.iterations,
-            Process::Motion(motion) => u32::try_from(motion.counts().solves).unwrap_or(u32::MAX),
+            Process::Search(search) => search.iterations,
+            Process::Motion(motion) => u32::try_from(motion.counts.solves).unwrap_or(u32::MAX),
         }
     }
 
@@ -869,17 +847,14 @@ impl Simulation {
     pub fn residual(&self) -> f64 {
         match &self.process {
             Process::Search(search) => search.residual(),
-            Process::Motion(motion) => motion.residual(),
+            Process::Motion(motion) => motion.memory.residual,
         }
     }
 
     /// Returns the computing time of the last iteration or time step, by stage.
     #[must_use]
     pub fn last_iteration(&self) -> &Timings {
-        match &self.process {
-            Process::Search(search) => &search.outcome.last_iteration,
-            Process::Motion(motion) => motion.last_step(),
-        }
+        &self.body.last_iteration
     }
 
     /// Returns the computing time of all iterations since the last edit, or of all time steps, by stage.
@@ -895,10 +870,7 @@ impl Simulation {
     /// ```
     #[must_use]
     pub fn timings(&self) -> &Timings {
-        match &self.process {
-            Process::Search(search) => &search.outcome.timings,
-            Process::Motion(motion) => motion.timings(),
-        }
+        &self.body.timings
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Momentum, MotionReport, Solves, StageSolver, Step,
+    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, MotionReport, Solves, StageSolver, Step,
     StepEnergy, StepError, StopReason, critical_step,
 };
 use crate::element::StrainRate;
@@ -37,25 +37,22 @@ const QUIET_STEPS: u32 = 10;
 /// Time stepping of a body: work memory, energies and counts.
 #[derive(Debug)]
 pub(super) struct TimeStepping {
-    mass: Mass,
-    memory: Memory,
+    pub(super) mass: Mass,
+    pub(super) memory: Memory,
     start: State,
     middle: State,
-    counts: Counts,
+    pub(super) counts: Counts,
     method: MotionMethod,
     linear: LinearTheory,
-    report: MotionReport,
+    pub(super) report: MotionReport,
     pub(super) ledger: Ledger,
     keeps_ledger: bool,
     /// `true` if steps are checked for spurious energy. A mouse spring exerts larger forces on few nodes than loads do,
     /// so that a step with a single solve per stage can be inaccurate.
     is_guarded: bool,
-    stopped: Option<StopReason>,
     /// Number of successive steps in which no node moved.
     quiet_steps: u32,
     pub(super) critical_step: Option<f64>,
-    timings: Timings,
-    last_step: Timings,
 }
 
 /// Snapshot of a motion: state, energies and counts. [`Simulation::return_to`](crate::Simulation::return_to) returns to it.
@@ -107,7 +104,7 @@ impl Moment {
 impl TimeStepping {
     /// Returns a motion that starts from the current state and velocity.
     pub(super) fn new(body: &mut Body) -> Result<Self, SimulationError> {
-        let Body { scene, problem, state } = body;
+        let Body { scene, problem, state, .. } = body;
         let method = scene.solver.method.entry().motion;
         let mass = Mass::new(problem.system(), scene.material.area_density());
         let mut motion = Self {
@@ -121,11 +118,8 @@ impl TimeStepping {
             ledger: Ledger::default(),
             keeps_ledger: true,
             is_guarded: false,
-            stopped: None,
             quiet_steps: 0,
             critical_step: None,
-            timings: Timings::default(),
-            last_step: Timings::default(),
             mass,
         };
         motion.begin(body);
@@ -137,7 +131,7 @@ impl TimeStepping {
         self.linear.invalidate();
         body.problem.system().update_rotations(&mut body.state, self.kinematics());
         self.begin_steps(body);
-        let Body { scene, problem, state } = body;
+        let Body { scene, problem, state, .. } = body;
         self.counts = Counts::default();
         self.report = MotionReport::default();
         self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
@@ -161,21 +155,19 @@ impl TimeStepping {
 
     /// Discards all data of previous steps.
     fn begin_steps(&mut self, body: &mut Body) {
-        let Body { problem, state, .. } = body;
         // Results must not depend on earlier steps.
         self.memory.corrector.invalidate();
         self.memory.residual = 0.0;
-        problem.set_time(state.time);
-        self.stopped = None;
+        body.problem.set_time(body.state.time);
         self.quiet_steps = 0;
-        self.is_guarded = problem.mouse_spring().is_some();
-        self.timings = Timings::default();
-        self.last_step = Timings::default();
+        self.is_guarded = body.problem.mouse_spring().is_some();
+        (body.timings, body.last_iteration) = Default::default();
+        go_on(body);
     }
 
     /// Continues after an edit; `before` is the previous scene. Displacement and velocity are kept.
     pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SimulationError> {
-        let Body { scene, problem, state } = body;
+        let Body { scene, problem, state, .. } = body;
         self.method = scene.solver.method.entry().motion;
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
@@ -189,7 +181,7 @@ impl TimeStepping {
         self.linear.invalidate();
         let fixed_stay = problem.system().pattern().are_fixed_at_rest(&state.displacement);
         if !(fixed_stay && state.is_finite()) {
-            start(scene, problem, &self.mass, state);
+            *state = start_of(scene, problem);
             self.begin(body);
             return Ok(());
         }
@@ -197,7 +189,6 @@ impl TimeStepping {
         problem.system().update_rotations(state, self.kinematics());
         problem.set_time(state.time);
         state.knows_net_force = false;
-        self.stopped = None;
         self.quiet_steps = 0;
         if inertia(scene) == inertia(before) {
             self.ledger.edit(problem, &self.mass, inertia(scene), state);
@@ -207,13 +198,8 @@ impl TimeStepping {
         if change >= Change::Stiffness || mass_changes || scene.dynamics != before.dynamics {
             self.find_critical_step(scene, problem);
         }
+        go_on(body);
         Ok(())
-    }
-
-    /// Returns to the initial state of the scene.
-    pub(super) fn reset(&mut self, body: &mut Body) {
-        start(&body.scene, &body.problem, &self.mass, &mut body.state);
-        self.begin(body);
     }
 
     fn find_critical_step(&mut self, scene: &Scene, problem: &Problem) {
@@ -223,11 +209,11 @@ impl TimeStepping {
 
     /// Performs a time step; a failed step is split into halves. Does nothing once the motion has stopped.
     pub(super) fn step(&mut self, body: &mut Body) {
-        if self.stopped.is_some() {
+        if matches!(body.status, Status::Stopped(_)) {
             return;
         }
         let (whole, end) = next_step(&body.scene.dynamics, body.state.time);
-        self.last_step = Timings::default();
+        body.last_iteration = Timings::default();
         let (mut halvings, mut left) = (0, 1_u32);
         let factorizations = self.counts.factorizations;
         while left > 0 {
@@ -241,7 +227,10 @@ impl TimeStepping {
                     // are handled by halving.
                     let gives_up = entry(&body.scene).is_explicit() && !self.is_guarded;
                     if halvings == MAX_HALVINGS || gives_up {
-                        self.stopped = Some(self.reason(error, part));
+                        body.status = Status::Stopped(match self.critical_step {
+                            Some(critical) => StopReason::Exploded { step: part, critical },
+                            None => StopReason::Step { step: part, error },
+                        });
                         break;
                     }
                     if halvings >= FIRM
@@ -258,6 +247,7 @@ impl TimeStepping {
         if left == 0 {
             // Use the exact end time instead of the rounded sum of the parts.
             body.state.time = end;
+            go_on(body);
             self.counts.steps += 1;
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
@@ -267,16 +257,16 @@ impl TimeStepping {
                 false => Decision::OldFactor,
             });
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
-                self.stopped = Some(self.reason_to_run_away(whole));
+                body.status = Status::Stopped(self.reason_to_run_away(whole));
             }
         }
-        self.timings.add(&self.last_step);
+        body.timings.add(&body.last_iteration);
     }
 
     /// Records a step in the ledger; fails if the ledger shows spurious energy.
     fn record(&mut self, energies: &StepEnergy, body: &Body) -> Result<(), StepError> {
         if self.records_energy() {
-            let (Body { scene, problem, state }, mut ledger) = (body, self.ledger);
+            let (Body { scene, problem, state, .. }, mut ledger) = (body, self.ledger);
             ledger.record(energies, problem, &self.mass, inertia(scene), state);
             if self.is_guarded && ledger.has_gained_since(&self.ledger, MAX_ADDED) {
                 return Err(StepError::AddedEnergy);
@@ -292,35 +282,37 @@ impl TimeStepping {
 
     /// Performs a step of length h; `auto` uses linear theory if it is accurate enough.
     fn take_step(&mut self, body: &mut Body, h: f64) -> Result<StepEnergy, StepError> {
-        let asked = asked_error(&body.scene);
-        let decides = self.decides(&body.scene);
-        if decides && body.problem.mouse_spring().is_none() && self.linear.is_worth_a_try(&body.state, asked) {
-            let was_in_use = self.linear.is_in_use();
+        let (asked, was_in_use) = (asked_error(&body.scene), self.linear.is_in_use());
+        let decides = self.decides(&body.scene) && body.problem.mouse_spring().is_none();
+        if decides && self.linear.is_worth_a_try(&body.state, asked) {
             if !was_in_use {
                 self.change_kinematics(body, Kinematics::Linear);
             }
             if let Ok(energies) = self.try_step(body, Kinematics::Linear, h)
                 && self.linear.accepts(&body.problem, &self.mass, [&self.start, &body.state], h, asked)?
             {
-                if !was_in_use && self.records_energy() {
-                    self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+                if !was_in_use {
+                    self.change_theory(body);
                 }
                 return Ok(energies);
             }
             body.state.copy_from(&self.start);
-            self.linear.leave();
-            self.change_kinematics(body, Kinematics::Corotated);
-            if was_in_use && self.records_energy() {
-                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
-            }
-        } else if self.linear.is_in_use() {
-            self.linear.leave();
-            self.change_kinematics(body, Kinematics::Corotated);
-            if self.records_energy() {
-                self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
-            }
+        } else if !was_in_use {
+            return self.try_step(body, self.kinematics(), h);
+        }
+        self.linear.leave();
+        self.change_kinematics(body, Kinematics::Corotated);
+        if was_in_use {
+            self.change_theory(body);
         }
         self.try_step(body, self.kinematics(), h)
+    }
+
+    /// Records that the step begins with another strain measure than the last one ended with.
+    fn change_theory(&mut self, body: &Body) {
+        if self.records_energy() {
+            self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+        }
     }
 
     /// Recomputes the start of a step with another strain measure.
@@ -332,7 +324,7 @@ impl TimeStepping {
 
     fn try_step(&mut self, body: &mut Body, kinematics: Kinematics, h: f64) -> Result<StepEnergy, StepError> {
         let records_energy = self.records_energy();
-        let Body { scene, problem, state } = body;
+        let Body { scene, problem, state, last_iteration, .. } = body;
         let settings = &scene.dynamics;
         let solves = match settings.iterations {
             0 => Solves::Tolerance(scene.solver.tolerance),
@@ -353,7 +345,7 @@ impl TimeStepping {
                 tolerance: scene.solver.tolerance,
                 memory: &mut self.memory,
                 counts: &mut self.counts,
-                timings: &mut self.last_step,
+                timings: last_iteration,
             },
             h,
             start: &self.start,
@@ -362,13 +354,6 @@ impl TimeStepping {
             records_energy,
         };
         (settings.integrator.entry().step)(&mut step)
-    }
-
-    fn reason(&self, error: StepError, part: f64) -> StopReason {
-        match self.critical_step {
-            Some(critical) => StopReason::Exploded { step: part, critical },
-            None => StopReason::Step { step: part, error },
-        }
     }
 
     /// Returns the reason why a node has moved too far: a step beyond the critical one, or one that adds energy.
@@ -381,39 +366,18 @@ impl TimeStepping {
         }
     }
 
-    fn kinematics(&self) -> Kinematics {
+    pub(super) fn kinematics(&self) -> Kinematics {
         let linear = self.method == MotionMethod::Linear || self.linear.is_in_use();
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// Returns `true` if the method is `auto`, which chooses how each step is solved.
-    fn decides(&self, scene: &Scene) -> bool {
+    pub(super) fn decides(&self, scene: &Scene) -> bool {
         self.method == MotionMethod::Adaptive && !entry(scene).is_explicit()
     }
 
-    /// Interrupts a motion that has not ended.
-    pub(super) fn stop(&mut self, body: &Body) {
-        if self.status(&body.scene, &body.state) == Status::Running {
-            self.stopped = Some(StopReason::Interrupted);
-        }
-    }
-
-    /// Returns `true` if strains are those of linear theory.
-    pub(super) fn is_linear(&self) -> bool {
-        self.kinematics() == Kinematics::Linear
-    }
-
-    pub(super) fn status(&self, scene: &Scene, state: &State) -> Status {
-        let settings = &scene.dynamics;
-        match &self.stopped {
-            Some(reason) => Status::Stopped(*reason),
-            None if state.time >= settings.duration => Status::Finished,
-            None => Status::Running,
-        }
-    }
-
     /// Returns `true` if nothing has moved for a while, and no pulse is to come.
-    pub(super) fn is_at_rest(&self, scene: &Scene, state: &State) -> bool {
+    pub(super) fn is_at_rest(&self, Body { scene, state, .. }: &Body) -> bool {
         let quiet = f64::from(self.quiet_steps) * scene.dynamics.time_step;
         let pulses_are_over = scene.loads.iter().filter_map(Load::pulse).all(|p| p.start + p.duration <= state.time);
         self.quiet_steps >= QUIET_STEPS && quiet >= QUIET && pulses_are_over
@@ -429,20 +393,11 @@ impl TimeStepping {
         self.memory.corrector.matrix_changes();
     }
 
-    /// Returns the residual of the last stage relative to the largest of its forces.
-    pub(super) fn residual(&self) -> f64 {
-        self.memory.residual
-    }
-
-    pub(super) fn forces(&self) -> &Forces {
-        &self.memory.forces
-    }
-
     /// Returns the forces and accelerations of the current state that sections balance, with this force of the mouse
     /// spring, N. Accelerations are those of the nodal forces, not differences of velocities, so that nothing but the state
     /// counts.
     pub(super) fn nodal_balance(&self, body: &Body, mouse_spring: Vector2<f64>) -> NodalBalance<'static> {
-        let Body { scene, problem, state } = body;
+        let Body { scene, problem, state, .. } = body;
         let DynamicsSettings { damping, integrator, time_step, .. } = scene.dynamics;
         let (system, mut forces) = (problem.system(), Forces::new(state.displacement.len()));
         problem.linearize(state, &mut forces, None);
@@ -474,32 +429,11 @@ impl TimeStepping {
         NodalBalance { load_factor: 1.0, residual: residual.into(), mouse_spring, motion }
     }
 
-    pub(super) fn timings(&self) -> &Timings {
-        &self.timings
-    }
-
-    pub(super) fn last_step(&self) -> &Timings {
-        &self.last_step
-    }
-
     pub(super) fn keep_ledger(&mut self, keep: bool, body: &Body) {
         if keep && !self.keeps_ledger {
             self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
         }
         self.keeps_ledger = keep;
-    }
-
-    pub(super) fn momentum(&self, body: &Body) -> Momentum {
-        Momentum::of(&body.problem, &self.mass, inertia(&body.scene), &body.state)
-    }
-
-    pub(super) fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    pub(super) fn auto_report(&self, scene: &Scene) -> Option<MotionReport> {
-        let Counts { solves, factorizations, .. } = self.counts;
-        self.decides(scene).then_some(MotionReport { solves, factorizations, ..self.report })
     }
 }
 
@@ -523,28 +457,27 @@ fn asked_error(scene: &Scene) -> f64 {
     0.01 * scene.solver.max_error_percent
 }
 
-fn inertia(scene: &Scene) -> Inertia {
+pub(super) fn inertia(scene: &Scene) -> Inertia {
     entry(scene).inertia
 }
 
-/// Sets a body to rest and to the initial velocity of the scene.
-fn start(scene: &Scene, problem: &Problem, mass: &Mass, state: &mut State) {
-    state.reset();
-    let Start { velocity, spin } = scene.start;
-    let nodes = problem.system().mesh().nodes();
+/// Sets the status of a motion that has not stopped.
+fn go_on(Body { scene, state, status, .. }: &mut Body) {
+    *status = if state.time >= scene.dynamics.duration { Status::Finished } else { Status::Running };
+}
+
+/// Returns the initial state of a scene: at rest, or with its initial velocity.
+pub(super) fn start_of(scene: &Scene, problem: &Problem) -> State {
+    let (mut state, Start { velocity, spin }) = (problem.system().at_rest(), scene.start);
+    if scene.start == Start::default() {
+        return state;
+    }
+    let (mass, nodes) = (Mass::new(problem.system(), scene.material.area_density()), problem.system().mesh().nodes());
     let centre = nodes.iter().zip(mass.lumped()).map(|(x, m)| x * *m).sum::<Vector2<f64>>() / mass.total();
     for (v, x) in state.velocity.iter_mut().zip(nodes) {
         let arm = x - centre;
         *v = Vector2::from(velocity) + Vector2::new(-arm.y, arm.x) * spin;
     }
     problem.system().pattern().stop_fixed(&mut state.velocity);
-}
-
-/// Returns the initial state of a scene.
-pub(super) fn start_of(scene: &Scene, problem: &Problem) -> State {
-    let mut state = problem.system().at_rest();
-    if scene.start != Start::default() {
-        start(scene, problem, &Mass::new(problem.system(), scene.material.area_density()), &mut state);
-    }
     state
 }

@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::{Body, Status};
-use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN, Problem};
+use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN};
 use crate::displacement::Displacement;
 use crate::element::UNIT;
 use crate::method::{Certificate, Criteria, Method, Reason, Restart, Verdict, Workspace, fixed_point_rho, is_stable};
 use crate::scene::{Scene, SolverSettings, Support};
 use crate::solver::SolverError;
-use crate::state::{State, largest};
+use crate::state::largest;
 use crate::step::{Iteration, Linearization, Operation, RotationUpdate};
 use crate::timings::{Timings, timed};
 
@@ -22,19 +22,10 @@ pub(super) struct Search {
     pub forces: Forces,
     /// Work memory, allocated on first use.
     workspace: Option<Workspace>,
-    pub outcome: SearchOutcome,
-}
-
-/// Progress and results of a search.
-#[derive(Clone, Debug, Default)]
-pub(super) struct SearchOutcome {
     pub iterations: u32,
-    pub status: Status,
     /// Bound of the residual's rounding error, if the solve ended at it.
-    floor: Option<f64>,
+    pub floor: Option<f64>,
     pub certificate: Option<Certificate>,
-    pub timings: Timings,
-    pub last_iteration: Timings,
 }
 
 fn criteria(settings: &SolverSettings, iterations: u32) -> Criteria {
@@ -53,7 +44,9 @@ impl Search {
             previous: (body.state.displacement.clone(), body.state.edge_angles.clone()),
             forces: Forces::new(body.state.displacement.len()),
             workspace: Some(Workspace::new(body.problem.system())?),
-            outcome: SearchOutcome::default(),
+            iterations: 0,
+            floor: None,
+            certificate: None,
         };
         search.restart(body, Restart::AtRest);
         Ok(search)
@@ -66,14 +59,14 @@ impl Search {
             previous: (Displacement::zeros(0), Vec::new()),
             forces: self.forces.clone(),
             workspace: None,
-            outcome: self.outcome.clone(),
+            ..*self
         }
     }
 
     /// Takes the work memory out of the search, allocating it if necessary; the search ends if that fails.
-    fn take_workspace(&mut self, problem: &Problem) -> Option<Workspace> {
-        let workspace = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
-        workspace.map_err(|error| self.outcome.status = Reason::Iteration(error.into()).into()).ok()
+    fn take_workspace(&mut self, body: &mut Body) -> Option<Workspace> {
+        let workspace = self.workspace.take().map_or_else(|| Workspace::new(body.problem.system()), Ok);
+        workspace.map_err(|error| body.status = Reason::Iteration(error.into()).into()).ok()
     }
 
     /// Marks the workspace's matrix as outdated.
@@ -101,8 +94,8 @@ impl Search {
         let same_method = body.scene.solver.method == before.solver.method;
         let same_unknowns = change <= Change::Stiffness;
         let keeps_state = same_method
-            && !matches!(self.outcome.status, Status::Diverged(_))
-            && self.can_follow(&before.supports, &body.scene.supports)
+            && !matches!(body.status, Status::Diverged(_))
+            && can_follow(&body.status, &before.supports, &body.scene.supports)
             && body.is_useful_start(same_unknowns);
         if !same_method {
             self.method = (body.scene.solver.method.entry().start)();
@@ -117,19 +110,11 @@ impl Search {
         Ok(())
     }
 
-    /// Returns `true` if the search can continue from the current state with changed supports: not if they rotate far,
-    /// or their rotation was not completed, because the number of full rotations would be unknown.
-    fn can_follow(&self, before: &[Support], after: &[Support]) -> bool {
-        let far = |angle: f64| angle.abs() > LARGEST_TURN;
-        let mut pairs = before.iter().zip(after);
-        before == after
-            || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && self.outcome.status != Status::Converged)
-    }
-
     /// Resets counts and times, and computes the forces of the current state.
     pub fn restart(&mut self, body: &mut Body, why: Restart) {
-        self.outcome = SearchOutcome::default();
-        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
+        (self.iterations, self.floor, self.certificate) = Default::default();
+        (body.status, body.timings, body.last_iteration) = Default::default();
+        let Some(mut workspace) = self.take_workspace(body) else { return };
         let (criteria, mut untimed) = (criteria(&body.scene.solver, 0), Timings::default());
         if why == Restart::AtRest {
             self.method.restart(why);
@@ -163,17 +148,17 @@ impl Search {
 
     /// Performs one step; does nothing once the status is final.
     pub fn step(&mut self, body: &mut Body) {
-        if self.outcome.status != Status::Running {
+        if body.status != Status::Running {
             return;
         }
-        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
-        let criteria = criteria(&body.scene.solver, self.outcome.iterations);
+        let Some(mut workspace) = self.take_workspace(body) else { return };
+        let criteria = criteria(&body.scene.solver, self.iterations);
         let mut timings = Timings::default();
         self.previous.0.copy_from(&body.state.displacement);
         self.previous.1.clone_from(&body.state.edge_angles);
         let mut it = iteration(body, &mut self.forces, &mut workspace, &mut timings);
         let planned = self.method.plan(&mut it, &criteria);
-        self.outcome.iterations += self.method.report().solves;
+        self.iterations += self.method.report().solves;
         let stepped = planned.and_then(|first| {
             it.step(first, self.method.linearization())?;
             settle(&mut it, self.method.linearization());
@@ -190,8 +175,8 @@ impl Search {
         };
         self.apply_verdict(verdict, body, &mut workspace, &mut timings);
         self.workspace = Some(workspace);
-        self.outcome.timings.add(&timings);
-        self.outcome.last_iteration = timings;
+        body.timings.add(&timings);
+        body.last_iteration = timings;
     }
 
     /// Carries out the method's decision.
@@ -201,14 +186,14 @@ impl Search {
             Verdict::Changed => {
                 relinearize(&mut iteration(body, &mut self.forces, workspace, timings), self.method.linearization())
             }
-            Verdict::Converged(floor) => (self.outcome.status, self.outcome.floor) = (Status::Converged, floor),
-            Verdict::Stop(reason) => self.outcome.status = reason.into(),
+            Verdict::Converged(floor) => (body.status, self.floor) = (Status::Converged, floor),
+            Verdict::Stop(reason) => body.status = reason.into(),
         }
         let solver = &body.scene.solver;
         let (most, enough) = (solver.max_iterations, solver.accept_after);
-        if self.outcome.status == Status::Running && enough != 0 && self.outcome.iterations >= enough {
+        if body.status == Status::Running && enough != 0 && self.iterations >= enough {
             self.end(body, workspace, Status::Accepted, timings);
-        } else if self.outcome.status == Status::Running && self.outcome.iterations >= most {
+        } else if body.status == Status::Running && self.iterations >= most {
             self.end(body, workspace, Reason::IterationLimit(most).into(), timings);
         }
     }
@@ -216,8 +201,8 @@ impl Search {
     /// Ends the search before convergence, and computes the residual under the whole load. An accepted result is kept;
     /// otherwise the method restores the best available state.
     fn end(&mut self, body: &mut Body, workspace: &mut Workspace, status: Status, timings: &mut Timings) {
-        self.outcome.status = status;
-        if self.outcome.status != Status::Accepted {
+        body.status = status;
+        if body.status != Status::Accepted {
             self.method.stop(&mut body.state);
         }
         let wanted = Linearization { tangent: None, load_factor: 1.0, ..self.method.linearization() };
@@ -226,43 +211,38 @@ impl Search {
 
     /// Interrupts a running search.
     pub fn stop(&mut self, body: &mut Body) {
-        if self.outcome.status != Status::Running {
-            return;
-        }
-        let Some(mut workspace) = self.take_workspace(&body.problem) else { return };
+        let Some(mut workspace) = self.take_workspace(body) else { return };
         self.end(body, &mut workspace, Reason::Interrupted.into(), &mut Timings::default());
         self.workspace = Some(workspace);
     }
 
-    /// Returns `true` if the state is an equilibrium of large rotations without a mouse spring.
-    pub fn can_be_certified(&self, problem: &Problem) -> bool {
-        problem.mouse_spring().is_none() && self.is_equilibrium() && self.kinematics() != Kinematics::Linear
+    /// Returns `true` if the state is an equilibrium of large rotations without a mouse spring: at the whole load, or at
+    /// the part of it that was reached.
+    pub fn can_be_certified(&self, Body { problem, status, .. }: &Body) -> bool {
+        let Linearization { kinematics, load_factor, .. } = self.method.linearization();
+        let reached = *status == Status::Converged || matches!(status, Status::NotConverged(_)) && load_factor < 1.0;
+        problem.mouse_spring().is_none() && reached && kinematics != Kinematics::Linear
     }
 
     /// Implements [`super::Simulation::certify`].
-    pub fn certify(&mut self, problem: &Problem, state: &State) -> Certificate {
-        if let Some(certificate) = self.outcome.certificate {
+    pub fn certify(&mut self, body: &mut Body) -> Certificate {
+        if let Some(certificate) = self.certificate {
             return certificate;
         }
-        if !self.can_be_certified(problem) {
+        if !self.can_be_certified(body) {
             return Certificate::default();
         }
+        let Body { problem, state, timings, .. } = body;
         let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
         let Ok(made) = made else { return Certificate::default() };
         let load_factor = self.load_factor();
         let workspace = self.workspace.insert(made);
         let forces = &mut self.forces;
-        let certificate = timed(&mut self.outcome.timings.certify, || Certificate {
+        let certificate = timed(&mut timings.certify, || Certificate {
             fixed_point_rho: fixed_point_rho(problem, state, load_factor, forces, workspace),
             stable: Some(is_stable(problem, state, load_factor, forces, workspace)),
         });
-        *self.outcome.certificate.insert(certificate)
-    }
-
-    /// Returns `true` if the state is an equilibrium: at the whole load, or at the part of it that was reached.
-    fn is_equilibrium(&self) -> bool {
-        let status = &self.outcome.status;
-        *status == Status::Converged || matches!(status, Status::NotConverged(_)) && self.load_factor() < 1.0
+        *self.certificate.insert(certificate)
     }
 
     pub fn kinematics(&self) -> Kinematics {
@@ -276,11 +256,14 @@ impl Search {
     pub fn residual(&self) -> f64 {
         self.forces.below_rounding.map_or(self.forces.relative_residual, |[residual, _]| residual)
     }
+}
 
-    pub fn residual_floor(&self) -> Option<f64> {
-        let below = self.forces.below_rounding.filter(|_| self.outcome.status == Status::Converged);
-        self.outcome.floor.or(below.map(|[_, bound]| bound))
-    }
+/// Returns `true` if a search with this status can continue from its state with changed supports: not if they rotate far,
+/// or their rotation was not completed, because the number of full rotations would be unknown.
+fn can_follow(status: &Status, before: &[Support], after: &[Support]) -> bool {
+    let far = |angle: f64| angle.abs() > LARGEST_TURN;
+    let mut pairs = before.iter().zip(after);
+    before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && *status != Status::Converged)
 }
 
 fn iteration<'a>(

@@ -1,8 +1,8 @@
 //! Views of a simulation: results that only a search for an equilibrium has, and results that only a motion has.
 
-use super::motion::{Moment, TimeStepping};
+use super::motion::{Moment, TimeStepping, inertia};
 use super::search::Search;
-use super::{Body, Simulation};
+use super::{Body, Process, Simulation, Status};
 use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
 use crate::method::{AutoReport, Certificate, PathEvents};
 
@@ -28,13 +28,13 @@ impl Equilibrium<'_> {
     /// Returns the result of [`Simulation::certify`], if it was called since the last change.
     #[must_use]
     pub fn certificate(self) -> Option<Certificate> {
-        self.search.outcome.certificate
+        self.search.certificate
     }
 
     /// Returns `true` if the state can be certified, and has not been since the last change.
     #[cfg(feature = "app")]
     pub(crate) fn needs_certificate(self) -> bool {
-        self.search.outcome.certificate.is_none() && self.search.can_be_certified(&self.body.problem)
+        self.search.certificate.is_none() && self.search.can_be_certified(self.body)
     }
 
     /// Returns the decisions of `auto`; `None` for other methods.
@@ -60,23 +60,23 @@ impl Equilibrium<'_> {
     /// above the tolerance. `None` if the tolerance is met, or the solve has not converged.
     #[must_use]
     pub fn residual_floor(self) -> Option<f64> {
-        self.search.residual_floor().filter(|_| self.search.residual() > self.body.scene.solver.tolerance)
+        let below = self.search.forces.below_rounding.filter(|_| self.body.status == Status::Converged);
+        let floor = self.search.floor.or(below.map(|[_, bound]| bound));
+        floor.filter(|_| self.search.residual() > self.body.scene.solver.tolerance)
     }
 
     /// Returns the critical points of the path from rest; `None` if the result is not known to be its end.
     #[doc(hidden)]
     #[must_use]
     pub fn path_events(self) -> Option<PathEvents> {
-        self.search.method.path_events().filter(|_| self.search.outcome.status.is_success())
+        self.search.method.path_events().filter(|_| self.body.status.is_success())
     }
 
     /// Returns a copy of the search, for display while the search itself goes on elsewhere. It has no work memory; that
     /// is allocated if the copy is itself continued.
     #[must_use]
     pub fn snapshot(self) -> Simulation {
-        let search = self.search.copy();
-        let status = search.outcome.status.clone();
-        Simulation { body: self.body.clone(), process: super::Process::Search(Box::new(search)), status }
+        Simulation { body: self.body.clone(), process: Process::Search(Box::new(self.search.copy())) }
     }
 }
 
@@ -118,20 +118,23 @@ impl<'a> Motion<'a> {
     /// Returns the numbers of steps and solves since the start.
     #[must_use]
     pub fn counts(self) -> Counts {
-        self.steps.counts()
+        self.steps.counts
     }
 
     /// Returns the momentum and angular momentum.
     #[must_use]
     pub fn momentum(self) -> Momentum {
-        self.steps.momentum(self.body)
+        let Body { scene, problem, state, .. } = self.body;
+        Momentum::of(problem, &self.steps.mass, inertia(scene), state)
     }
 
     /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
     #[doc(hidden)]
     #[must_use]
     pub fn auto_report(self) -> Option<MotionReport> {
-        self.steps.auto_report(&self.body.scene)
+        let Counts { solves, factorizations, .. } = self.steps.counts;
+        let report = MotionReport { solves, factorizations, ..self.steps.report };
+        self.steps.decides(&self.body.scene).then_some(report)
     }
 
     /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.

@@ -14,7 +14,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("study", &["src/study"], 7_028),
     ("model", &["src/model", "src/scene"], 3_236),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
-    ("simulation", &["src/simulation"], 2_822),
+    ("simulation", &["src/simulation"], 2_713),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_567),
     ("dynamics", &["src/dynamics"], 1_999),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 63_278;
+const SRC: usize = 63_169;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
