@@ -169,7 +169,7 @@ pub use scene::{
 // Solve it.
 pub use assembly::SystemError;
 pub use method::{AutoReport, Certificate, Decision, IterationError, Reason};
-pub use simulation::{Equilibrium, MotionResult, Simulation, SimulationError, Solution, Status};
+pub use simulation::{Equilibrium, Simulation, SimulationError, Solution, Status};
 pub use solver::SolverError;
 // Edit and grab.
 pub use assembly::MouseSpring;

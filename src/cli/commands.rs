@@ -83,7 +83,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let mut solution = simulation.solution();
     solution.energy.supports = solution.energy.supports.or(path.and_then(|path: PathSummary| path.supports_work));
-    let mut stages = solution.time;
+    let mut stages = *simulation.timings();
     stages.certify += certify_path;
     let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, reference: reference_time };
     let mut warnings = limits_of(&simulation, &solution.deformation, &stress);
@@ -106,8 +106,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let rho = solution.certificate.and_then(|certificate| certificate.fixed_point_rho);
     let claims = Claim::of_result(&simulation, rho, path.as_ref(), reference.as_ref());
     let solved = SolvedScene {
-        scene: &scene,
-        mesh: simulation.system().mesh(),
+        simulation: &simulation,
         solution: &solution,
         stress: &stress,
         sections: &sections,
@@ -125,7 +124,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: some results are missing"),
         _ => {}
     }
-    let gained = solution.motion.is_some_and(|motion| motion.ledger.has_gained_too_much());
+    let gained = simulation.motion().is_some_and(|motion| motion.ledger().has_gained_too_much());
     Ok(if interrupted || gained { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
 }
 

@@ -3,6 +3,7 @@
 use super::solved::SolvedScene;
 use crate::format::Context;
 use crate::scene::Load;
+use crate::simulation::Motion;
 use crate::stress::PlaneTensor;
 
 /// Strain that a rotation of 1 rad causes by rounding, relative to the rounding error of a strain of 1.
@@ -35,8 +36,8 @@ pub(super) struct Contexts {
 impl Contexts {
     /// Computes the contexts of a result.
     pub(super) fn of(solved: &SolvedScene<'_>) -> Self {
-        let SolvedScene { scene, mesh, solution, stress, sections, .. } = *solved;
-        let (low, high) = mesh.bounds();
+        let SolvedScene { simulation, solution, stress, sections, .. } = *solved;
+        let (scene, (low, high)) = (simulation.scene(), simulation.mesh().bounds());
         let size = (high - low).norm();
         let deformation = &solution.deformation;
         let (strain, rotation) = (deformation.max_strain, deformation.max_rotation_deg.to_radians());
@@ -70,14 +71,13 @@ impl Contexts {
         let inexact = scene.solver.tolerance.max(solution.residual).min(Context::MAX_INEXACT);
         let energy = &solution.energy;
         let mut energies = vec![energy.elastic, energy.external, energy.supports.unwrap_or_default()];
-        if let Some(motion) = &solution.motion {
-            let ledger = &motion.ledger;
+        if let Some(ledger) = simulation.motion().map(Motion::ledger) {
             energies.extend([ledger.kinetic, ledger.dissipated, ledger.pulses, ledger.put_in, ledger.potential]);
         }
         // The energy of a body that only rotates is that of the rounding errors of its strains.
         let volume = (high.x - low.x) * (high.y - low.y) * scene.material.thickness;
         energies.push(scene.material.young * volume * (ROTATION * rotation).powi(2) * ENERGY_OF_STRAIN);
-        let momentum = solution.motion.map(|motion| motion.momentum).unwrap_or_default();
+        let momentum = simulation.motion().map(Motion::momentum).unwrap_or_default();
         let (linear, angular) = (momentum.linear.norm(), momentum.angular);
         Self {
             strain: Context::of([of_strain]),

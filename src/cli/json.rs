@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde_json::{Map, Value, json};
 
 use super::solved::SolvedScene;
-use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
+use crate::scene::{Analysis, MethodKind, Place, Support};
 use crate::section::{Section, SectionPoint};
-use crate::simulation::{MotionResult, ProbeResult, ProbeStress, Status, StressResult, SupportReaction};
+use crate::simulation::{Motion, ProbeResult, ProbeStress, Simulation, Status, StressResult, SupportReaction};
 use crate::stress::PlaneTensor;
 use crate::study::{ProbeReference, Reference};
 
@@ -18,7 +18,8 @@ pub(super) fn text(object: &Value) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let (scene, ledger) = (simulation.scene(), simulation.motion().map(Motion::ledger));
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
     let known = |value: f64| (!diverged).then_some(value);
@@ -62,7 +63,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "max_von_mises": stress.largest.map(|largest| json!({
             "value": largest.von_mises,
             "stress": "cauchy",
-            "node": mesh.node_name(largest.node),
+            "node": simulation.mesh().node_name(largest.node),
             "at": largest.at,
         })),
         "mesh_error_percent": stress.mesh_error_percent,
@@ -76,8 +77,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "external": known(solution.energy.external),
             "supports": solution.energy.supports,
             // Null at rest.
-            "kinetic": solution.motion.map(|m| m.ledger.kinetic),
-            "dissipated": solution.motion.map(|m| m.ledger.dissipated),
+            "kinetic": ledger.map(|ledger| ledger.kinetic),
+            "dissipated": ledger.map(|ledger| ledger.dissipated),
         },
         "reaction": solution.reaction,
         "supports": supports,
@@ -92,26 +93,26 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "factorizations": auto.factorizations,
         });
     }
-    if let Some(motion) = &solution.motion {
-        add_motion(&mut object, scene, motion);
+    if let Some(motion) = simulation.motion() {
+        add_motion(&mut object, simulation, motion);
     }
     text(&object)
 }
 
 /// Adds the values of a motion to the object.
-fn add_motion(object: &mut Value, scene: &Scene, motion: &MotionResult) {
-    let MotionResult { time, counts, ledger, momentum, critical_step, auto, .. } = motion;
-    object["integrator"] = json!(scene.dynamics.integrator.id());
-    object["time"] = json!(time);
+fn add_motion(object: &mut Value, simulation: &Simulation, motion: Motion<'_>) {
+    let (counts, ledger) = (motion.counts(), motion.ledger());
+    object["integrator"] = json!(simulation.scene().dynamics.integrator.id());
+    object["time"] = json!(simulation.state().time());
     object["steps"] = json!(counts.steps);
     object["halvings"] = json!(counts.halvings);
-    object["critical_step"] = json!(critical_step);
+    object["critical_step"] = json!(motion.critical_step());
     object["energy_drift"] = json!(ledger.drift());
     object["energy_drift_of_input"] = json!(ledger.drift_of_input());
-    if let Some(auto) = auto {
+    if let Some(auto) = motion.auto_report() {
         object["auto"] = json!(auto);
     }
-    object["momentum"] = json!(momentum);
+    object["momentum"] = json!(motion.momentum());
     let energy = &mut object["energy"];
     energy["integrator"] = json!(ledger.integrator);
     energy["pulses"] = json!(ledger.pulses);

@@ -2,10 +2,8 @@
 
 use std::time::Duration;
 
-use crate::mesh::Mesh;
-use crate::scene::Scene;
 use crate::section::Section;
-use crate::simulation::{Solution, StressResult};
+use crate::simulation::{Simulation, Solution, StressResult};
 use crate::study::{Claim, PathSummary, Reference};
 use crate::timings::Timings;
 
@@ -50,8 +48,7 @@ impl Spent {
 
 /// Result of `solve` with all further information about it.
 pub(super) struct SolvedScene<'a> {
-    pub scene: &'a Scene,
-    pub mesh: &'a Mesh,
+    pub simulation: &'a Simulation,
     pub solution: &'a Solution,
     pub stress: &'a StressResult,
     /// Sections of the scene; none if the iteration diverged.

@@ -14,7 +14,7 @@ use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 #[cfg(feature = "app")]
 use crate::render::AdapterReport;
 use crate::scene::{Analysis, Place, Scene, Support, registry};
-use crate::simulation::{Deformation, MotionResult, Solution, Status};
+use crate::simulation::{Deformation, Motion, Solution, Status};
 use crate::study::{
     Claim, LoadCurve, LoadPath, PathState, Reference, driven_texts, section_chart, support_name, support_text,
 };
@@ -60,16 +60,18 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { scene, mesh, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let (scene, motion) = (simulation.scene(), simulation.motion());
     let within = Contexts::of(solved);
     let (element, unknowns, word) =
         (scene.element().id(), count(solution.dofs as u64, "unknown"), solution.status.word());
     let mut text = format!("{}: element {element}, {}, {unknowns}\n", scene.name, solver_text(scene));
     let precision = if solution.residual_floor.is_some() { " to working precision" } else { "" };
-    text += &match &solution.motion {
-        Some(MotionResult { time, counts, .. }) => {
-            let (solves, steps) = (count(counts.solves, "back substitution"), steps_text(scene, counts.steps, *time));
-            let at = engineering(*time, "s");
+    text += &match motion {
+        Some(motion) => {
+            let (counts, time) = (motion.counts(), simulation.state().time());
+            let (solves, steps) = (count(counts.solves, "back substitution"), steps_text(scene, counts.steps, time));
+            let at = engineering(time, "s");
             format!("{word} at {at} after {steps} and {solves}; the numbers below are those of this instant\n")
         }
         None => {
@@ -77,7 +79,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             format!("{word}{precision} after {iterations}, relative residual {:.2e}\n", solution.residual)
         }
     };
-    if let (Some(_), Some(reason)) = (solution.motion, solution.status.failure()) {
+    if let (Some(_), Some(reason)) = (motion, solution.status.failure()) {
         let _ = writeln!(text, "  {reason}");
     }
     for claim in claims {
@@ -97,7 +99,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         let (solves, made) = (count(auto.solves, "back substitution"), count(auto.factorizations, "factorization"));
         let _ = writeln!(text, "{}: {error}, {solves}, {made}", auto.decision);
     }
-    if let Some(auto) = solution.motion.and_then(|motion| motion.auto) {
+    if let Some(auto) = motion.and_then(Motion::auto_report) {
         let [linear, old, new] =
             [count(auto.linear_steps, "step"), auto.old_factor_steps.to_string(), auto.new_factor_steps.to_string()];
         let made = count(auto.factorizations, "factorization");
@@ -139,7 +141,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let _ = write!(text, "largest rotation {rotation}, largest strain {strain}, change of the area {area}, ");
     let _ = writeln!(text, "inverted elements {inverted_elements}");
     if let Some(largest) = stress.largest {
-        let node = mesh.node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
+        let node = simulation.mesh().node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
         let (value, at) = (within.stress.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
         let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
     }
@@ -169,7 +171,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         None => ", of the moved supports not known: the load path was not followed to its end".to_owned(),
     };
     let _ = writeln!(text, "elastic energy {elastic}, work of the loads {external}{of_supports}");
-    if let Some(motion) = &solution.motion {
+    if let Some(motion) = motion {
         text.push_str(&energy_text(motion, &within));
     }
     text.push_str(&notes(warnings));
@@ -241,8 +243,8 @@ fn solver_text(scene: &Scene) -> String {
 }
 
 /// Formats energies and momentum of a motion.
-fn energy_text(motion: &MotionResult, within: &Contexts) -> String {
-    let MotionResult { counts, ledger, momentum, critical_step, .. } = motion;
+fn energy_text(motion: Motion<'_>, within: &Contexts) -> String {
+    let (counts, ledger, momentum) = (motion.counts(), motion.ledger(), motion.momentum());
     let joules = |energy: f64| within.energy.engineering(energy, "J");
     let change = if within.energy.rounded(ledger.integrator) < 0.0 { "gained" } else { "lost" };
     let [kinetic, potential, dissipated, pulses, changed] =
@@ -259,8 +261,8 @@ fn energy_text(motion: &MotionResult, within: &Contexts) -> String {
     if counts.halvings > 0 {
         let _ = writeln!(text, "{} of a step that did not converge", count(counts.halvings, "halving"));
     }
-    if let Some(critical) = critical_step {
-        let _ = writeln!(text, "the critical time step near rest is {}", engineering(*critical, "s"));
+    if let Some(critical) = motion.critical_step() {
+        let _ = writeln!(text, "the critical time step near rest is {}", engineering(critical, "s"));
     }
     text
 }

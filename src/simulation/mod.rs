@@ -12,7 +12,7 @@ use self::search::Search;
 use crate::assembly::{
     Change, Forces, Kinematics, Mass, Matrix, MouseSpring, NodalProbe, Problem, System, SystemError,
 };
-use crate::dynamics::{Counts, Ledger, Momentum, MotionReport, StopReason};
+use crate::dynamics::StopReason;
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
@@ -87,7 +87,7 @@ impl From<Invalid> for SimulationError {
     }
 }
 
-/// Results of a state.
+/// Results of a state; [`Motion`] has further results of a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution {
@@ -118,48 +118,8 @@ pub struct Solution {
     pub reaction: Wrench,
     /// Reaction of each support.
     pub supports: Vec<SupportReaction>,
-    /// Computing time since the last edit, by stage.
-    pub time: Timings,
     /// Decisions of `auto`; `None` for other methods.
     pub auto: Option<AutoReport>,
-    /// Further results of a motion.
-    pub motion: Option<MotionResult>,
-}
-
-/// Results of a motion.
-///
-/// ```
-/// use warpbeam::{
-///     Decision, IntegratorKind, MethodKind, MotionReport, MotionResult, Scene, Simulation,
-/// };
-///
-/// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]).with_method(MethodKind::Auto);
-/// let mut swing = Simulation::new(&scene.moving(IntegratorKind::TrBdf2, 1.0 / 60.0))?;
-/// for _ in 0..30 {
-///     swing.step();
-/// }
-/// let MotionResult { time, auto, .. } = swing.solution().motion.ok_or("a dynamic scene has a motion")?;
-/// assert!((time - 0.5).abs() < 1e-9);
-/// let report: MotionReport = auto.ok_or("the method is `auto`")?;
-/// assert_ne!(report.decision, Decision::Undecided);
-/// assert_eq!(report.linear_steps + report.old_factor_steps + report.new_factor_steps, 30);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct MotionResult {
-    /// Time since the start, s.
-    pub time: f64,
-    /// Numbers of steps and solves.
-    pub counts: Counts,
-    /// Energies.
-    pub ledger: Ledger,
-    /// Momentum and angular momentum.
-    pub momentum: Momentum,
-    /// Longest stable step, s, for explicit integrators.
-    pub critical_step: Option<f64>,
-    /// Decisions of `auto`; `None` for other methods.
-    pub auto: Option<MotionReport>,
 }
 
 /// Simulation of a scene: search for an equilibrium, or motion.
@@ -643,16 +603,7 @@ impl Simulation {
             },
             reaction: reaction(problem, state, self.kinematics(), self.forces()),
             supports,
-            time: *self.timings(),
             auto: search.and_then(Equilibrium::auto_report),
-            motion: self.motion().map(|motion| MotionResult {
-                time: state.time,
-                counts: motion.counts(),
-                ledger: *motion.ledger(),
-                momentum: motion.momentum(),
-                critical_step: motion.critical_step(),
-                auto: motion.auto_report(),
-            }),
         }
     }
 

@@ -31,7 +31,7 @@ pub fn drift(simulation: &Simulation) -> f64 {
 }
 
 pub fn momentum(simulation: &Simulation) -> Momentum {
-    simulation.solution().motion.unwrap().momentum
+    simulation.motion().unwrap().momentum()
 }
 
 /// Returns the first mode of a small body, scaled to 1 mm.

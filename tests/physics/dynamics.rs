@@ -304,7 +304,7 @@ fn tr_bdf2_is_finite_everywhere() {
 
 /// Returns the report of `auto` on a motion.
 fn report(simulation: &Simulation) -> MotionReport {
-    simulation.solution().motion.unwrap().auto.unwrap()
+    simulation.motion().unwrap().auto_report().unwrap()
 }
 
 /// Returns the largest distance of two methods' bodies over a motion, percent of the largest displacement of the first,

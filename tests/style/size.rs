@@ -14,19 +14,19 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("study", &["src/study"], 7_028),
     ("model", &["src/model", "src/scene"], 3_236),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
-    ("simulation", &["src/simulation"], 2_713),
+    ("simulation", &["src/simulation"], 2_679),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_567),
+    ("cli", &["src/cli"], 2_566),
     ("dynamics", &["src/dynamics"], 1_999),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
     ("the rest of src", &["src"], 5_152),
-    ("tests", &["tests"], 21_441),
+    ("tests", &["tests"], 21_440),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 63_169;
+const SRC: usize = 63_134;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

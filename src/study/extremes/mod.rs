@@ -7,7 +7,7 @@ pub mod rest;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-use crate::dynamics::StopReason;
+use crate::dynamics::{Counts, StopReason};
 use crate::method::Reason;
 use crate::simulation::{Simulation, SimulationError, Solution, Status};
 
@@ -57,11 +57,10 @@ impl Outcome {
     }
 
     /// Classifies the solution of a search or motion that has ended.
-    fn of(solution: &Solution) -> Self {
+    fn of(solution: &Solution, drift: Option<f64>) -> Self {
         let is_certified = solution.certificate.is_some_and(|certificate| certificate.stable == Some(true));
-        let gained = solution.motion.is_some_and(|motion| motion.ledger.drift() > GAINED);
         match solution.status {
-            Status::Converged | Status::Finished if gained => Self::GainedEnergy,
+            Status::Converged | Status::Finished if drift > Some(GAINED) => Self::GainedEnergy,
             Status::Converged | Status::Finished if solution.deformation.inverted_elements > 0 => Self::Inverted,
             Status::Converged if is_certified => Self::Certified,
             Status::Converged => Self::Converged,
@@ -114,7 +113,8 @@ pub trait Case: Copy + Debug + Send + Sync {
         let solution = simulation.solution();
         let length = simulation.scene().beam.as_ref().map_or(simulation.system().size(), |beam| beam.length);
         let tip = solution.probes.first().map_or([0.0; 2], |probe| [probe.u.x / length, probe.u.y / length]);
-        Ok(Entry { case: self, outcome: Outcome::of(&solution), solution, tip })
+        let motion = simulation.motion().map(|motion| (motion.counts(), motion.ledger().drift()));
+        Ok(Entry { case: self, outcome: Outcome::of(&solution, motion.map(|(_, drift)| drift)), solution, motion, tip })
     }
 }
 
@@ -127,6 +127,8 @@ pub struct Entry<C> {
     pub outcome: Outcome,
     /// Results of the last finite state.
     pub solution: Solution,
+    /// Counts and energy drift of a motion.
+    pub motion: Option<(Counts, f64)>,
     /// Displacement of a beam's tip over the length, or of a mesh file's first probe over the size.
     pub tip: [f64; 2],
 }

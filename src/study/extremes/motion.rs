@@ -84,12 +84,10 @@ impl Case for MotionCase {
         Simulation::new(&scene)
     }
 
-    fn record(Entry { case, outcome, solution, tip: [x, y] }: &Entry<Self>) -> String {
+    fn record(Entry { case, outcome, motion, tip: [x, y], .. }: &Entry<Self>) -> String {
         let (element, integrator, outcome) = (case.element.id(), case.integrator.id(), outcome.id());
-        let MotionCase { iterations, time_step, gravity, .. } = case;
-        let (Counts { steps, solves, halvings, .. }, drift) =
-            solution.motion.map(|motion| (motion.counts, motion.ledger.drift())).unwrap_or_default();
-        let young = number(case.young);
+        let (MotionCase { iterations, time_step, gravity, .. }, young) = (case, number(case.young));
+        let (Counts { steps, solves, halvings, .. }, drift) = motion.unwrap_or_default();
         format!(
             "{element},{integrator},{iterations},{young},{time_step:e},{gravity},{outcome},{steps},{solves},{halvings},{drift:e},{x},{y}"
         )

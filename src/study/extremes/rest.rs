@@ -191,7 +191,7 @@ impl Case for RestCase {
         Ok(simulation)
     }
 
-    fn record(Entry { case, outcome, solution, tip: [x, y] }: &Entry<Self>) -> String {
+    fn record(Entry { case, outcome, solution, tip: [x, y], .. }: &Entry<Self>) -> String {
         let RestCase { variant, alpha, young, poisson, slenderness, aspect, .. } = *case;
         let (element, method, outcome) = (case.element.id(), case.method.id(), outcome.id());
         let Solution { iterations, residual, residual_floor, .. } = *solution;
