@@ -10,17 +10,17 @@ use thiserror::Error;
 use self::motion::{TimeStepping, start_of};
 use self::search::Search;
 use crate::assembly::{
-    Change, Forces, Kinematics, Mass, Matrix, MouseSpring, NodalProbe, Problem, System, SystemError,
+    Change, Forces, Kinematics, LinearSystem, Mass, MouseSpring, NodalProbe, Problem, System, SystemError,
 };
 use crate::dynamics::StopReason;
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::rotation::{Rotation, polar};
-use crate::scene::{Analysis, Invalid, LoadId, Material, MethodKind, Scene, SupportId};
+use crate::scene::{Analysis, Invalid, LoadId, Material, Scene, SupportId};
 use crate::section::Wrench;
 use crate::sentence::Sentence;
-use crate::solver::{Factor, SolverError};
+use crate::solver::SolverError;
 use crate::state::{State, StateError, is_finite};
 use crate::stress::{ErrorEstimate, NodalStress};
 use crate::timings::Timings;
@@ -42,8 +42,8 @@ pub use point::{PointState, PointValues};
 pub(crate) use results::ProbeStress;
 use results::area_change;
 pub use results::{
-    Deformation, Energy, ProbeResult, StressResult, SupportReaction, energy, probe_results, reaction,
-    support_reactions, supports_power,
+    Deformation, Energy, ProbeResult, StressResult, SupportReaction, probe_results, reaction, support_reactions,
+    supports_power,
 };
 pub use status::Status;
 
@@ -594,12 +594,13 @@ impl Simulation {
             deformation: Deformation::of(problem, state, &self.nodal_stress()),
             probes: probe_results(problem, state),
             energy: Energy {
+                elastic: problem.elastic_energy(state),
+                external: -problem.loads().potential(state, load_factor),
                 supports: match (problem.supports().move_the_body(), self.is_linear()) {
                     (false, _) => Some(0.0),
                     (true, true) => Some(0.5 * supports_power(problem, &supports)),
                     (true, false) => None,
                 },
-                ..energy(problem, state, load_factor)
             },
             reaction: reaction(problem, state, self.kinematics(), self.forces()),
             supports,
@@ -689,12 +690,6 @@ impl Simulation {
     #[must_use]
     pub fn system(&self) -> &Arc<System> {
         self.body.problem.system()
-    }
-
-    /// Returns the solution method.
-    #[must_use]
-    pub fn method(&self) -> MethodKind {
-        self.body.scene.solver.method
     }
 
     /// Returns the results of the search; `None` for a motion.
@@ -828,22 +823,19 @@ impl Simulation {
 /// Returns the largest displacement of a point under a unit force on it, m/N; `None` if supports leave the body free to
 /// move.
 fn compliance(problem: &Problem, state: &State, point: MaterialPoint) -> Option<f64> {
-    let system = problem.system();
+    let (system, mut untimed) = (problem.system(), Timings::default());
     let weights = system.mesh().weights(point)?;
-    let mut matrix = Matrix::new(system.pattern());
+    let mut linear = LinearSystem::new(system).ok()?;
     let mut forces = Forces::new(state.displacement.len());
-    problem.linearize(state, &mut forces, Some((Tangent::WARPED, &mut matrix)));
-    let mut factor = Factor::new(system.symbolic().ok()?).ok()?;
-    factor.factorize(matrix.values()).ok()?;
-    let mut compliance = Matrix2::zeros();
-    let (mut nodal, mut free) = (vec![Vector2::zeros(); state.displacement.len()], vec![0.0; system.dofs()]);
+    problem.linearize(state, &mut forces, Some((Tangent::WARPED, &mut linear.matrix)));
+    linear.factorize(&mut untimed).ok()?;
+    let (mut compliance, mut nodal) = (Matrix2::zeros(), vec![Vector2::zeros(); state.displacement.len()]);
     for axis in 0..2 {
         nodal.fill(Vector2::zeros());
         weights.iter().for_each(|&(node, w)| nodal[node as usize][axis] += w);
-        system.pattern().restrict(&nodal, &mut free);
-        factor.solve_in_place(&mut free);
+        linear.solve(system.pattern(), &nodal, &mut untimed).ok()?;
         nodal.fill(Vector2::zeros());
-        system.pattern().add_free(&free, 1.0, &mut nodal);
+        system.pattern().add_free(&linear.correction, 1.0, &mut nodal);
         let moved: Vector2<f64> = weights.iter().map(|&(node, w)| nodal[node as usize] * w).sum();
         compliance.set_column(axis, &moved);
     }

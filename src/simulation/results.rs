@@ -116,13 +116,6 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
     see.collect()
 }
 
-/// Computes the energies of a state at a load factor.
-#[must_use]
-pub fn energy(problem: &Problem, state: &State, load_factor: f64) -> Energy {
-    let external = -problem.loads().potential(state, load_factor);
-    Energy { elastic: problem.elastic_energy(state), external, supports: None }
-}
-
 /// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with lever arms about the origin:
 /// those at rest in linear theory, else current ones.
 #[must_use]

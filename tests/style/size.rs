@@ -14,7 +14,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("study", &["src/study"], 7_028),
     ("model", &["src/model", "src/scene"], 3_236),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
-    ("simulation", &["src/simulation"], 2_679),
+    ("simulation", &["src/simulation"], 2_664),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_566),
     ("dynamics", &["src/dynamics"], 1_999),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
     ("the rest of src", &["src"], 5_152),
-    ("tests", &["tests"], 21_440),
+    ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 63_134;
+const SRC: usize = 63_119;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

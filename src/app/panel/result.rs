@@ -11,7 +11,7 @@ use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 use crate::format::{engineering, engineering_pair, three_digits};
 use crate::scene::MethodKind;
-use crate::simulation::{Motion, Simulation, energy};
+use crate::simulation::{Motion, Simulation};
 use crate::study::{Claim, Reference};
 
 /// Width of the names of the rows, points.
@@ -103,8 +103,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     }
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
-        let (problem, state) = (simulation.problem(), simulation.state());
-        row("Energy", engineering(energy(problem, state, factor).elastic, "J"), "Elastic energy stored in the body");
+        let energy = simulation.problem().elastic_energy(simulation.state());
+        row("Energy", engineering(energy, "J"), "Elastic energy stored in the body");
         supports::reaction_rows(row, simulation);
     }
     if let Some(auto) = search.auto_report() {

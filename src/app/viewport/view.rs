@@ -87,7 +87,7 @@ impl<'a> Content<'a> {
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
-        let is_wanted = self.options.ghost && self.simulation().method() != MethodKind::Linear;
+        let is_wanted = self.options.ghost && self.simulation().scene().solver.method != MethodKind::Linear;
         self.session.linear().map(Simulation::displacement).filter(|_| is_wanted)
     }
 }

@@ -59,7 +59,7 @@ pub(crate) const UNTIL: usize = 9;
 
 /// Returns `true` if the lines describe the method of the simulation.
 pub(super) fn describes(simulation: &Simulation) -> bool {
-    simulation.method() == MethodKind::Warped && simulation.system().mesh().element() == ElementKind::T3
+    simulation.scene().solver.method == MethodKind::Warped && simulation.system().mesh().element() == ElementKind::T3
 }
 
 /// Returns the line after `line`; `ended` is `true` if the iteration has ended.
