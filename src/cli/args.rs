@@ -7,8 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::CliError;
 #[cfg(feature = "app")]
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
-use super::outputs::OutputArgs;
-use super::scene_args::{RequiredSceneArgs, SceneArgs, within};
+use super::shared_args::{OutputArgs, RequiredSceneArgs, SceneArgs, within};
 use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
 use crate::study::Effort;
 
@@ -126,7 +125,7 @@ pub(super) enum Command {
     Gpu(AdapterArgs),
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct SolveArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
@@ -138,7 +137,7 @@ pub(super) struct SolveArgs {
     pub out: Option<PathBuf>,
     /// Reference solution against which errors are measured. `bounded`: meshes of up to about 10,000 unknowns, a second
     /// or two; `full`: meshes fine enough for an error of 0.01 %; `none`: no reference solution and no errors.
-    #[arg(long, value_enum, default_value_t = ReferenceEffort::Bounded)]
+    #[arg(long, value_enum, default_value_t)]
     pub reference: ReferenceEffort,
     /// Certify the result, whatever the size of the scene: stability, spectral radius ρ of the warped iteration, and
     /// jumps on the load path to it.
@@ -150,9 +149,10 @@ pub(super) struct SolveArgs {
 }
 
 /// Cost allowed for a reference solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum ReferenceEffort {
     None,
+    #[default]
     Bounded,
     Full,
 }

@@ -41,23 +41,31 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let set_up = began.elapsed();
     let watch = Watch::new();
     let certifies = certificate || !no_certificate && simulation.system().dofs() <= MAX_CERTIFIED;
-    let mut path = None;
-    let written = match (scene.analysis, &out) {
-        (Analysis::Static, Some(path)) if format == Some(Format::Pvd) => {
+    let is_static = scene.analysis == Analysis::Static;
+    let mut writer = match &out {
+        Some(path) if is_static && format == Some(Format::Pvd) => {
             return Err(ExportError::NotInMotion(path.display().to_string()).into());
         }
-        (Analysis::Static, _) => {
-            watch.solve(&mut simulation);
-            if certifies && !watch.is_cancelled() {
-                simulation.certify();
-            }
-            out.as_deref().map_or(Ok(()), |path| export::write(&simulation, path))
-        }
-        (Analysis::Dynamic, _) => {
-            let writer = out.as_deref().map(|path| MotionWriter::create(&simulation, path)).transpose()?;
-            march(&mut simulation, writer, &watch)
-        }
+        Some(path) if !is_static => Some(MotionWriter::create(&simulation, path)?),
+        _ => None,
     };
+    let mut written = Ok(());
+    watch.run(&mut simulation, |simulation| {
+        let added = writer.as_mut().map_or(Ok(()), |writer| writer.add(simulation));
+        if added.is_err() {
+            (writer, written) = (None, added);
+        }
+    });
+    if let Some(writer) = writer {
+        written = writer.finish(&simulation);
+    }
+    if certifies && !watch.is_cancelled() {
+        simulation.certify();
+    }
+    if let Some(path) = out.as_deref().filter(|_| is_static) {
+        written = export::write(&simulation, path);
+    }
+    let mut path = None;
     let status = simulation.status().clone();
     let mut certify_path = Duration::ZERO;
     if status == Status::Converged && certifies {
@@ -71,7 +79,6 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let sections = if has_forces { sections_of(&source, &simulation)? } else { Vec::new() };
     let stress_time = recovered.elapsed();
     let sought = Instant::now();
-    let is_static = scene.analysis == Analysis::Static;
     // A state that is not the one asked for has no error.
     let is_elsewhere = path.is_some_and(|path| path.elsewhere.is_some());
     let reference = effort
@@ -105,50 +112,18 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     warnings.extend(limits_of_auto(&scene, &solution, reference.as_ref()));
     let rho = solution.certificate.and_then(|certificate| certificate.fixed_point_rho);
     let claims = Claim::of_result(&simulation, rho, path.as_ref(), reference.as_ref());
-    let solved = SolvedScene {
-        simulation: &simulation,
-        solution: &solution,
-        stress: &stress,
-        sections: &sections,
-        path,
-        reference: reference.as_ref(),
-        claims: &claims,
-        warnings: &warnings,
-        spent: &spent,
-    };
+    let simulation = &simulation;
+    let solved = SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent };
     text::print(&if json { json::solution(&solved) } else { text::solution(&solved) })?;
     // Print the result even if its file could not be written.
     written?;
-    match (interrupted, &solution.status) {
-        (true, Status::Stopped(reason)) => eprintln!("warpbeam: {reason}"),
-        (true, status) if status.is_success() => eprintln!("warpbeam: interrupted: some results are missing"),
+    match status {
+        Status::Stopped(reason) if interrupted => eprintln!("warpbeam: {reason}"),
+        _ if interrupted && status.is_success() => eprintln!("warpbeam: interrupted: some results are missing"),
         _ => {}
     }
     let gained = simulation.motion().is_some_and(|motion| motion.ledger().has_gained_too_much());
-    Ok(if interrupted || gained { ExitCode::from(NOT_CONVERGED) } else { exit_code(&solution.status) })
-}
-
-/// Computes a motion to its end, or until cancelled; the file, if any, then contains the steps so far.
-pub(super) fn march(
-    simulation: &mut Simulation,
-    mut writer: Option<MotionWriter>,
-    watch: &Watch,
-) -> Result<(), ExportError> {
-    let duration = simulation.scene().dynamics.duration;
-    let mut written = Ok(());
-    while *simulation.status() == Status::Running && !watch.is_cancelled() {
-        simulation.step();
-        let added = writer.as_mut().map_or(Ok(()), |writer| writer.add(simulation));
-        if added.is_err() {
-            (writer, written) = (None, added);
-        }
-        watch.show_time(simulation.state().time(), duration);
-    }
-    simulation.stop();
-    if let Some(writer) = writer {
-        written = writer.finish(simulation);
-    }
-    written
+    Ok(if interrupted || gained { ExitCode::from(NOT_CONVERGED) } else { exit_code(&status) })
 }
 
 /// Returns sentences about the limitations of a result that are found without a reference solution.
@@ -277,7 +252,7 @@ fn ended(interrupted: bool, missing: &str) -> ExitCode {
 
 pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let TuneArgs { scene, error, time, write } = args;
-    write.as_deref().map_or(Ok(()), |path| check_suffix(path, &[".toml"], ".toml"))?;
+    write.as_deref().map_or(Ok(()), |path| check_suffix(path, ".toml"))?;
     let source = scene::Source::from(scene);
     let (scene, _) = validated(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };

@@ -36,7 +36,7 @@ pub(super) struct Contexts {
 impl Contexts {
     /// Computes the contexts of a result.
     pub(super) fn of(solved: &SolvedScene<'_>) -> Self {
-        let SolvedScene { simulation, solution, stress, sections, .. } = *solved;
+        let SolvedScene { simulation, solution, stress, sections, .. } = solved;
         let (scene, (low, high)) = (simulation.scene(), simulation.mesh().bounds());
         let size = (high - low).norm();
         let deformation = &solution.deformation;

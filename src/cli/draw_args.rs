@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::scene_args::{RequiredSceneArgs, SetArgs, within};
+use super::shared_args::{RequiredSceneArgs, SetArgs, within};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;

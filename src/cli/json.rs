@@ -1,7 +1,5 @@
 //! JSON output of commands, as documented. A number that is not finite serializes to `null`.
 
-use std::time::Duration;
-
 use serde_json::{Map, Value, json};
 
 use super::solved::SolvedScene;
@@ -18,23 +16,22 @@ pub(super) fn text(object: &Value) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = solved;
     let (scene, ledger) = (simulation.scene(), simulation.motion().map(Motion::ledger));
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
     let known = |value: f64| (!diverged).then_some(value);
     let stress = if diverged { &StressResult::default() } else { stress };
-    let references = reference.map_or(&[][..], Reference::probes);
+    let references = reference.as_ref().map_or(&[][..], Reference::probes);
     let probes = solution.probes.iter().enumerate();
     let probes: Vec<Value> =
         probes.map(|(i, p)| probe(p, stress.probes.get(i), references.get(i).and_then(Option::as_ref))).collect();
     let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
-    let parts = spent.parts().map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
-    let sums = [("total", spent.solve()), ("wall", spent.wall)];
-    let sums = sums.map(|(name, time)| (name.to_owned(), json!(microseconds(time))));
-    let time_us: Map<String, Value> = sums.into_iter().chain(parts).collect();
+    let times = [("total", spent.solve()), ("wall", spent.wall)].into_iter().chain(spent.parts());
+    let microseconds = times.map(|(name, time)| (name.to_owned(), json!(time.as_secs_f64() * 1e6)));
+    let time_us: Map<String, Value> = microseconds.collect();
     // Linear theory follows no path.
     let followed = path.filter(|_| scene.solver.method != MethodKind::Linear);
     let mut object = json!({
@@ -179,8 +176,4 @@ pub(super) fn section(section: &Section) -> Value {
     object["of_stress"] = json!(section.stress_forces);
     object["points"] = section.points.iter().map(point).collect::<Value>();
     object
-}
-
-fn microseconds(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e6
 }

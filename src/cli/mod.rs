@@ -29,12 +29,11 @@ mod driver;
 mod explorer;
 mod json;
 mod limits;
-mod outputs;
 mod progress;
 #[cfg(feature = "app")]
 mod record;
-mod scene_args;
 mod section;
+mod shared_args;
 mod solved;
 mod text;
 #[cfg(feature = "app")]
@@ -155,10 +154,10 @@ fn run() -> ExitCode {
     })
 }
 
-/// Rejects a file name whose suffix is not one of `known`, which are in lower case and include the dot.
-fn check_suffix(path: &Path, known: &[&str], expected: &'static str) -> Result<(), CliError> {
-    let suffix = path.extension().and_then(|e| e.to_str()).map(|e| format!(".{}", e.to_ascii_lowercase()));
-    match suffix.is_some_and(|suffix| known.contains(&suffix.as_str())) {
+/// Rejects a file name with another suffix than the expected one, which includes the dot.
+fn check_suffix(path: &Path, expected: &str) -> Result<(), CliError> {
+    let suffix = path.extension().and_then(|e| e.to_str()).map(|e| format!(".{e}"));
+    match suffix.is_some_and(|suffix| suffix.eq_ignore_ascii_case(expected)) {
         true => Ok(()),
         false => Err(format!("{}: expected a name that ends in {expected}", path.display()).into()),
     }

@@ -76,27 +76,24 @@ impl Watch {
         *drawn = (Some(now), line.chars().count());
     }
 
-    /// Iterates a search until its status is final, or it is cancelled.
-    pub(super) fn solve(&self, simulation: &mut Simulation) {
-        let tolerance = simulation.scene().solver.tolerance;
-        while *simulation.status() == Status::Running {
-            if self.is_cancelled() {
-                simulation.stop();
-                break;
-            }
+    /// Steps a search or a motion until its status is final, or it is cancelled; calls `after` after each step.
+    pub(super) fn run(&self, simulation: &mut Simulation, mut after: impl FnMut(&Simulation)) {
+        let (tolerance, duration) = (simulation.scene().solver.tolerance, simulation.scene().dynamics.duration);
+        while *simulation.status() == Status::Running && !self.is_cancelled() {
             simulation.step();
-            let (n, residual) = (simulation.iterations(), simulation.residual());
-            let fraction = (residual.ln() / tolerance.ln()).clamp(0.0, 1.0);
-            self.show(if fraction.is_finite() { fraction } else { 0.0 }, || {
-                format!("iteration {n}, residual {residual:.1e}")
-            });
+            after(simulation);
+            let (n, residual, time) = (simulation.iterations(), simulation.residual(), simulation.state().time());
+            if simulation.motion().is_some() {
+                let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
+                self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s per second", rate()));
+            } else {
+                let fraction = (residual.ln() / tolerance.ln()).clamp(0.0, 1.0);
+                self.show(if fraction.is_finite() { fraction } else { 0.0 }, || {
+                    format!("iteration {n}, residual {residual:.1e}")
+                });
+            }
         }
-    }
-
-    /// Shows the current time of a motion, s.
-    pub(super) fn show_time(&self, time: f64, duration: f64) {
-        let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
-        self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s per second", rate()));
+        simulation.stop();
     }
 
     /// Shows the progress of a study; returns [`ControlFlow::Break`] if the command should end.

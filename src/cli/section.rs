@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 
 use super::args::SectionArgs;
 use super::progress::Watch;
-use super::{CliError, about, commands, exit_code, json, sections_of, simulate, text};
+use super::{CliError, about, exit_code, json, sections_of, simulate, text};
 use crate::format::{Context, engineering, in_power, number, prefix, three_digits};
 use crate::plot::{self, Drawing};
-use crate::scene::{self, Analysis, Scene, SectionLine};
+use crate::scene::{self, Scene, SectionLine};
 use crate::section::{Section, SectionError, SectionForces, SectionPoint};
 use crate::simulation::{Simulation, Status};
 use crate::study::section_chart::{self, COMPONENTS, SectionComponent};
@@ -34,12 +34,7 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         (None, Some(_)) => {}
         (None, None) => _ = sections_of(&source, &simulation)?,
     }
-    let watch = Watch::new();
-    match scene.analysis {
-        Analysis::Static => watch.solve(&mut simulation),
-        Analysis::Dynamic => commands::march(&mut simulation, None, &watch)?,
-    }
-    drop(watch);
+    Watch::new().run(&mut simulation, |_| ());
     let status = simulation.status().clone();
     if matches!(status, Status::Diverged(_)) {
         eprintln!("warpbeam: {}", about(&source, status.failure().unwrap_or_default()));
@@ -151,28 +146,21 @@ fn shown<T>(values: &[T]) -> impl Iterator<Item = &T> {
 
 /// Formats N, V and M in these sections as a table, and the largest value of each in a diagram of the beam.
 fn along_beam(sections: &[Section], diagram: &[Section], simulation: &Simulation) -> String {
-    let columns: Vec<(&SectionComponent, Vec<f64>)> = COMPONENTS
-        .iter()
-        .zip(section_chart::contexts(sections, simulation))
-        .map(|(component, within)| {
-            let values = sections.iter().map(|section| within.rounded((component.of)(&section.forces)));
-            (component, values.collect())
-        })
-        .collect();
-    let scales: Vec<_> = columns.iter().map(|(component, values)| prefix(values, component.unit)).collect();
-    let x: Vec<f64> = sections.iter().map(|section| section.line.at.x).collect();
-    let (x_power, x_symbol) = prefix(&x, "m");
-    let mut text = format!("{:>10}", format!("x, {x_symbol}m"));
-    for ((component, _), (_, symbol)) in columns.iter().zip(&scales) {
-        let _ = write!(text, "  {:>14}", format!("{}, {symbol}{}", component.symbol, component.unit));
-    }
-    text.push('\n');
-    for (i, x) in x.iter().enumerate() {
-        let _ = write!(text, "{:>10}", in_power(*x, x_power));
-        for ((_, values), (power, _)) in columns.iter().zip(&scales) {
-            let _ = write!(text, "  {:>14}", in_power(values[i], *power));
-        }
-        text.push('\n');
+    // The heading of a column and its cells.
+    let column = |name: &str, unit: &str, values: Vec<f64>| -> Vec<String> {
+        let (power, symbol) = prefix(&values, unit);
+        let cells = values.iter().map(|value| in_power(*value, power));
+        std::iter::once(format!("{name}, {symbol}{unit}")).chain(cells).collect()
+    };
+    let x = column("x", "m", sections.iter().map(|section| section.line.at.x).collect());
+    let contexts = section_chart::contexts(sections, simulation);
+    let [n, v, m] = [0, 1, 2].map(|i| {
+        let (SectionComponent { symbol, unit, of, .. }, within) = (&COMPONENTS[i], contexts[i]);
+        column(symbol, unit, sections.iter().map(|section| within.rounded(of(&section.forces))).collect())
+    });
+    let mut text = String::new();
+    for (((x, n), v), m) in x.iter().zip(&n).zip(&v).zip(&m) {
+        let _ = writeln!(text, "{x:>10}  {n:>14}  {v:>14}  {m:>14}");
     }
     text.push('\n');
     for (component, within) in COMPONENTS.iter().zip(section_chart::contexts(diagram, simulation)) {

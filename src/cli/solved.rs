@@ -49,16 +49,16 @@ impl Spent {
 /// Result of `solve` with all further information about it.
 pub(super) struct SolvedScene<'a> {
     pub simulation: &'a Simulation,
-    pub solution: &'a Solution,
-    pub stress: &'a StressResult,
+    pub solution: Solution,
+    pub stress: StressResult,
     /// Sections of the scene; none if the iteration diverged.
-    pub sections: &'a [Section],
+    pub sections: Vec<Section>,
     /// Jumps and buckling on the load path to the result; `None` if unknown.
     pub path: Option<PathSummary>,
-    pub reference: Option<&'a Reference>,
+    pub reference: Option<Reference>,
     /// Claims of a result at rest.
-    pub claims: &'a [Claim],
+    pub claims: Vec<Claim>,
     /// Sentences about limitations of the result.
-    pub warnings: &'a [String],
-    pub spent: &'a Spent,
+    pub warnings: Vec<String>,
+    pub spent: Spent,
 }

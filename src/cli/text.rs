@@ -60,7 +60,7 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = *solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = solved;
     let (scene, motion) = (simulation.scene(), simulation.motion());
     let within = Contexts::of(solved);
     let (element, unknowns, word) =
@@ -108,7 +108,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "auto: {linear} under linear theory, {old} with an old factor, {new} with a new one; {made}"
         );
     }
-    let references = reference.map_or(&[][..], Reference::probes);
+    let references = reference.as_ref().map_or(&[][..], Reference::probes);
     let moved_by = |u: Vector2<f64>| within.displacement.pair(u.into(), "m");
     for (i, probe) in solution.probes.iter().enumerate() {
         let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), moved_by(probe.u));

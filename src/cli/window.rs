@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::args::{ReferenceEffort, SolveArgs};
+use super::args::SolveArgs;
 use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
 use super::progress::Watch;
-use super::scene_args::{RequiredSceneArgs, SetArgs};
+use super::shared_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
 use crate::app;
 use crate::render;
@@ -31,7 +31,7 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         adapter: args.look.adapter.adapter,
     };
     let output = args.output;
-    check_suffix(&output, &[".png"], ".png")?;
+    check_suffix(&output, ".png")?;
     let source = scene::Source::from(args.scene);
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
@@ -77,7 +77,7 @@ pub(super) fn run(
     adapter: Option<String>,
     is_default: bool,
 ) -> Result<ExitCode, CliError> {
-    check_suffix(output, &[".png"], ".png")?;
+    check_suffix(output, ".png")?;
     let scene = scene::open(&source)?;
     let simulation = || Ok::<_, CliError>(simulate(&source)?.1);
     // A window opens without waiting for a large mesh; errors of a small one are reported before opening a window.
@@ -88,18 +88,9 @@ pub(super) fn run(
             let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();
             text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
-            let args = RequiredSceneArgs {
-                scene: source.name.clone(),
-                set: SetArgs { assignments: source.assignments.clone() },
-            };
-            commands::solve(SolveArgs {
-                scene: args,
-                json: false,
-                out: None,
-                reference: ReferenceEffort::Bounded,
-                certificate: false,
-                no_certificate: false,
-            })?;
+            let set = SetArgs { assignments: source.assignments.clone() };
+            let scene_args = RequiredSceneArgs { scene: source.name.clone(), set };
+            commands::solve(SolveArgs { scene: scene_args, ..SolveArgs::default() })?;
             let options = app::ShotOptions { adapter, ..Default::default() };
             app::shot(source, scene, simulation, &options, output, &|_| ControlFlow::Continue(()))?;
         }

@@ -1,10 +1,12 @@
-//! Arguments shared by commands: a scene with assignments, and numbers with units.
+//! Arguments shared by commands: a scene with assignments, numbers with units, and files beside the text.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
-use super::CliError;
+use super::{CliError, check_suffix};
+use crate::export;
+use crate::plot::Drawing;
 use crate::scene;
 use crate::scene::limits::Limit;
 use crate::scene::units;
@@ -17,7 +19,7 @@ pub(super) struct SceneArgs {
     pub set: SetArgs,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct RequiredSceneArgs {
     /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
     pub scene: PathBuf,
@@ -25,7 +27,7 @@ pub(super) struct RequiredSceneArgs {
     pub set: SetArgs,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct SetArgs {
     /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5]. Numbers may have units:
     /// material.young="210 GPa", load.0.force=[0 N, -12 kN].
@@ -51,5 +53,35 @@ pub(super) fn within(limit: Limit) -> impl Fn(&str) -> Result<f64, CliError> + C
     move |text| {
         let value = units::parse(text, limit.unit)?;
         Ok(limit.check(value).map(|()| value).map_err(|message| message.to_string())?)
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OutputArgs {
+    /// Also write a table.
+    #[arg(long = "out", value_name = "FILE.csv")]
+    table: Option<PathBuf>,
+    /// Also draw a picture.
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<PathBuf>,
+}
+
+impl OutputArgs {
+    /// Refuses names with another ending, so that nothing is computed in vain.
+    pub fn check(&self) -> Result<(), CliError> {
+        self.picture.as_deref().map_or(Ok(()), |path| check_suffix(path, ".svg"))?;
+        self.table.as_deref().map_or(Ok(()), |path| check_suffix(path, ".csv"))
+    }
+
+    /// Writes the table, if one is wanted.
+    pub fn write_table(&self, table: impl FnOnce() -> String) -> Result<(), CliError> {
+        let Some(path) = &self.table else { return Ok(()) };
+        Ok(export::write_text(path, &table())?)
+    }
+
+    /// Writes the picture, if one is wanted.
+    pub fn write_picture(&self, drawing: impl FnOnce() -> Result<Drawing, CliError>) -> Result<(), CliError> {
+        let Some(path) = &self.picture else { return Ok(()) };
+        Ok(export::write_text(path, &drawing()?.svg())?)
     }
 }
