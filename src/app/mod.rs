@@ -24,15 +24,15 @@ mod window;
 
 pub use crate::image::Picture;
 pub use language::Language;
-pub use modes::compare::{MotionPane, Pane, PaneSetting, PaneSettingError, parse_panes};
+pub use modes::compare::{Pane, PaneSetting, PaneSettingError, parse_panes};
 #[doc(hidden)]
 pub use modes::learn::card_count;
 pub use offscreen::record::{MovieFormat, RecordError, RecordOptions, Recorded, record, record_story};
 pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, Shot, ShotOptions, picture, shot};
 pub use panel::PANEL_WIDTH;
-#[doc(hidden)]
-pub use session::compared_solve::PaneEnd;
 pub use session::recovery::{RecoveryCopies, Unsaved};
+#[doc(hidden)]
+pub use session::run::PaneEnd;
 #[doc(hidden)]
 pub use shell::help::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};

@@ -131,7 +131,7 @@ impl<'a> Motion<'a> {
     /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
     ///
     /// ```
-    /// use warpbeam::{IntegratorKind, MethodKind, MotionDecision, MotionReport, Scene, Simulation};
+    /// use warpbeam::{Decision, IntegratorKind, MethodKind, MotionReport, Scene, Simulation};
     ///
     /// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]).with_method(MethodKind::Auto);
     /// let mut swing = Simulation::new(&scene.moving(IntegratorKind::TrBdf2, 1.0 / 60.0))?;
@@ -141,7 +141,7 @@ impl<'a> Motion<'a> {
     /// assert!((swing.state().time() - 0.5).abs() < 1e-9);
     /// let motion = swing.motion().ok_or("a dynamic scene has a motion")?;
     /// let report: MotionReport = motion.auto_report().ok_or("the method is `auto`")?;
-    /// assert_ne!(report.decision, MotionDecision::Undecided);
+    /// assert_ne!(report.decision, Decision::Undecided);
     /// assert_eq!(report.linear_steps + report.old_factor_steps + report.new_factor_steps, 30);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -3,8 +3,6 @@
 
 mod background;
 pub(crate) mod clock;
-pub(crate) mod compared_motion;
-pub(crate) mod compared_solve;
 pub(crate) mod document;
 pub(crate) mod facts;
 pub(crate) mod fallback;
@@ -13,6 +11,7 @@ pub(crate) mod live;
 pub(crate) mod past;
 pub(crate) mod playback;
 pub(crate) mod recovery;
+pub(crate) mod run;
 #[cfg(test)]
 mod tests;
 pub(crate) mod undo;
@@ -27,7 +26,6 @@ use web_time::{Duration, Instant};
 
 use crate::app::platform::IS_PAGE;
 use crate::app::session::background::Background;
-use crate::app::session::compared_solve::Equations;
 use crate::app::session::document::{Document, SaveError};
 use crate::app::session::facts::{Facts, ShownFacts};
 use crate::app::session::fallback::{Fallback, is_lost};
@@ -35,11 +33,11 @@ use crate::app::session::live::{Compared, Follower, Live, first_probe};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{SolveStart, note_residual, solve_linear};
+use crate::app::task::solve::{Equations, Model, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, IntegratorKind, Load, MethodKind, Scene, SceneError, Source};
+use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
@@ -119,14 +117,6 @@ pub(crate) struct Grab {
     pub release: bool,
 }
 
-/// Equilibrium, with the times and residuals of its search.
-#[derive(Debug)]
-struct BeforeGrab {
-    simulation: Simulation,
-    timings: Timings,
-    residuals: Vec<f64>,
-}
-
 /// One model being worked on.
 #[derive(Debug)]
 pub(crate) struct Session {
@@ -135,10 +125,7 @@ pub(crate) struct Session {
     scene: Scene,
     undo: UndoHistory,
     /// Displayed model; a copy of it while it is solved in the background.
-    simulation: Simulation,
-    /// Solution of linear theory; `None` if it could not be set up.
-    linear: Option<Simulation>,
-    geometry: Arc<DisplayGeometry>,
+    model: Model,
     background: Background,
     running: bool,
     /// `true` if a displayed frame makes one iteration: slow motion of the method.
@@ -157,16 +144,13 @@ pub(crate) struct Session {
     is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
     timings: Timings,
-    /// Residual after every iteration since the last change.
-    residuals: Vec<f64>,
     playback: Playback,
-    quality: Quality,
     /// Certification of a copy of the displayed body.
     certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Bodies drawn in place of a search that has found no equilibrium.
     fallback: Fallback,
-    /// Equilibrium before the body was grabbed, which its release restores.
-    before_grab: Option<BeforeGrab>,
+    /// Equilibrium before the body was grabbed, which its release restores, and the time of its iterations.
+    before_grab: Option<(Model, Timings)>,
     facts: Facts,
     live: Follower,
     /// Body that is solved from rest to measure the time of a dragged load, and the last such solve with its scene.
@@ -183,14 +167,13 @@ pub(crate) const WILD: f64 = 0.1;
 impl Session {
     /// Creates a session with `scene` that iterates from rest.
     pub(crate) fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
-        let linear = solve_linear(simulation.scene(), simulation.system(), None);
+        let mut model = Model::new(simulation, None);
+        model.linear = solve_linear(model.simulation.scene(), model.simulation.system(), None);
         let mut session = Self {
             document: Document::new(source, scene.clone()),
-            linear,
             scene,
             undo: UndoHistory::default(),
-            geometry: Arc::new(DisplayGeometry::new(simulation.system().mesh())),
-            simulation,
+            model,
             background: Background::default(),
             running: true,
             is_slow: false,
@@ -201,9 +184,7 @@ impl Session {
             was_edited: false,
             is_postponed: false,
             timings: Timings::default(),
-            residuals: Vec::new(),
             playback: Playback::default(),
-            quality: Quality::default(),
             certifying: None,
             fallback: Fallback::default(),
             before_grab: None,
@@ -214,7 +195,7 @@ impl Session {
             changed: Changed::default(),
             notices: Vec::new(),
         };
-        session.fallback.keep(&session.simulation);
+        session.fallback.keep(&session.model.simulation);
         session.note_size();
         session
     }
@@ -229,21 +210,21 @@ impl Session {
     }
 
     pub(crate) fn simulation(&self) -> &Simulation {
-        &self.simulation
+        &self.model.simulation
     }
 
     /// Returns the solution of linear theory.
     pub(crate) fn linear(&self) -> Option<&Simulation> {
-        self.linear.as_ref()
+        self.model.linear.as_ref()
     }
 
     pub(crate) fn geometry(&self) -> &DisplayGeometry {
-        &self.geometry
+        &self.model.geometry
     }
 
     /// Returns the equations of the displayed body, for bodies on the same mesh.
     pub(crate) fn equations(&self) -> Equations {
-        Equations::new(self.simulation.scene(), self.simulation.system(), Some(self.geometry.clone()))
+        self.model.equations()
     }
 
     pub(crate) fn playback(&self) -> &Playback {
@@ -251,7 +232,7 @@ impl Session {
     }
 
     pub(crate) fn quality(&self) -> &Quality {
-        &self.quality
+        &self.model.quality
     }
 
     pub(crate) fn facts(&self) -> &Facts {
@@ -262,7 +243,7 @@ impl Session {
     /// there is none; `None` while neither is known.
     pub(crate) fn reference(&self) -> Option<Result<&Reference, &Sentence>> {
         static UNSTABLE: LazyLock<Sentence> = LazyLock::new(|| (&StudyError::Unstable).into());
-        if is_unstable(&self.simulation, false) {
+        if is_unstable(&self.model.simulation, false) {
             return Some(Err(&UNSTABLE));
         }
         let facts = &self.facts.reference;
@@ -294,7 +275,7 @@ impl Session {
 
     /// Returns the residual after every iteration since the last change.
     pub(crate) fn residuals(&self) -> &[f64] {
-        &self.residuals
+        &self.model.residuals
     }
 
     /// Returns `true` if a displayed frame makes one iteration.
@@ -322,7 +303,7 @@ impl Session {
 
     /// Returns `true` if the scene is a motion.
     pub(crate) fn is_motion(&self) -> bool {
-        self.simulation.motion().is_some()
+        self.model.simulation.motion().is_some()
     }
 
     /// Returns `true` if iterations or time steps are being made.
@@ -337,7 +318,7 @@ impl Session {
 
     /// Returns `true` if everything is at rest and the next iteration changes nothing.
     pub(crate) fn has_ended(&self) -> bool {
-        self.simulation.is_at_rest() && !self.playback.companions_move()
+        self.model.simulation.is_at_rest() && !self.playback.companions_move()
     }
 
     /// Returns `true` if the scene has unsaved edits.
@@ -350,18 +331,18 @@ impl Session {
     pub(crate) fn fallback(&self) -> Option<&Simulation> {
         // An iterate that was asked for, or of a body that is not dragged, is drawn however far it is from equilibrium.
         let goes_on = self.running && self.is_held && !self.is_slow && !self.is_in_background();
-        let is_wild = goes_on && self.simulation.residual() > WILD;
-        let is_hidden = match self.simulation.status() {
+        let is_wild = goes_on && self.model.simulation.residual() > WILD;
+        let is_hidden = match self.model.simulation.status() {
             Status::Running => is_wild && !self.is_motion(),
-            _ => is_lost(&self.simulation),
+            _ => is_lost(&self.model.simulation),
         };
-        self.fallback.of(&self.simulation).filter(|_| is_hidden)
+        self.fallback.of(&self.model.simulation).filter(|_| is_hidden)
     }
 
     /// Returns the drawn body: the simulation, or the last equilibrium or the body at rest in place of a search that has
     /// found none.
     pub(crate) fn drawn(&self) -> &Simulation {
-        self.fallback().unwrap_or(&self.simulation)
+        self.fallback().unwrap_or(&self.model.simulation)
     }
 
     /// Returns the parts that have changed since the last call.
@@ -393,12 +374,12 @@ impl Session {
     /// [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, EditError> {
         let before = self.version();
-        let has_exploded = self.is_motion() && matches!(self.simulation.status(), Status::Stopped(_));
+        let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
         match edit {
             Edit::Scene(label, scene) => {
                 self.set_scene(*scene)?;
                 self.record(before, Some(label));
-                self.name_edit(label);
+                self.background.before.iter_mut().for_each(|before| before.label = Some(label));
             }
             Edit::Open(source) => {
                 // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
@@ -464,19 +445,19 @@ impl Session {
             self.poll();
             return Ok(());
         }
-        let before = self.simulation.scene().clone();
-        self.simulation.change_scene(&scene)?;
-        let is_another_document = self.background.opens_document();
+        let before = self.model.simulation.scene().clone();
+        self.model.simulation.change_scene(&scene)?;
+        let is_another_document = self.background.before.as_ref().is_some_and(|before| before.is_another_document);
         self.drop_background();
         if !has_mesh_of(&scene, &before) {
-            self.geometry = Arc::new(DisplayGeometry::new(self.simulation.system().mesh()));
+            self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
         }
         self.scene = scene;
         (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
         self.note_size();
         self.scene_changed(&before);
-        let known = self.linear.take();
-        self.linear = solve_linear(self.simulation.scene(), self.simulation.system(), known);
+        let known = self.model.linear.take();
+        self.model.linear = solve_linear(self.model.simulation.scene(), self.model.simulation.system(), known);
         if is_another_document {
             self.start_document();
             self.reset();
@@ -487,8 +468,8 @@ impl Session {
     /// Updates everything that depends on the simulation's scene after it has changed from `before`.
     fn scene_changed(&mut self, before: &Scene) {
         self.changed.scene = true;
-        self.fallback.keep(&self.simulation);
-        let scene = self.simulation.scene();
+        self.fallback.keep(&self.model.simulation);
+        let scene = self.model.simulation.scene();
         if scene == before {
             return;
         }
@@ -496,7 +477,7 @@ impl Session {
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
         self.changed.body |= is_another_body;
-        self.playback.change_scene(&self.simulation, is_another_body);
+        self.playback.change_scene(&self.model.simulation, is_another_body);
         self.facts.turn_to(scene);
         // A time step with other settings takes another time.
         let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
@@ -545,7 +526,8 @@ impl Session {
     pub(crate) fn save(&mut self, path: &Path) -> Result<(), SaveError> {
         let saved = self.document.save(&self.scene, path)?;
         let before = std::mem::replace(&mut self.document, saved);
-        let earlier = self.background.earlier_version().into_iter().chain(self.undo.adjacent_versions(&before.source));
+        let in_background = self.background.before.iter_mut().map(|before| &mut before.version);
+        let earlier = in_background.chain(self.undo.adjacent_versions(&before.source));
         for version in earlier.filter(|version| version.document.source == before.source) {
             version.document.clone_from(&self.document);
         }
@@ -582,11 +564,6 @@ impl Session {
         Some(scene)
     }
 
-    /// Returns `true` if load number `load` of the scene is a moment.
-    pub(crate) fn is_moment(&self, load: usize) -> bool {
-        self.scene.loads.get(load).is_some_and(Load::is_moment)
-    }
-
     /// Starts or stops iterating.
     pub(crate) fn set_running(&mut self, running: bool) {
         self.running = running;
@@ -610,8 +587,8 @@ impl Session {
             return false;
         }
         if self.is_motion() {
-            self.playback.advance(now, &mut self.simulation);
-            self.timings = *self.simulation.last_iteration();
+            self.playback.advance(now, &mut self.model.simulation);
+            self.timings = *self.model.simulation.last_iteration();
             return false;
         }
         // The edit that a drag makes in this frame comes first.
@@ -626,7 +603,7 @@ impl Session {
     fn search(&mut self) {
         self.timings = Timings::default();
         let since = Instant::now();
-        while *self.simulation.status() == Status::Running {
+        while *self.model.simulation.status() == Status::Running {
             self.iterate_once();
             if self.is_slow || since.elapsed() >= self.frame_left {
                 break;
@@ -654,8 +631,8 @@ impl Session {
     /// Makes this number of iterations, or one time step of a motion.
     pub(crate) fn iterate(&mut self, iterations: u32) {
         if self.is_motion() {
-            self.playback.step(&mut self.simulation);
-            self.timings = *self.simulation.last_iteration();
+            self.playback.step(&mut self.model.simulation);
+            self.timings = *self.model.simulation.last_iteration();
             return;
         }
         self.timings = Timings::default();
@@ -663,21 +640,20 @@ impl Session {
     }
 
     fn iterate_once(&mut self) {
-        if *self.simulation.status() == Status::Running {
-            self.simulation.step();
-            self.timings.add(self.simulation.last_iteration());
-            note_residual(&self.simulation, &mut self.residuals);
-            self.fallback.keep(&self.simulation);
+        if *self.model.simulation.status() == Status::Running {
+            self.model.simulation.step();
+            self.timings.add(self.model.simulation.last_iteration());
+            note_residual(&self.model.simulation, &mut self.model.residuals);
+            self.fallback.keep(&self.model.simulation);
         }
     }
 
     /// Pauses, and makes one iteration or time step; a finished iteration restarts from rest.
     pub(crate) fn step(&mut self) {
         self.running = false;
-        let is_at_rest = self.simulation.is_at_rest();
+        let is_at_rest = self.model.simulation.is_at_rest();
         if self.is_in_background() {
-            let start = if is_at_rest { SolveStart::Rest } else { SolveStart::Present };
-            return self.restart_in_background(start, Some(1));
+            return self.restart_in_background(is_at_rest, Some(1));
         }
         if !self.is_motion() && is_at_rest {
             self.reset();
@@ -688,10 +664,10 @@ impl Session {
     /// Returns to rest, or to the start of the motion.
     pub(crate) fn reset(&mut self) {
         if self.is_in_background() {
-            return self.restart_in_background(SolveStart::Rest, None);
+            return self.restart_in_background(true, None);
         }
-        self.playback.reset(&mut self.simulation);
-        self.residuals.clear();
+        self.playback.reset(&mut self.model.simulation);
+        self.model.residuals.clear();
     }
 
     /// Adds to the results that are shown those that the state needs: ρ where it has none of its own.
@@ -702,7 +678,7 @@ impl Session {
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
     pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
         self.wait_for_background();
-        while *self.simulation.status() == Status::Running {
+        while *self.model.simulation.status() == Status::Running {
             self.iterate(1);
         }
         if self.is_motion() {
@@ -717,18 +693,18 @@ impl Session {
     /// Solves the scene from rest and certifies the result; for a body so small that this takes less than a frame.
     pub(crate) fn solve_from_rest(&mut self) {
         self.reset();
-        while *self.simulation.status() == Status::Running {
+        while *self.model.simulation.status() == Status::Running {
             self.iterate(1);
         }
         self.certify();
     }
 
     fn certify(&mut self) {
-        self.simulation.certify();
-        self.fallback.keep(&self.simulation);
-        let mut quality = std::mem::take(&mut self.quality);
+        self.model.simulation.certify();
+        self.fallback.keep(&self.model.simulation);
+        let mut quality = std::mem::take(&mut self.model.quality);
         quality.update(self.drawn());
-        self.quality = quality;
+        self.model.quality = quality;
     }
 
     /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
@@ -737,17 +713,13 @@ impl Session {
             match task.poll() {
                 Update::None | Update::Progress(()) => return true,
                 Update::Done(certified) => {
-                    let (simulation, quality) = *certified;
-                    let own = &self.simulation;
+                    let (own, simulation) = (&self.model.simulation, &certified.0);
                     let is_current = simulation.state() == own.state()
                         && simulation.scene() == own.scene()
                         && simulation.status() == own.status()
                         && own.mouse_spring().is_none();
-                    if is_current && simulation.status().is_success() {
-                        (self.simulation, self.quality) = (simulation, quality);
-                        self.fallback.keep(&self.simulation);
-                    } else if is_current {
-                        self.simulation = simulation;
+                    if is_current {
+                        (self.model.simulation, self.model.quality) = *certified;
                         self.certify();
                     }
                 }
@@ -755,10 +727,10 @@ impl Session {
             }
             self.certifying = None;
         }
-        let is_known = !self.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
-            && self.quality.is_of(&self.simulation);
-        let is_small = self.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
-        let copy = self.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
+        let is_known = !self.model.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
+            && self.model.quality.is_of(&self.model.simulation);
+        let is_small = self.model.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
+        let copy = self.model.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
         let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {
             let work = move |_: &Reporter<_, _>| {
                 let quality = Quality::certified(&mut copy);
@@ -803,12 +775,12 @@ impl Session {
     /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
     /// when a drag begins. Returns `true` while it is pending.
     fn follow_reference(&mut self) -> bool {
-        let is_compared = self.simulation.status().is_success() && self.simulation.mouse_spring().is_none();
-        if !is_compared || self.simulation.system().dofs() > MAX_CERTIFIED_HERE {
+        let is_compared = self.model.simulation.status().is_success() && self.model.simulation.mouse_spring().is_none();
+        if !is_compared || self.model.simulation.system().dofs() > MAX_CERTIFIED_HERE {
             return self.live.poll();
         }
-        let linear = self.linear.as_ref().and_then(first_probe);
-        let compared = Compared { own: first_probe(&self.simulation), linear };
+        let linear = self.model.linear.as_ref().and_then(first_probe);
+        let compared = Compared { own: first_probe(&self.model.simulation), linear };
         self.live.request(&self.scene, compared)
     }
 
@@ -827,8 +799,8 @@ impl Session {
             return;
         }
         let timed = self.timed.take().map(|(timed, _)| timed);
-        let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.simulation.system()));
-        let timed = timed.or_else(|| Simulation::with_system(&self.scene, self.simulation.system().clone()).ok());
+        let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.model.simulation.system()));
+        let timed = timed.or_else(|| Simulation::with_system(&self.scene, self.model.simulation.system().clone()).ok());
         let Some(mut timed) = timed.filter(|_| !IS_PAGE) else { return };
         if timed.change_scene(&self.scene).is_ok() {
             timed.reset();
@@ -860,7 +832,7 @@ impl Session {
     /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
     pub(crate) fn lacks_rho(&self) -> bool {
         let is_warped = self.scene.solver.method == MethodKind::Warped && !self.is_motion();
-        is_warped && self.has_ended() && *self.simulation.status() != Status::Converged
+        is_warped && self.has_ended() && *self.model.simulation.status() != Status::Converged
     }
 
     /// Computes ρ at the equilibrium, and waits for it.
@@ -870,7 +842,7 @@ impl Session {
 
     /// Displays `state`; returns `false` if it does not fit the mesh.
     pub(crate) fn restore(&mut self, state: &State) -> bool {
-        self.simulation.restore(state).is_ok()
+        self.model.simulation.restore(state).is_ok()
     }
 
     /// Grabs, pulls and releases the body, and its companion motions under other integrators. A release restores the
@@ -883,10 +855,10 @@ impl Session {
             self.start_grab(point);
         }
         if let Some(target) = grab.target
-            && self.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
+            && self.model.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
         {
             // Pulling fails only for a position that is not finite; the pointer's is.
-            let _ = self.simulation.pull_to(target);
+            let _ = self.model.simulation.pull_to(target);
             self.playback.pull_to(target);
             self.is_edited_now = true;
         }
@@ -898,17 +870,15 @@ impl Session {
     /// Grabs the body at a material point. If the body is in equilibrium, a copy is grabbed and the original is kept
     /// for the release.
     fn start_grab(&mut self, point: MaterialPoint) {
-        let is_final = self.simulation.status().is_success();
-        match self.simulation.equilibrium().filter(|_| is_final).map(Equilibrium::snapshot) {
+        let is_final = self.model.simulation.status().is_success();
+        match self.model.snapshot().filter(|_| is_final) {
             Some(mut copy) => {
-                if copy.grab(point) {
-                    let simulation = std::mem::replace(&mut self.simulation, copy);
-                    let residuals = self.residuals.clone();
-                    self.before_grab = Some(BeforeGrab { simulation, timings: self.timings, residuals });
+                if copy.simulation.grab(point) {
+                    self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.timings));
                 }
             }
             None => {
-                if self.simulation.grab(point) {
+                if self.model.simulation.grab(point) {
                     self.playback.grab(point);
                 }
             }
@@ -917,25 +887,25 @@ impl Session {
 
     fn release(&mut self) {
         let before = self.before_grab.take();
-        if let Some(before) = before.filter(|before| before.simulation.scene() == self.simulation.scene()) {
-            (self.simulation, self.timings, self.residuals) = (before.simulation, before.timings, before.residuals);
+        if let Some(before) = before.filter(|(model, _)| model.simulation.scene() == self.model.simulation.scene()) {
+            (self.model, self.timings) = before;
             return;
         }
-        self.simulation.release();
+        self.model.simulation.release();
         self.playback.release();
     }
 
     /// Displays the recorded moment of a motion that is closest to `time`, s, and pauses there.
     pub(crate) fn show_moment(&mut self, time: f64) {
         self.running = false;
-        self.playback.show_moment(time, &mut self.simulation);
+        self.playback.show_moment(time, &mut self.model.simulation);
     }
 
     /// Displays the next recorded moment (`forward`) or the previous one, and pauses there. After the last one, makes a
     /// time step.
     pub(crate) fn show_neighbour(&mut self, forward: bool) {
         self.running = false;
-        let is_shown = self.playback.show_neighbour(forward, &mut self.simulation);
+        let is_shown = self.playback.show_neighbour(forward, &mut self.model.simulation);
         if forward && !is_shown {
             self.iterate(1);
         }
@@ -949,7 +919,7 @@ impl Session {
     /// Adds the same motion under another integrator, or removes it.
     pub(crate) fn toggle_companion(&mut self, integrator: IntegratorKind) {
         if self.is_motion() && integrator != self.scene.dynamics.integrator {
-            self.playback.toggle(integrator, &self.simulation);
+            self.playback.toggle(integrator, &self.model.simulation);
         }
     }
 

@@ -8,7 +8,7 @@ use web_time::Duration;
 
 use crate::app::ThemeChoice;
 use crate::app::language::{self, Language, tr};
-use crate::app::modes::compare::{MotionPane, Pane, PaneSetting};
+use crate::app::modes::compare::{Pane, PaneSetting};
 use crate::app::modes::learn::{self};
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::{Drawer, Magnification, MeasureTab, Mode, ViewOptions};
@@ -100,7 +100,7 @@ impl Lab {
 
     /// Returns the panes in which motions are compared.
     #[must_use]
-    pub fn motion_panes(&self) -> &[MotionPane] {
+    pub fn motion_panes(&self) -> &[Pane] {
         self.desk.motions.panes()
     }
 
@@ -190,8 +190,7 @@ impl Lab {
     #[must_use]
     pub fn camera(&self) -> Camera {
         match self.desk.view.mode {
-            Mode::Compare if self.desk.session.is_motion() => self.desk.motions.camera(),
-            Mode::Compare => self.desk.compare.camera(),
+            Mode::Compare => self.desk.comparison().camera(),
             _ => self.desk.viewport.camera(),
         }
     }
@@ -261,11 +260,6 @@ impl Lab {
     /// Shows the outline of the same motion under another integrator; if it is shown, hides it.
     pub fn compare_with(&mut self, integrator: IntegratorKind) {
         self.desk.session.toggle_companion(integrator);
-    }
-
-    /// Sets the playback speed of a motion, simulated seconds per second, at most 1.
-    pub fn set_speed(&mut self, speed: f64) {
-        self.desk.session.set_speed(speed);
     }
 
     /// Returns `true` while a displayed result of the scene is being computed in the background.
@@ -345,10 +339,8 @@ impl Lab {
 
     /// Returns the displayed bodies, as of the last [`Self::ui`], at this number of pixels per point.
     pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
-        let Desk { view, session, compare, motions, .. } = &self.desk;
-        match view.mode {
-            Mode::Compare if session.is_motion() => motions.views(view.wireframe, pixels_per_point),
-            Mode::Compare => compare.views(view.wireframe, pixels_per_point),
+        match self.desk.view.mode {
+            Mode::Compare => self.desk.comparison().views(self.desk.view.wireframe, pixels_per_point),
             _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
         }
     }

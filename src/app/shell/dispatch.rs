@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said};
-use crate::app::modes::compare::{Compare, MotionCompare};
+use crate::app::modes::compare::Compare;
 use crate::app::modes::figure;
 use crate::app::modes::learn;
 use crate::app::session::{Changed, Edit};
@@ -35,8 +35,7 @@ impl Lab {
         if changed.document {
             panel.clear();
             measure.open(session.scene());
-            *compare = Compare::default();
-            *motions = MotionCompare::default();
+            (*compare, *motions) = (Compare::new(false), Compare::new(true));
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;
@@ -264,7 +263,7 @@ impl Lab {
         if let Some(load) = interaction.restore
             && let Some(restored) = self.desk.session.with_original_load(load)
         {
-            let label = if self.desk.session.is_moment(load) { "Moment" } else { "Force" };
+            let label = if restored.loads.get(load).is_some_and(Load::is_moment) { "Moment" } else { "Force" };
             edit(self, label, restored);
         }
     }

@@ -2,7 +2,7 @@
 
 use web_time::Duration;
 
-use crate::app::modes::compare::{Compare, MotionCompare, PaneInput};
+use crate::app::modes::compare::Compare;
 use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::measure::Measure;
@@ -39,8 +39,9 @@ pub(super) struct Desk {
     pub viewport: BodyView,
     pub view: ViewOptions,
     pub panel: PanelState,
+    /// Comparisons of equilibria and of motions.
     pub compare: Compare,
-    pub motions: MotionCompare,
+    pub motions: Compare,
     pub measure: Measure,
     pub sections: SectionPlot,
 }
@@ -52,8 +53,8 @@ impl Desk {
             session,
             view: ViewOptions::default(),
             panel: PanelState::default(),
-            compare: Compare::default(),
-            motions: MotionCompare::default(),
+            compare: Compare::new(false),
+            motions: Compare::new(true),
             measure: Measure::default(),
             sections: SectionPlot::default(),
         }
@@ -73,22 +74,9 @@ impl Desk {
         (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
     }
 
-    /// Returns the common input of the panes of Compare.
-    pub(super) fn pane_input<'a>(
-        session: &'a Session,
-        view: &'a ViewOptions,
-        panel: &PanelState,
-        eases: bool,
-    ) -> PaneInput<'a> {
-        PaneInput {
-            scene: session.scene(),
-            view,
-            direction: panel.force_direction(),
-            opening: OpeningLoads::of(&session.document().opened),
-            eases,
-            last: session.fallback(),
-            own: session.equations(),
-        }
+    /// Returns the comparison of the scene.
+    pub(super) fn comparison(&self) -> &Compare {
+        if self.session.is_motion() { &self.motions } else { &self.compare }
     }
 }
 
@@ -229,7 +217,7 @@ impl Lab {
             let Desk { session, motions, .. } = &mut self.desk;
             session.poll();
             session.rest();
-            motions.advance(session.scene(), &session.equations(), now, session.is_running());
+            motions.advance_motions(session.scene(), &session.equations(), now, session.is_running());
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
@@ -248,7 +236,7 @@ impl Lab {
     #[must_use]
     pub fn iterates(&self) -> bool {
         if self.compares_motions() {
-            return self.desk.session.is_running() && self.desk.motions.moves() && !self.desk.motions.is_timing;
+            return self.desk.session.is_running() && self.desk.motions.goes_on() && !self.desk.motions.is_timing;
         }
         self.desk.session.iterates()
     }
@@ -311,7 +299,7 @@ impl Lab {
 
     /// Returns the state that bars, panel and cards show.
     pub(super) fn readout(&self) -> Readout<'_> {
-        let Desk { session, viewport, view, compare, motions, .. } = &self.desk;
+        let Desk { session, viewport, view, .. } = &self.desk;
         let (facts, reference) = (session.facts(), session.reference());
         Readout {
             reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
@@ -339,8 +327,7 @@ impl Lab {
             linear: session.linear(),
             running: session.is_running(),
             ended: match view.mode {
-                Mode::Compare if session.is_motion() => !motions.moves(),
-                Mode::Compare => !compare.is_iterating(),
+                Mode::Compare => !self.desk.comparison().goes_on(),
                 _ => session.has_ended(),
             },
             playback: session.playback(),

@@ -7,7 +7,7 @@ use egui::{Button, CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo, vec
 use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
 use crate::app::language::{self, spaced, tr};
-use crate::app::modes::compare::{Compare, CompareInput, MotionCompare, PaneInput};
+use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::explore::motion_plot;
 use crate::app::modes::learn;
 use crate::app::panel::{self, PANEL_WIDTH};
@@ -19,6 +19,7 @@ use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::menu;
 use crate::app::viewport::{overlay, time_line};
+use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{self, Palette};
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
@@ -66,7 +67,10 @@ impl Lab {
         match self.desk.view.mode {
             Mode::Explore => self.plots(ui, &mut actions),
             Mode::Learn => self.card_row(ui, &mut actions),
-            Mode::Compare => self.comparison_bars(ui),
+            Mode::Compare => {
+                let (compare, input) = self.compared();
+                compare.bars(ui, &input);
+            }
             Mode::Measure => {
                 let mut measure = std::mem::take(&mut self.desk.measure);
                 let (Desk { session, view, .. }, shown) = (&self.desk, self.readout().shown);
@@ -199,36 +203,19 @@ impl Lab {
         });
     }
 
-    /// Shows the presets over the compared panes.
-    fn comparison_bars(&mut self, ui: &mut Ui) {
-        if self.desk.session.is_motion() {
-            let (motions, input) = self.compared_motions();
-            return motions.bars(ui, &input);
-        }
-        let (compare, input) = self.compared();
-        compare.bars(ui, &input);
-    }
-
     /// Shows the compared panes in place of the body.
     fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
         let rect = ui.available_rect_before_wrap();
         self.desk.viewport.set_rect(rect);
-        let interaction = if self.desk.session.is_motion() {
-            let (motions, input) = self.compared_motions();
-            motions.show(ui, &input)
-        } else {
-            // The reference solution does not depend on the iteration of the panel's own setting.
-            let is_pressed = ui.input(|i| i.pointer.any_down());
-            if !is_pressed && !self.desk.compare.is_iterating() && self.desk.session.request_reference() {
-                ui.ctx().request_repaint_after(POLL);
-            }
-            let (compare, input) = self.compared();
-            compare.show(ui, &input)
-        };
+        // The reference solution does not depend on the iteration of the panel's own setting.
+        let is_wanted = !self.desk.session.is_motion() && !ui.input(|i| i.pointer.any_down());
+        if is_wanted && !self.desk.compare.goes_on() && self.desk.session.request_reference() {
+            ui.ctx().request_repaint_after(POLL);
+        }
+        let (compare, input) = self.compared();
+        let interaction = compare.show(ui, &input);
         self.edit_loads(ui.ctx(), &interaction, requests);
-        let Desk { session, compare, motions, .. } = &self.desk;
-        let is_moved = if session.is_motion() { motions.is_moved() } else { compare.is_moved() };
-        if is_moved {
+        if self.desk.comparison().is_moved() {
             fit_button(ui, rect, actions);
         }
         let painter = ui.painter_at(rect);
@@ -236,25 +223,27 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// Returns the comparison of equilibria, and its input.
+    /// Returns the comparison of the scene, and its input.
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
-        let Desk { session, viewport, view, panel, measure, compare, .. } = &mut self.desk;
+        let Desk { session, viewport, view, panel, measure, compare, motions, .. } = &mut self.desk;
+        let is_motion = session.is_motion();
+        let live = session.live().filter(|_| !is_motion);
         let input = CompareInput {
-            common: Desk::pane_input(session, view, panel, viewport.eases()),
-            reference: session.facts().reference.get(session.scene()).or(session.live().map(|live| &live.reference)),
-            live: session.live(),
+            scene: session.scene(),
+            view,
+            direction: panel.force_direction(),
+            opening: OpeningLoads::of(&session.document().opened),
+            eases: viewport.eases(),
+            last: session.fallback(),
+            own: session.equations(),
+            reference: session.facts().reference.get(session.scene()).or(live.map(|live| &live.reference)),
+            live,
             reference_failure: session.facts().reference.failure(session.scene()),
             from_rest: session.timed_from_rest(),
             running: session.is_running(),
             chosen: measure.budget.chosen(session.scene()),
         };
-        (compare, input)
-    }
-
-    /// Returns the comparison of motions, and its input.
-    fn compared_motions(&mut self) -> (&mut MotionCompare, PaneInput<'_>) {
-        let Desk { session, viewport, view, panel, motions, .. } = &mut self.desk;
-        (motions, Desk::pane_input(session, view, panel, viewport.eases()))
+        (if is_motion { motions } else { compare }, input)
     }
 
     /// Shows the row of cards under the body.

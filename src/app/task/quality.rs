@@ -8,7 +8,7 @@ use crate::simulation::{Deformation, Simulation, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
 
 /// Quality of the last state that was evaluated.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
     /// Estimated discretization error in the energy norm, percent.

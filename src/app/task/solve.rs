@@ -1,4 +1,4 @@
-//! Solve of a large model: request, progress and result.
+//! Model of a scene, and its solve in the background: request, progress and result.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -7,12 +7,12 @@ use web_time::{Duration, Instant};
 
 use crate::app::platform::IS_PAGE;
 use crate::app::task::quality::Quality;
+use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, Invalid, MethodKind, Scene, SolverSettings};
-use crate::sentence::sentence;
+use crate::scene::{Analysis, Beam, Invalid, MeshFile, MethodKind, Scene, SolverSettings};
+use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
-use crate::state::State;
 
 /// Largest number of unknowns of a model that is meshed and solved between two frames.
 pub(crate) const MAX_UNKNOWNS: u64 = 16_000;
@@ -25,58 +25,89 @@ const SNAPSHOT: Duration = Duration::from_millis(100);
 /// Largest number of residuals recorded for one solve.
 const MAX_RESIDUALS: usize = 400;
 
-/// Simulation, and the one of linear theory on the same equations; `None` if it could not be set up.
+/// Equations of a scene's mesh, and its display geometry, that several models share.
+#[derive(Clone, Debug)]
+pub(crate) struct Equations {
+    beam: Option<Beam>,
+    mesh: Option<MeshFile>,
+    pub system: Arc<System>,
+    geometry: Arc<DisplayGeometry>,
+}
+
+/// Simulation with everything that is displayed with it.
 #[derive(Debug)]
-pub(crate) struct Bodies {
+pub(crate) struct Model {
     pub simulation: Simulation,
+    /// Solution of linear theory on the same equations; `None` if it could not be set up, or has not been asked for.
     pub linear: Option<Simulation>,
+    pub geometry: Arc<DisplayGeometry>,
+    /// Residual after every iteration since the last change.
+    pub residuals: Vec<f64>,
+    pub quality: Quality,
 }
 
-impl Bodies {
-    /// Returns copies of both simulations to display while the solve goes on; `None` for a motion, which has no
-    /// search.
+impl Model {
+    /// Creates the model of a simulation on a mesh with this display geometry, or a new one.
+    pub(crate) fn new(simulation: Simulation, geometry: Option<Arc<DisplayGeometry>>) -> Self {
+        let geometry = geometry.unwrap_or_else(|| Arc::new(DisplayGeometry::new(simulation.system().mesh())));
+        Self { simulation, linear: None, geometry, residuals: Vec::new(), quality: Quality::default() }
+    }
+
+    /// Returns a copy to display while the solve goes on; `None` for a motion, which has no search.
     pub(crate) fn snapshot(&self) -> Option<Self> {
-        let linear = self.linear.as_ref().and_then(Simulation::equilibrium).map(Equilibrium::snapshot);
-        Some(Self { simulation: self.simulation.equilibrium()?.snapshot(), linear })
+        Some(Self {
+            simulation: self.simulation.equilibrium()?.snapshot(),
+            linear: self.linear.as_ref().and_then(Simulation::equilibrium).map(Equilibrium::snapshot),
+            geometry: self.geometry.clone(),
+            residuals: self.residuals.clone(),
+            quality: self.quality.clone(),
+        })
     }
 
-    /// Returns the display geometry of a new mesh.
-    pub(crate) fn geometry(&self) -> Arc<DisplayGeometry> {
-        // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
-        let _ = self.simulation.system().recovery();
-        Arc::new(DisplayGeometry::new(self.simulation.system().mesh()))
+    /// Returns the equations, for models on the same mesh.
+    pub(crate) fn equations(&self) -> Equations {
+        let Scene { beam, mesh, .. } = self.simulation.scene();
+        let (system, geometry) = (self.simulation.system().clone(), self.geometry.clone());
+        Equations { beam: beam.clone(), mesh: mesh.clone(), system, geometry }
     }
 }
 
-/// Model that a solve starts with.
+/// Part of a model that exists before a solve.
 #[derive(Debug)]
-pub(crate) enum Model {
-    /// Existing model, with its display geometry if that has not been displayed yet.
-    Existing(Box<(Bodies, Option<Arc<DisplayGeometry>>)>),
-    /// New model on existing equations.
-    Equations(Arc<System>),
-    /// New model, which is meshed first.
-    New,
+pub(crate) enum Base {
+    Model(Box<Model>),
+    Equations(Equations),
+    /// Nothing: a mesh is made first.
+    None,
 }
 
-/// State that a solve starts from.
-#[derive(Debug, Default)]
-pub(crate) enum SolveStart {
-    /// Current state of the model.
-    #[default]
-    Present,
-    Rest,
-    State(State),
-}
+impl Base {
+    /// Returns the equations for a scene's mesh, if they are among `known`.
+    pub(crate) fn among(known: &[Equations], scene: &Scene) -> Self {
+        let own = known.iter().find(|own| own.beam == scene.beam && own.mesh == scene.mesh);
+        own.cloned().map_or(Self::None, Self::Equations)
+    }
 
-impl SolveStart {
-    /// Sets the state that a solve starts from. A state of another mesh does not fit and is ignored.
-    pub(crate) fn apply(&self, simulation: &mut Simulation) {
-        match self {
-            Self::Present => {}
-            Self::Rest => simulation.reset(),
-            Self::State(state) => _ = simulation.restore(state),
-        }
+    /// Sets up the model of a scene, before its first iteration.
+    ///
+    /// # Errors
+    /// [`SimulationError`].
+    pub(crate) fn set_up(self, scene: &Scene) -> Result<Box<Model>, SimulationError> {
+        Ok(match self {
+            Self::Model(mut model) => {
+                if model.simulation.scene() != scene {
+                    model.simulation.change_scene(scene)?;
+                }
+                model
+            }
+            Self::Equations(Equations { system, geometry, .. }) => {
+                Box::new(Model::new(Simulation::with_system(scene, system)?, Some(geometry)))
+            }
+            Self::None => {
+                check_size(scene)?;
+                Box::new(Model::new(Simulation::new(scene)?, None))
+            }
+        })
     }
 }
 
@@ -84,24 +115,14 @@ impl SolveStart {
 #[derive(Debug)]
 pub(crate) struct SolveRequest {
     pub scene: Scene,
-    pub model: Model,
-    pub start: SolveStart,
+    pub base: Base,
+    /// `true` if the solve starts from rest, not from the state of its base.
+    pub from_rest: bool,
     /// Largest number of iterations; `None` for no limit.
     pub iterations: Option<u32>,
-    /// Residuals recorded before the solve.
-    pub residuals: Vec<f64>,
     /// `true` if the main view shows the model: the solve then reports snapshots, and also computes the solution of
     /// linear theory and the quality.
     pub is_displayed: bool,
-}
-
-/// Model to display, at one instant.
-#[derive(Debug)]
-pub(crate) struct Snapshot {
-    pub bodies: Bodies,
-    /// Display geometry of a new mesh.
-    pub geometry: Option<Arc<DisplayGeometry>>,
-    pub residuals: Vec<f64>,
 }
 
 /// Current phase of a solve.
@@ -118,7 +139,7 @@ pub(crate) enum Phase {
 #[derive(Debug)]
 pub(crate) enum SolveProgress {
     Phase(Phase),
-    Snapshot(Box<Snapshot>, Receipt),
+    Snapshot(Box<Model>, Receipt),
 }
 
 /// Receipt of a snapshot, dropped when the snapshot has been received: until then no other one is made, so that those of
@@ -133,22 +154,78 @@ impl Receipt {
     }
 }
 
-/// Solved model: the original, not a copy.
+/// Solved model, or the error of a scene that has none.
+pub(crate) type SolveOutcome = Result<Box<Model>, SimulationError>;
+
+/// Update of a background solve: a snapshot, or the result.
+pub(crate) type SolveUpdate = Update<Box<Model>, SolveOutcome>;
+
+/// Solve in a background thread, or on a web page after the current frame. Dropping it cancels it.
 #[derive(Debug)]
-pub(crate) struct Solved {
-    pub snapshot: Snapshot,
-    /// Quality of a displayed model whose iteration has ended.
-    pub quality: Option<Quality>,
+pub(crate) struct BackgroundSolve {
+    task: Task<SolveProgress, SolveOutcome>,
+    scene: Scene,
+    phase: Phase,
 }
 
-/// Error of a scene that has no model; the existing model is unchanged.
-#[derive(Debug)]
-pub(crate) struct Rejected {
-    pub error: SimulationError,
-    pub model: Option<(Bodies, Option<Arc<DisplayGeometry>>)>,
-}
+impl BackgroundSolve {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// The system cannot start another thread.
+    pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
+        let phase = if matches!(request.base, Base::None) { Phase::Meshing } else { Phase::Iterating(0) };
+        let scene = request.scene.clone();
+        let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
+        Ok(Self { task: Task::start("solve", work)?, scene, phase })
+    }
 
-pub(crate) type SolveOutcome = Result<Box<Solved>, Box<Rejected>>;
+    /// Returns the scene that is solved.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    pub(crate) fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Cancels the solve; it ends with the model that it has.
+    pub(crate) fn cancel(&self) {
+        self.task.cancel();
+    }
+
+    /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended. Snapshots are
+    /// dropped.
+    pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Model>, Sentence>> {
+        loop {
+            return Some(match self.next(false) {
+                SolveUpdate::None => return None,
+                SolveUpdate::Progress(_) => continue,
+                SolveUpdate::Done(outcome) => outcome.map_err(|error| (&error).into()),
+                SolveUpdate::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
+            });
+        }
+    }
+
+    /// Returns the next update, and records the phases that are reported before it; waits for it if `waits` is `true`.
+    pub(crate) fn next(&mut self, waits: bool) -> SolveUpdate {
+        loop {
+            return match self.task.next(waits) {
+                Update::Progress(SolveProgress::Phase(phase)) => {
+                    self.phase = phase;
+                    continue;
+                }
+                Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
+                    drop(receipt);
+                    Update::Progress(snapshot)
+                }
+                Update::Done(outcome) => Update::Done(outcome),
+                Update::None => Update::None,
+                Update::Died => Update::Died,
+            };
+        }
+    }
+}
 
 /// Records the residual of an iteration; a new solve starts a new list.
 pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
@@ -200,71 +277,51 @@ pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
     .into())
 }
 
-impl Model {
-    /// Sets up the model of a scene, before its first iteration.
-    ///
-    /// # Errors
-    /// [`Rejected`].
-    pub(crate) fn set_up(self, scene: &Scene) -> Result<(Bodies, Option<Arc<DisplayGeometry>>), Box<Rejected>> {
-        let made = match self {
-            Self::Existing(own) if own.0.simulation.scene() == scene => return Ok(*own),
-            Self::Existing(mut own) => {
-                return match own.0.simulation.change_scene(scene) {
-                    Ok(()) => Ok(*own),
-                    Err(error) => Err(Box::new(Rejected { error, model: Some(*own) })),
-                };
-            }
-            Self::Equations(system) => Simulation::with_system(scene, system),
-            Self::New => check_size(scene).and_then(|()| Simulation::new(scene)),
-        };
-        let simulation = made.map_err(|error| Box::new(Rejected { error, model: None }))?;
-        Ok((Bodies { simulation, linear: None }, None))
-    }
-}
-
 /// Solves; `report` breaks to cancel.
 ///
 /// # Errors
-/// [`Rejected`].
-pub(crate) fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
-    let SolveRequest { scene, model, start, iterations, mut residuals, is_displayed } = request;
-    let is_new = matches!(model, Model::New);
-    let (mut bodies, mut geometry) = model.set_up(&scene)?;
+/// [`SimulationError`].
+fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
+    let SolveRequest { scene, base, from_rest, iterations, is_displayed } = request;
+    let is_new = matches!(base, Base::None);
+    let mut model = base.set_up(&scene)?;
     if is_new {
-        geometry = Some(bodies.geometry());
+        // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
+        let _ = model.simulation.system().recovery();
     }
-    start.apply(&mut bodies.simulation);
-    if is_displayed && bodies.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
-        let known = bodies.linear.take();
+    if from_rest {
+        model.simulation.reset();
+    }
+    if is_displayed && model.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
+        let known = model.linear.take();
         if report(SolveProgress::Phase(Phase::LinearSolve)).is_continue() {
-            bodies.linear = solve_linear(&scene, bodies.simulation.system(), known);
+            model.linear = solve_linear(&scene, model.simulation.system(), known);
         }
     }
+    let is_search = model.simulation.motion().is_none();
     let (mut made, mut shown, receipt) = (0, None::<Instant>, Receipt::default());
-    while bodies.simulation.motion().is_none()
-        && *bodies.simulation.status() == Status::Running
+    while is_search
+        && *model.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
-        && report(SolveProgress::Phase(Phase::Iterating(bodies.simulation.iterations()))).is_continue()
+        && report(SolveProgress::Phase(Phase::Iterating(model.simulation.iterations()))).is_continue()
     {
-        bodies.simulation.step();
-        note_residual(&bodies.simulation, &mut residuals);
+        model.simulation.step();
+        note_residual(&model.simulation, &mut model.residuals);
         made += 1;
         if is_displayed
             && shown.is_none_or(|shown| shown.elapsed() >= SNAPSHOT)
             && receipt.is_received()
-            && let Some(bodies) = bodies.snapshot()
+            && let Some(snapshot) = model.snapshot()
         {
-            let snapshot = Snapshot { bodies, geometry: geometry.take(), residuals: residuals.clone() };
             let _ = report(SolveProgress::Snapshot(Box::new(snapshot), receipt.clone()));
             shown = Some(Instant::now());
         }
     }
-    let mut quality = None;
-    let has_ended = bodies.simulation.motion().is_none() && *bodies.simulation.status() != Status::Running;
+    let has_ended = is_search && *model.simulation.status() != Status::Running;
     if is_displayed && has_ended && report(SolveProgress::Phase(Phase::Certifying)).is_continue() {
-        quality = Some(Quality::certified(&mut bodies.simulation));
+        model.quality = Quality::certified(&mut model.simulation);
     }
-    Ok(Box::new(Solved { snapshot: Snapshot { bodies, geometry, residuals }, quality }))
+    Ok(model)
 }
 
 #[cfg(test)]
@@ -279,10 +336,9 @@ mod tests {
         let scene = Scene::beam(20.0, 1.0).with_cells(600, 9).clamp("left").force("right", [0.0, -100.0]);
         let request = || SolveRequest {
             scene: scene.clone(),
-            model: Model::New,
-            start: SolveStart::Rest,
+            base: Base::None,
+            from_rest: true,
             iterations: None,
-            residuals: Vec::new(),
             is_displayed: true,
         };
         let (held, received) = (RefCell::new(Vec::new()), RefCell::new(0));

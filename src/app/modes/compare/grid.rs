@@ -1,14 +1,13 @@
-//! Common controls of the comparisons of equilibria and of motions: presets, pickers, layout and the key.
+//! Controls of the panes: pickers, layout and the key.
 
 use egui::emath::GuiRounding;
 use egui::{Align, Align2, ComboBox, FontId, Layout, Rect, RichText, Role, Ui, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
 
-use super::setting::PANES;
 use crate::app::language::{fill, tr};
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::overlay;
-use crate::app::widgets::buttons::{choice, option_button};
+use crate::app::widgets::buttons::choice;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, prefix, three_digits};
 use crate::scene::{ElementKind, Scene};
@@ -22,38 +21,6 @@ const PROBE: f32 = 18.0;
 const KEY: f32 = 26.0;
 /// Smallest width of a pane in a row of three, points.
 const NARROWEST: f32 = 290.0;
-
-/// Named settings of all panes.
-pub(super) struct Preset<S> {
-    pub name: String,
-    pub settings: Vec<S>,
-    pub enabled: bool,
-    pub tip: &'static str,
-    /// Reason for which the preset is disabled.
-    pub unless: &'static str,
-}
-
-/// Shows a button for every preset; returns the settings of the preset that was pressed.
-pub(super) fn preset_buttons<S: PartialEq>(
-    ui: &mut Ui,
-    present: &[S],
-    presets: impl IntoIterator<Item = Preset<S>>,
-) -> Option<Vec<S>> {
-    let mut picked = None;
-    for Preset { name, settings, enabled, tip, unless } in presets {
-        let button = ui.add_enabled(enabled, option_button(enabled && present == settings, name));
-        if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
-            picked = Some(settings);
-        }
-    }
-    picked
-}
-
-/// Shows the button that adds a pane to `panes` existing ones; returns `true` if it was pressed.
-pub(super) fn add_button(ui: &mut Ui, panes: usize) -> bool {
-    let button = ui.add_enabled(panes < *PANES.end(), egui::Button::new(tr("+ Pane")));
-    button.on_hover_text(tr("Add a pane")).on_disabled_hover_text(tr("At most four panes")).clicked()
-}
 
 /// Shows the button that closes a pane, at the right end of its row; returns `true` if it was pressed.
 pub(super) fn close_button(ui: &mut Ui, number: usize) -> bool {

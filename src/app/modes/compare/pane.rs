@@ -1,25 +1,37 @@
-//! Pane of the comparison of equilibria: a solve of the scene with settings of its own, and its display.
+//! Pane of a comparison: a run of the scene with settings of its own, and its display.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-use egui::{Color32, Pos2, Rect, Stroke, Ui};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui};
 use nalgebra::Vector2;
 
 use super::CompareInput;
-use super::panes::{ComparedPane, Condition, PaneDisplay};
 use super::setting::PaneSetting;
+use crate::app::diagnosis::{Errors, equilibrium_text};
+use crate::app::language::tr;
 use crate::app::session::WILD;
-use crate::app::session::compared_solve::{ComparedSolve, Equations, PaneEnd};
-use crate::app::session::facts::TimeFact;
+use crate::app::session::clock::FRAMES;
+use crate::app::session::facts::{MotionTimeFact, TimeFact};
 use crate::app::session::fallback::Fallback;
+use crate::app::session::playback::Playback;
+use crate::app::session::run::{PaneEnd, Run};
 use crate::app::task::keyed::Keyed;
+use crate::app::task::solve::{Equations, Model};
 use crate::app::view_options::ViewOptions;
+use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::overlay::{self, Overlay};
+use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
-use crate::app::widgets::palette::Palette;
+use crate::app::viewport::projection::{Projection, viewport};
+use crate::app::widgets::palette::{BODY, Palette};
+use crate::assembly::System;
 use crate::exact_beam::error_percent;
-use crate::render::Camera;
-use crate::scene::Scene;
+use crate::render::display_geometry::DisplayGeometry;
+use crate::render::{Camera, View};
+use crate::scene::{Analysis, Scene};
 use crate::simulation::Simulation;
 use crate::study::Reference;
 
@@ -27,8 +39,7 @@ use crate::study::Reference;
 #[derive(Debug)]
 pub struct Pane {
     pub(super) setting: PaneSetting,
-    pub(super) solve: ComparedSolve,
-    pub(super) display: PaneDisplay,
+    pub(super) run: Run,
     pub(super) error: Option<f64>,
     /// Displacements of the first probe under the last loads, m.
     recent: VecDeque<(Scene, Vector2<f64>)>,
@@ -36,11 +47,53 @@ pub struct Pane {
     fallback: Fallback,
     /// `true` while the load is dragged, and the pane iterates as fast as it can.
     pub(super) is_dragged: bool,
-    /// Time of the solve from rest.
+    /// Time of the solve from rest, and computing time per simulated second of a motion, ms.
     time: Keyed<TimeFact>,
+    motion_time: Keyed<MotionTimeFact>,
+    /// Equations of the displayed body, and its mesh.
+    system: Option<Arc<System>>,
+    geometry: Arc<DisplayGeometry>,
+    pub(super) body_mesh: BodyMesh,
+    /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
+    pub(super) range: Option<[f64; 2]>,
+    /// Area in which the body is drawn.
+    pub(super) place: Option<Rect>,
+    pub(super) pointer: Pointer,
+}
+
+/// Condition of a displayed state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Condition {
+    /// The state is a result for its load.
+    Result,
+    /// The solve has not ended.
+    Unfinished,
+    /// The state belongs to an earlier load.
+    Outdated,
+    /// The state is no result: it is dimmed.
+    Failed,
 }
 
 impl Pane {
+    pub(super) fn new(setting: PaneSetting) -> Self {
+        Self {
+            setting,
+            run: Run::new(setting.iterations),
+            error: None,
+            recent: VecDeque::new(),
+            fallback: Fallback::default(),
+            is_dragged: false,
+            time: Keyed::default(),
+            motion_time: Keyed::default(),
+            system: None,
+            geometry: Arc::default(),
+            body_mesh: BodyMesh::default(),
+            range: None,
+            place: None,
+            pointer: Pointer::default(),
+        }
+    }
+
     /// Returns the settings of the pane.
     #[must_use]
     pub fn setting(&self) -> &PaneSetting {
@@ -50,13 +103,13 @@ impl Pane {
     /// Returns the scene with these settings, after the pane was first shown.
     #[must_use]
     pub fn scene(&self) -> Option<&Scene> {
-        self.solve.scene()
+        self.run.scene()
     }
 
     /// Returns the result of the solve from rest; `None` until it has ended.
     #[must_use]
     pub fn end(&self) -> Option<&PaneEnd> {
-        self.solve.end()
+        self.run.end()
     }
 
     /// Returns the error of the result at the first probe, percent of the reference displacement, as of the last
@@ -72,110 +125,170 @@ impl Pane {
         Some(self.time.get(&self.timed_scene()?)?.timings.total().as_secs_f64())
     }
 
-    /// Returns the scene whose solve is timed: it ends after the setting's number of iterations.
+    /// Returns the computing time of a motion's frame at 60 Hz, s; `None` until it has been measured.
+    #[must_use]
+    pub fn frame_seconds(&self) -> Option<f64> {
+        Some(self.motion_time.get(&self.timed_scene()?)? / 1e3 / FRAMES)
+    }
+
+    /// Returns the scene whose solve, which ends after the setting's number of iterations, or whose motion is timed; `None`
+    /// while there is no result.
     fn timed_scene(&self) -> Option<Scene> {
         let mut scene = self.scene()?.clone();
         scene.solver.accept_after = self.setting.iterations.unwrap_or(scene.solver.accept_after);
-        Some(scene)
+        let is_motion = scene.analysis == Analysis::Dynamic;
+        (if is_motion { self.run.is_sound() } else { self.end().is_some() }).then_some(scene)
     }
 
     /// Returns the time of the solve from rest to show, s: that of the status bar for the panel's settings.
     pub(super) fn shown_seconds(&self, input: &CompareInput<'_>) -> Option<f64> {
-        let is_own = || self.timed_scene().as_ref() == Some(input.common.scene);
+        let is_own = || self.timed_scene().as_ref() == Some(input.scene);
         let of_panel = input.from_rest.filter(|_| is_own()).map(|solve| solve.timings.total().as_secs_f64());
         of_panel.or_else(|| self.seconds())
     }
 
-    /// Requests the time of the solve from rest; returns `true` while it is pending.
+    /// Requests the computing time; returns `true` while it is pending.
     pub(super) fn request_time(&mut self) -> bool {
-        let scene = self.timed_scene().filter(|_| self.end().is_some());
-        scene.is_some_and(|scene| self.time.request(&scene))
+        self.timed_scene().is_some_and(|scene| match scene.analysis {
+            Analysis::Static => self.time.request(&scene),
+            Analysis::Dynamic => self.motion_time.request(&scene),
+        })
     }
 
     /// Measures the time of the solve from rest, and waits for it.
     pub(super) fn wait_for_time(&mut self) {
-        if let Some(scene) = self.timed_scene().filter(|_| self.end().is_some()) {
-            self.time.wait(&scene);
-        }
+        self.timed_scene().iter().for_each(|scene| self.time.wait(scene));
     }
 
     /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
     #[must_use]
     pub fn place(&self) -> Option<Rect> {
-        self.display.place
+        self.place
     }
 
     /// Returns the values of the displayed field at both ends of the colour map, as of the last
     /// [`crate::app::Lab::ui`].
     #[must_use]
     pub fn color_range(&self) -> [f64; 2] {
-        self.display.body_mesh.range
+        self.body_mesh.range
     }
 
     /// Returns the simulation; `None` while it is solved in the background.
     #[must_use]
     pub fn simulation(&self) -> Option<&Simulation> {
-        self.solve.simulation()
+        Some(&self.run.model()?.simulation)
     }
 
-    /// Returns the equations of the simulation and of the displayed body, for other panes with the same mesh.
-    pub(super) fn equations(&self) -> impl Iterator<Item = Equations> {
-        let scene = self.simulation().map(Simulation::scene);
-        self.solve.equations().into_iter().chain(scene.and_then(|scene| self.display.equations(scene)))
+    /// Returns the colour of the pane's method or integrator.
+    pub(super) fn color(&self, scene: &Scene, palette: &Palette) -> Color32 {
+        match scene.analysis {
+            Analysis::Static => palette.method(self.setting.method.unwrap_or(scene.solver.method)),
+            Analysis::Dynamic => palette.integrator(self.setting.integrator.unwrap_or(scene.dynamics.integrator)),
+        }
     }
 
-    /// Restarts from rest.
-    pub(super) fn reset(&mut self) {
-        self.solve.reset();
+    /// Changes the setting, and restarts.
+    pub(super) fn change_setting(&mut self, setting: PaneSetting) {
+        self.setting = setting;
+        self.run.restart(setting.iterations);
+    }
+
+    pub(super) fn condition(&self) -> Condition {
+        if self.run.is_outdated() {
+            Condition::Outdated
+        } else if self.run.has_failed() {
+            Condition::Failed
+        } else if self.run.is_sound() {
+            Condition::Result
+        } else {
+            Condition::Unfinished
+        }
     }
 
     /// Returns the rest position, m, of the material point under the pointer, and the pointer's position.
     pub(super) fn under_pointer(&self) -> Option<(Vector2<f64>, Pos2)> {
-        let (point, at) = self.display.pointer.over_body()?;
-        let mesh = self.display.system.as_ref()?.mesh();
+        let (point, at) = self.pointer.over_body()?;
+        let mesh = self.system.as_ref()?.mesh();
         Some((probe::place(mesh, mesh.nodes(), point)?, at))
     }
 
     /// Shows the value at the material point with the rest position `rest`, m: next to the pointer at `at`, or else
     /// next to the point.
     pub(super) fn show_value(&self, ui: &Ui, view: &ViewOptions, rest: Vector2<f64>, camera: Camera, at: Option<Pos2>) {
-        let PaneDisplay { system, place, body_mesh, .. } = &self.display;
-        let (Some(system), Some(place)) = (system, *place) else { return };
+        let (Some(system), Some(place)) = (&self.system, self.place) else { return };
         let mesh = system.mesh();
         let Some(point) = mesh.locate(rest).filter(|_| self.condition() == Condition::Result) else { return };
-        let Some(now) = probe::place(mesh, &body_mesh.nodes, point) else { return };
+        let Some(now) = probe::place(mesh, &self.body_mesh.nodes, point) else { return };
         let painter = ui.painter_at(place);
         let at = at.unwrap_or_else(|| {
             let there = Projection { camera, rect: place }.point(now);
             painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
             there
         });
-        let value = body_mesh.value_at(mesh, point);
+        let value = self.body_mesh.value_at(mesh, point);
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
     /// Keeps the bodies that are drawn where a search finds no equilibrium: `last`, if the panel describes it for the same
     /// setting.
     pub(super) fn keep_equilibrium(&mut self, last: Option<&Simulation>) {
-        let last = last.filter(|_| self.solve.has_failed());
-        self.solve.displayed().into_iter().chain(last).for_each(|simulation| self.fallback.keep(simulation));
+        let displayed = self.run.displayed().map(|model| &model.simulation);
+        let last = last.filter(|_| self.run.has_failed());
+        displayed.into_iter().chain(last).for_each(|simulation| self.fallback.keep(simulation));
     }
 
-    /// Updates the displayed mesh.
+    /// Returns the body drawn in place of a solve that has found no equilibrium.
+    fn in_place(&self) -> Option<&Simulation> {
+        let is_wild =
+            |simulation: &Simulation| self.is_dragged && !self.run.is_settled() && simulation.residual() > WILD;
+        let is_replaced = |simulation: &&Simulation| self.run.has_failed() || is_wild(simulation);
+        self.fallback.of(self.simulation().filter(is_replaced)?)
+    }
+
+    /// Updates the displayed mesh, with `magnification` times the displacement of the body, whose reference solution may be
+    /// known; `played` is the playing time of a motion, s.
     pub(super) fn update_display(
         &mut self,
         (view, reference): (&ViewOptions, Option<&Reference>),
         magnification: f64,
+        played: Option<f64>,
         visuals: &egui::Visuals,
-        known: &[Equations],
     ) {
-        let is_sound = self.solve.is_sound();
-        if let Some(simulation) =
-            in_place(&self.solve, &self.fallback, self.is_dragged).or_else(|| self.solve.displayed())
-        {
-            self.display.update(simulation, (view, reference.filter(|_| is_sound)), magnification, None, known);
+        let mut mesh = std::mem::take(&mut self.body_mesh);
+        let displayed = self.run.displayed().map(|model| &model.simulation);
+        if let (Some(simulation), Some(Model { geometry, .. })) = (self.in_place().or(displayed), self.run.model()) {
+            if self.system.as_ref().is_none_or(|system| !Arc::ptr_eq(system, simulation.system())) {
+                mesh = BodyMesh::default();
+            }
+            let reference = reference.filter(|_| self.run.is_sound());
+            mesh.update(simulation, geometry, (view, reference), magnification, played);
+            (self.system, self.geometry) = (Some(simulation.system().clone()), geometry.clone());
+            self.range = Some(mesh.range);
         }
-        self.display.body_mesh.color(visuals, view.field);
+        mesh.color(visuals, view.field);
+        self.body_mesh = mesh;
+    }
+
+    /// Returns the equations of the model, for other panes with the same mesh.
+    pub(super) fn equations(&self) -> Option<Equations> {
+        self.run.model().map(Model::equations)
+    }
+
+    /// Returns the input of the render pass, at this number of pixels per point; `None` before the pane was shown.
+    pub(super) fn view(&self, camera: Camera, wireframe: bool, pixels_per_point: f32) -> Option<View<'_>> {
+        let viewport = viewport(self.place?, pixels_per_point);
+        Some(View { viewport, frame: self.body_mesh.frame(&self.geometry, wireframe), camera })
+    }
+
+    /// Returns the loads `scene` of the displayed body at a simulated time, s.
+    pub(super) fn forces<'a>(
+        &'a self,
+        scene: &'a Scene,
+        time: f64,
+        input: &CompareInput<'_>,
+    ) -> Option<ForceArrows<'a>> {
+        let (system, positions) = (self.system.as_ref()?, &self.body_mesh.nodes);
+        Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening: input.opening })
     }
 
     /// Computes the error of the result, if the reference solution is known. One that follows the load may be of a load
@@ -183,7 +296,7 @@ impl Pane {
     pub(super) fn update_error(&mut self, input: &CompareInput<'_>) {
         /// Largest number of results that are kept.
         const MOST: usize = 20;
-        let u = self.solve.answer().filter(|(_, good)| *good).map(|(probe, _)| probe.u);
+        let u = self.run.answer();
         let first = input.reference.and_then(Reference::first);
         let error = |u: Option<Vector2<f64>>| error_percent(u?, first?.displacement);
         let Some(live) = input.live else {
@@ -191,7 +304,7 @@ impl Pane {
             self.error = error(u);
             return;
         };
-        if let Some((scene, u)) = self.solve.scene().cloned().zip(u) {
+        if let Some((scene, u)) = self.run.scene().cloned().zip(u) {
             self.recent.retain(|(earlier, _)| *earlier != scene);
             self.recent.push_front((scene, u));
             self.recent.truncate(MOST);
@@ -200,64 +313,97 @@ impl Pane {
             self.error = error(Some(*u));
         }
     }
-}
-
-/// Returns the body drawn in place of a solve that has found no equilibrium.
-fn in_place<'a>(solve: &ComparedSolve, fallback: &'a Fallback, is_dragged: bool) -> Option<&'a Simulation> {
-    let is_wild = |simulation: &Simulation| is_dragged && !solve.is_settled() && simulation.residual() > WILD;
-    fallback.of(solve.simulation().filter(|simulation| solve.has_failed() || is_wild(simulation))?)
-}
-
-impl ComparedPane for Pane {
-    fn new(setting: PaneSetting) -> Self {
-        let solve = ComparedSolve::new(setting.iterations);
-        Self {
-            setting,
-            solve,
-            display: PaneDisplay::default(),
-            error: None,
-            recent: VecDeque::new(),
-            fallback: Fallback::default(),
-            is_dragged: false,
-            time: Keyed::default(),
+    /// Shows the overlays of the body in its place, with the outline `exact` of the reference solution, m, and a scale bar
+    /// if it is the `first` pane. Moving the view moves it in all panes.
+    pub(super) fn show_body(
+        &mut self,
+        ui: &Ui,
+        number: usize,
+        controller: &mut CameraController,
+        input: &CompareInput<'_>,
+        (exact, magnification): (&[Vec<Vector2<f64>>], f64),
+    ) -> Interaction {
+        let Some(place) = self.place else { return Interaction::default() };
+        let mut pointer = std::mem::take(&mut self.pointer);
+        let condition = self.condition();
+        let in_place = self.in_place().map(Simulation::scene);
+        // The scene whose state diverges, if an equilibrium is displayed in its place.
+        let wanted = self.run.scene().filter(|_| in_place.is_some());
+        let scene = in_place.or(self.run.scene());
+        let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
+        let projection = Projection { camera: controller.camera(), rect: place };
+        let forces = wanted.or(scene).and_then(|scene| self.forces(scene, time, input));
+        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&projection));
+        let system = self.system.as_deref();
+        let targets = HitTargets {
+            // States that are no result show no values.
+            mesh: system.filter(|_| condition == Condition::Result).map(System::mesh),
+            camera: projection.camera,
+            positions: &self.body_mesh.nodes,
+            outline: &self.geometry.boundary,
+            handles: &handles,
+            bases: &[],
+            scales: controller.scales([place.width(), place.height()].map(f64::from)),
+        };
+        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
+        let interaction = pointer.process(ui, &response, &targets, Interactivity::None);
+        match interaction.camera {
+            CameraMove::None => {}
+            CameraMove::To(camera) => {
+                controller.set_camera(camera);
+                ui.ctx().request_repaint();
+            }
+            CameraMove::Fit => controller.fit(),
         }
-    }
-
-    fn own_setting(&self) -> PaneSetting {
-        self.setting
-    }
-
-    fn color(&self, scene: &Scene, palette: &Palette) -> Color32 {
-        self.setting.of(scene).method.map_or(palette.text, |method| palette.method(method))
-    }
-
-    fn change_setting(&mut self, setting: PaneSetting) {
-        self.setting = setting;
-        self.solve.restart(setting.iterations);
-    }
-
-    fn display(&self) -> &PaneDisplay {
-        &self.display
-    }
-
-    fn condition(&self) -> Condition {
-        if self.solve.is_outdated() {
-            Condition::Outdated
-        } else if self.solve.has_failed() {
-            Condition::Failed
-        } else if self.solve.is_sound() {
-            Condition::Result
-        } else {
-            Condition::Unfinished
+        let camera = controller.camera();
+        let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
+        if let Some((scene, system)) = scene.zip(system) {
+            let note = wanted.map(|wanted| equilibrium_text(scene, wanted));
+            let overlay = Overlay {
+                sections: &[],
+                apart: false,
+                scene,
+                wanted,
+                system,
+                geometry: &self.geometry,
+                options: input.view,
+                camera,
+                positions: &self.body_mesh.nodes,
+                magnification,
+                ghost: None,
+                exact: if wanted.is_some() { &[] } else { exact },
+                errors: Errors::default(),
+                live: None,
+                areas: [None; 2],
+                time,
+                direction: input.direction,
+                opening: input.opening,
+                hot: pointer.hot_handle(),
+                mouse_spring: None,
+                reactions: &[],
+                // The past of a motion is not drawn.
+                playback: &Playback::default(),
+                color_range: self.body_mesh.range,
+                has_values: self.body_mesh.has_values(),
+                note: note.as_deref().map(|note| (note, palette.text)),
+            };
+            overlay::body(&painter, place, &overlay, ui.visuals());
         }
-    }
-
-    fn parts(&mut self) -> (Option<(&Scene, f64)>, &mut PaneDisplay) {
-        let fallback = in_place(&self.solve, &self.fallback, self.is_dragged).map(Simulation::scene);
-        (fallback.or_else(|| self.solve.scene()).map(|scene| (scene, 0.0)), &mut self.display)
-    }
-
-    fn unreached(&self) -> Option<&Scene> {
-        self.solve.scene().filter(|_| in_place(&self.solve, &self.fallback, self.is_dragged).is_some())
+        if number == 0 {
+            overlay::scale_bar(&painter, place, &camera, &palette);
+        }
+        match condition {
+            Condition::Result | Condition::Unfinished => {}
+            // An equilibrium in its place is dimmed already.
+            Condition::Failed if wanted.is_some() => {}
+            Condition::Failed => overlay::dim(&painter, place, &palette),
+            Condition::Outdated => {
+                overlay::dim(&painter, place, &palette);
+                let font = FontId::proportional(BODY);
+                painter.text(place.center(), Align2::CENTER_CENTER, tr("solving…"), font, palette.text);
+            }
+        }
+        self.pointer = pointer;
+        interaction
     }
 }
