@@ -30,26 +30,30 @@ pub(crate) enum Curve {
 
 facts! {
     /// Reference solution that errors are measured against.
-    ReferenceFact by without_settings = "reference": Reference, find_reference;
+    ReferenceFact by without_settings = "reference": Reference, |scene, observe, _| {
+        found(Reference::find(scene, None, Effort::Bounded, observe))
+    };
     /// Load–displacement curve.
-    CurveFact = "curve": Curve, curve;
+    CurveFact = "curve": Curve, |scene, observe, _| curve(scene, observe);
     /// End of the load path from rest, and the jumps on it.
-    PathFact = "path": PathFromRest, |scene, observe| Ok(LoadPath::end_of_scene(scene, observe));
+    PathFact = "path": PathFromRest, |scene, observe, _| Ok(LoadPath::end_of_scene(scene, observe));
     /// Limits of every method and element.
-    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe| found(MethodLimits::of(scene, observe, &|_| {})),
-        in parts |scene, observe, partial| {
-            found(MethodLimits::of(scene, observe, &|limits| partial(limits.clone())))
-        };
+    LimitsFact by without_methods = "limits": MethodLimits, |scene, observe, partial| {
+        found(MethodLimits::of(scene, observe, &|limits| partial(limits.clone())))
+    };
     /// Errors and times of elements, meshes and methods; of a motion those on coarse meshes, as finer ones take minutes.
-    StudyFact by without_settings = "study": Study, |scene, observe| study(scene, observe, &|_| ()), in parts study;
+    StudyFact by without_settings = "study": Study, |scene, observe, partial| {
+        let extent = if scene.analysis == Analysis::Dynamic { Extent::Quick } else { Extent::Full };
+        found(Study::with_partial(scene, extent, observe, &mut |study| partial(study.clone())))
+    };
     /// Spectral radius ρ of the warped iteration at the equilibrium.
-    RhoFact by without_solver = "rho": f64, |scene, observe| Ok(fixed_point_rho(scene, observe));
+    RhoFact by without_solver = "rho": f64, |scene, observe, _| Ok(fixed_point_rho(scene, observe));
     /// Time and result of a solve from rest.
-    TimeFact = "time": SolveFromRest, |scene, observe| Ok(time_from_rest(scene, observe));
+    TimeFact = "time": SolveFromRest, |scene, observe, _| Ok(time_from_rest(scene, observe));
     /// Computing time per simulated second of a motion, ms.
-    MotionTimeFact = "motion-time": f64, |scene, observe| Ok(time_of_motion(scene, observe));
+    MotionTimeFact = "motion-time": f64, |scene, observe, _| Ok(time_of_motion(scene, observe));
     /// Lowest natural frequency, Hz.
-    FrequencyFact = "frequency": f64, |scene, observe| Ok(natural_frequency(scene, observe));
+    FrequencyFact = "frequency": f64, |scene, observe, _| Ok(natural_frequency(scene, observe));
 }
 
 /// Largest number of unknowns of a body whose load curve is computed: a curve takes hundreds of iterations.
@@ -110,31 +114,15 @@ impl Facts {
         self.time.turn_to(scene);
     }
 
-    /// Requests the results of a scene at rest; returns `true` while one of them is pending.
-    pub(super) fn request_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>) -> bool {
-        let reference = self.reference.request(scene);
-        let path = self.path.request(scene);
-        let curve = shown.curve && self.curve.request(scene);
-        let rho = shown.rho && self.rho.request(scene);
-        let limits = shown.limits_of.is_some_and(|scene| self.limits.request(scene));
+    /// Requests the results of a scene at rest, or computes them and `waits`; returns `true` while one of them is pending.
+    pub(super) fn request_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>, waits: bool) -> bool {
+        let reference = self.reference.obtain(scene, waits);
+        let path = self.path.obtain(scene, waits);
+        let curve = shown.curve && self.curve.obtain(scene, waits);
+        let rho = shown.rho && self.rho.obtain(scene, waits);
+        let limits = shown.limits_of.is_some_and(|scene| self.limits.obtain(scene, waits));
         // Solves are timed after the other computations, which would slow them down.
-        reference || path || curve || rho || limits || self.time.request(scene)
-    }
-
-    /// Computes the results of a scene at rest, and waits for them.
-    pub(super) fn wait_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>) {
-        self.reference.wait(scene);
-        self.path.wait(scene);
-        if shown.curve {
-            self.curve.wait(scene);
-        }
-        if shown.rho {
-            self.rho.wait(scene);
-        }
-        if let Some(scene) = shown.limits_of {
-            self.limits.wait(scene);
-        }
-        self.time.wait(scene);
+        reference || path || curve || rho || limits || self.time.obtain(scene, waits)
     }
 }
 
@@ -178,15 +166,6 @@ pub(crate) fn with_default_methods(mut scene: Scene) -> Scene {
     let any = SolverSettings::default();
     (scene.solver.method, scene.solver.max_error_percent) = (any.method, any.max_error_percent);
     scene
-}
-
-fn find_reference(scene: &Scene, observe: Observer<'_>) -> Computed<Reference> {
-    found(Reference::find(scene, None, Effort::Bounded, observe))
-}
-
-fn study(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(Study) + Sync)) -> Computed<Study> {
-    let extent = if scene.analysis == Analysis::Dynamic { Extent::Quick } else { Extent::Full };
-    found(Study::with_partial(scene, extent, observe, &mut |study| partial(study.clone())))
 }
 
 fn found<V>(found: Result<V, StudyError>) -> Computed<V> {
@@ -233,7 +212,8 @@ mod tests {
     #[test]
     fn the_curve_of_a_very_large_body_is_refused() {
         let scene = Scene::beam(10.0, 1.0).with_cells(4000, 40).clamp("left").force("right", [0.0, -1.0]);
-        let refused = CurveFact::compute(&scene.probe("tip", "right"), &|_| ControlFlow::Continue(())).unwrap_err();
+        let refused =
+            CurveFact::compute(&scene.probe("tip", "right"), &|_| ControlFlow::Continue(()), &|_| ()).unwrap_err();
         assert!(refused.to_string().contains("`warpbeam curve`"), "{refused}");
     }
 
@@ -242,10 +222,11 @@ mod tests {
     fn results_are_cancelled() {
         fn asked<F: Fact>(scene: &Scene) -> u32 {
             let asked = AtomicU32::new(0);
-            let _ = F::compute(scene, &|_| {
+            let observe = |_: Progress<'_>| {
                 asked.fetch_add(1, Ordering::Relaxed);
                 ControlFlow::Break(())
-            });
+            };
+            let _ = F::compute(scene, &observe, &|_| ());
             asked.into_inner()
         }
         for id in ["cantilever", "snap"] {

@@ -687,7 +687,7 @@ impl Session {
         }
         self.certify();
         let shown = self.with_rho(shown);
-        self.facts.wait_at_rest(&self.scene, shown);
+        self.facts.request_at_rest(&self.scene, shown, true);
     }
 
     /// Solves the scene from rest and certifies the result; for a body so small that this takes less than a frame.
@@ -769,7 +769,7 @@ impl Session {
             return follows || certifies;
         }
         let shown = self.with_rho(shown);
-        self.facts.request_at_rest(&self.scene, shown) || follows || certifies
+        self.facts.request_at_rest(&self.scene, shown, false) || follows || certifies
     }
 
     /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready

@@ -1,13 +1,12 @@
 //! Value of a scene that is computed in the background, and belongs to the scene that it was computed from.
 
 use std::fmt::Debug;
-use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
 use crate::app::task::sent_scene::SentScene;
-use crate::app::task::thread::{Data, Reporter, Task, Update, Work};
+use crate::app::task::thread::{Data, Reporter, Task, Update};
 use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
 use crate::sentence::{Sentence, sentence};
@@ -26,17 +25,8 @@ pub(crate) trait Fact: Debug + 'static {
         scene.clone()
     }
 
-    /// Computes the value of a scene.
-    fn compute(scene: &Scene, observe: Observer<'_>) -> Computed<Self::Value>;
-
     /// Computes the value of a scene; `partial` receives the value so far each time a part of it is known.
-    fn compute_in_parts(
-        scene: &Scene,
-        observe: Observer<'_>,
-        _partial: &(dyn Fn(Self::Value) + Sync),
-    ) -> Computed<Self::Value> {
-        Self::compute(scene, observe)
-    }
+    fn compute(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(Self::Value) + Sync)) -> Computed<Self::Value>;
 }
 
 /// Progress report of a computation.
@@ -48,11 +38,10 @@ pub(crate) enum FactProgress<V> {
     SoFar(V),
 }
 
-/// Defines kinds of values, each by its name, its type, the function that computes it, `by` its key where that is not
-/// the whole scene, and the function that computes it `in parts` where it becomes known in parts.
+/// Defines kinds of values, each by its name, its type, the function that computes it, and `by` its key where that is not
+/// the whole scene.
 macro_rules! facts {
-    ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr
-        $(, in parts $parts:expr)?;)*) => {$(
+    ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr;)*) => {$(
         $(#[$about])*
         #[derive(Debug)]
         pub(crate) struct $kind;
@@ -68,47 +57,28 @@ macro_rules! facts {
             fn compute(
                 scene: &$crate::scene::Scene,
                 observe: $crate::progress::Observer<'_>,
-            ) -> $crate::app::task::keyed::Computed<$value> {
-                let compute: fn(
-                    &$crate::scene::Scene,
-                    $crate::progress::Observer<'_>,
-                ) -> $crate::app::task::keyed::Computed<$value> = $compute;
-                compute(scene, observe)
-            }
-
-            $(fn compute_in_parts(
-                scene: &$crate::scene::Scene,
-                observe: $crate::progress::Observer<'_>,
                 partial: &(dyn Fn($value) + Sync),
             ) -> $crate::app::task::keyed::Computed<$value> {
                 let compute: fn(
                     &$crate::scene::Scene,
                     $crate::progress::Observer<'_>,
                     &(dyn Fn($value) + Sync),
-                ) -> $crate::app::task::keyed::Computed<$value> = $parts;
+                ) -> $crate::app::task::keyed::Computed<$value> = $compute;
                 compute(scene, observe, partial)
-            })?
+            }
         }
     )*};
 }
 pub(crate) use facts;
 
-/// Request for a value.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub(crate) struct FactWork<F>(SentScene, PhantomData<fn() -> F>);
-
-impl<F: Fact> Work for FactWork<F> {
-    const NAME: &'static str = F::NAME;
-    type Reported = FactProgress<F::Value>;
-    type Output = Computed<F::Value>;
-
-    fn run(self, reporter: &Reporter<Self::Reported, Self::Output>) -> Self::Output {
-        let observe =
-            |progress: Progress<'_>| reporter.report(FactProgress::Now(progress.fraction, progress.now.cloned()));
-        // A cancellation is seen by the next report of progress.
-        F::compute_in_parts(&self.0.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
-    }
+/// Computes the value of a scene in a thread, or in a worker of a web page.
+pub(crate) fn work<F: Fact>(
+    scene: SentScene,
+    reporter: &Reporter<FactProgress<F::Value>, Computed<F::Value>>,
+) -> Computed<F::Value> {
+    let observe = |progress: Progress<'_>| reporter.report(FactProgress::Now(progress.fraction, progress.now.cloned()));
+    // A cancellation is seen by the next report of progress.
+    F::compute(&scene.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
 }
 
 /// Running computation of a value.
@@ -219,7 +189,7 @@ impl<F: Fact> Keyed<F> {
         }
         if self.computed.is_none() {
             self.done = Default::default();
-            match Task::run(FactWork::<F>(SentScene(scene.clone()), PhantomData)) {
+            match Task::run(F::NAME, SentScene(scene.clone()), work::<F>) {
                 Ok(task) => self.running = Some((task, true)),
                 Err(error) => self.computed = Some(Err(error.to_string().into())),
             }
@@ -236,9 +206,17 @@ impl<F: Fact> Keyed<F> {
     pub(crate) fn wait(&mut self, scene: &Scene) {
         self.turn_to(scene);
         if self.computed.is_none() {
-            self.computed = Some(F::compute(scene, &|_| ControlFlow::Continue(())));
+            self.computed = Some(F::compute(scene, &|_| ControlFlow::Continue(()), &|_| ()));
             (self.running, self.so_far) = (None, None);
         }
+    }
+
+    /// Requests the value of a scene, or computes it and `waits`; returns `true` while it is pending.
+    pub(crate) fn obtain(&mut self, scene: &Scene, waits: bool) -> bool {
+        if waits {
+            self.wait(scene);
+        }
+        !waits && self.request(scene)
     }
 
     fn computed(&self, scene: &Scene) -> Option<&Computed<F::Value>> {
@@ -293,13 +271,13 @@ mod tests {
     }
 
     facts! {
-        Length by without_solver = "length": f64, |scene, _| match &scene.beam {
+        Length by without_solver = "length": f64, |scene, _, _| match &scene.beam {
             Some(beam) if beam.length > 100.0 => Err("too long".into()),
             Some(beam) if beam.length > 50.0 => std::panic::panic_any("meant"),
             beam => Ok(beam.as_ref().map(|beam| beam.length)),
         };
         /// The value of a beam of 2 m has a second part when its computation is cancelled.
-        Parts = "parts": f64, |_, _| Ok(Some(2.0)), in parts |scene, observe, partial| {
+        Parts = "parts": f64, |scene, observe, partial| {
             RUNNING.fetch_add(1, Ordering::Relaxed);
             partial(1.0);
             while scene.beam.as_ref().is_some_and(|beam| beam.length == 2.0) && observe(Progress::at(0.5)).is_continue() {

@@ -17,14 +17,8 @@ pub(crate) const POLL: Duration = Duration::from_millis(50);
 /// Time between two polls of a measurement of time, which drawing would disturb.
 pub(crate) const QUIET_POLL: Duration = Duration::from_millis(200);
 
-#[derive(Serialize, Deserialize)]
-enum Message<P, T> {
-    Progress(P),
-    Done(T),
-}
-
 /// Update of a task.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum Update<P, T> {
     /// No update since the last poll.
     None,
@@ -41,20 +35,13 @@ pub(crate) trait Data: Serialize + DeserializeOwned + Send + 'static {}
 
 impl<T: Serialize + DeserializeOwned + Send + 'static> Data for T {}
 
-/// Work whose request, progress and result are data. It runs in a thread, or in a worker of a web page.
-pub(crate) trait Work: Data {
-    /// Name under which a worker looks up the work.
-    const NAME: &'static str;
-    type Reported: Data;
-    type Output: Data;
-
-    fn run(self, reporter: &Reporter<Self::Reported, Self::Output>) -> Self::Output;
-}
+/// Work whose request, progress and result are data. It is done in a thread, or in a worker of a web page.
+pub(crate) type Work<R, P, T> = fn(R, &Reporter<P, T>) -> T;
 
 /// Work in a background thread that reports its progress as `P` and ends with a `T`. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct Task<P, T> {
-    receiver: Receiver<Message<P, T>>,
+    receiver: Receiver<Update<P, T>>,
     is_cancelled: Arc<AtomicBool>,
     /// Worker of a web page that does the work.
     worker: Option<platform::work::Worker>,
@@ -62,8 +49,8 @@ pub(crate) struct Task<P, T> {
 
 /// Interface of a task for its thread.
 pub(crate) struct Reporter<P, T> {
-    /// Sends a message; returns `false` if there is no receiver.
-    send: Box<dyn Fn(Message<P, T>) -> bool + Send + Sync>,
+    /// Sends an update; returns `false` if there is no receiver.
+    send: Box<dyn Fn(Update<P, T>) -> bool + Send + Sync>,
     is_cancelled: Arc<AtomicBool>,
 }
 
@@ -75,11 +62,11 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
     pub(crate) fn start(name: &str, work: impl FnOnce(&Reporter<P, T>) -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
-        let send = Box::new(move |message| sender.send(message).is_ok());
+        let send = Box::new(move |update| sender.send(update).is_ok());
         let reporter = Reporter { send, is_cancelled: is_cancelled.clone() };
         platform::work::start(name, move || {
             let done = work(&reporter);
-            (reporter.send)(Message::Done(done));
+            (reporter.send)(Update::Done(done));
         })?;
         Ok(Self { receiver, is_cancelled, worker: None })
     }
@@ -87,7 +74,7 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
     /// Returns the next update without waiting for it.
     pub(crate) fn poll(&self) -> Update<P, T> {
         match self.receiver.try_recv() {
-            Ok(message) => message.into(),
+            Ok(update) => update,
             Err(TryRecvError::Empty) => Update::None,
             Err(TryRecvError::Disconnected) => Update::Died,
         }
@@ -95,7 +82,7 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
 
     /// Returns the next update; waits for it if `waits` is `true`.
     pub(crate) fn next(&self, waits: bool) -> Update<P, T> {
-        if waits { self.receiver.recv().map_or(Update::Died, Into::into) } else { self.poll() }
+        if waits { self.receiver.recv().unwrap_or(Update::Died) } else { self.poll() }
     }
 }
 
@@ -105,25 +92,25 @@ impl<P: Data, T: Data> Task<P, T> {
     /// # Errors
     /// The system cannot start another thread.
     #[cfg(not(target_arch = "wasm32"))]
-    pub(crate) fn run<W: Work<Reported = P, Output = T>>(work: W) -> io::Result<Self> {
-        Self::start(W::NAME, move |reporter| work.run(reporter))
+    pub(crate) fn run<R: Data>(name: &str, request: R, work: Work<R, P, T>) -> io::Result<Self> {
+        Self::start(name, move |reporter| work(request, reporter))
     }
 
-    /// Starts work in a worker.
+    /// Starts work in a worker, which looks it up by its name.
     ///
     /// # Errors
     /// The browser cannot start another worker.
     #[cfg(target_arch = "wasm32")]
-    pub(crate) fn run<W: Work<Reported = P, Output = T>>(work: W) -> io::Result<Self> {
+    pub(crate) fn run<R: Data>(name: &str, request: R, _: Work<R, P, T>) -> io::Result<Self> {
         use platform::work::Received;
         let (sender, receiver) = channel();
         let receive = move |bytes: &[u8]| {
-            let Some(message) = platform::work::decode::<Message<P, T>>(bytes) else { return Received::Unreadable };
-            let is_done = matches!(message, Message::Done(_));
-            let _ = sender.send(message);
+            let Some(update) = platform::work::decode::<Update<P, T>>(bytes) else { return Received::Unreadable };
+            let is_done = matches!(update, Update::Done(_));
+            let _ = sender.send(update);
             if is_done { Received::Done } else { Received::Progress }
         };
-        let worker = platform::work::send(W::NAME, &platform::work::encode(&work), receive)?;
+        let worker = platform::work::send(name, &platform::work::encode(&request), receive)?;
         Ok(Self { receiver, is_cancelled: Arc::new(AtomicBool::new(false)), worker: Some(worker) })
     }
 }
@@ -138,15 +125,15 @@ impl<P, T> Task<P, T> {
 
 /// Does work in a worker, and sends its reports and its result to the page.
 #[cfg(target_arch = "wasm32")]
-pub(crate) fn serve<W: Work>(request: &[u8]) {
-    let Some(work) = platform::work::decode::<W>(request) else { return platform::work::post(&[]) };
-    let send = Box::new(|message| {
-        platform::work::post(&platform::work::encode::<Message<W::Reported, W::Output>>(&message));
+pub(crate) fn serve<R: Data, P: Data, T: Data>(request: &[u8], work: Work<R, P, T>) {
+    let Some(request) = platform::work::decode::<R>(request) else { return platform::work::post(&[]) };
+    let send = Box::new(|update| {
+        platform::work::post(&platform::work::encode::<Update<P, T>>(&update));
         true
     });
     let reporter = Reporter { send, is_cancelled: Arc::new(AtomicBool::new(false)) };
-    let done = work.run(&reporter);
-    (reporter.send)(Message::Done(done));
+    let done = work(request, &reporter);
+    (reporter.send)(Update::Done(done));
 }
 
 impl<P, T> Drop for Task<P, T> {
@@ -155,20 +142,11 @@ impl<P, T> Drop for Task<P, T> {
     }
 }
 
-impl<P, T> From<Message<P, T>> for Update<P, T> {
-    fn from(message: Message<P, T>) -> Self {
-        match message {
-            Message::Progress(progress) => Self::Progress(progress),
-            Message::Done(done) => Self::Done(done),
-        }
-    }
-}
-
 impl<P, T> Reporter<P, T> {
     /// Reports progress; breaks if the task is cancelled.
     pub(crate) fn report(&self, progress: P) -> ControlFlow<()> {
         // If the task was dropped, there is no receiver.
-        let is_received = (self.send)(Message::Progress(progress));
+        let is_received = (self.send)(Update::Progress(progress));
         if is_received && !self.is_cancelled() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 

@@ -5,27 +5,27 @@ use crate::app::platform;
 use crate::app::session::facts::{
     CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
 };
-use crate::app::task::keyed::FactWork;
-use crate::app::task::thread::{Work, serve};
+use crate::app::task::keyed::{Fact, work};
+use crate::app::task::thread::serve;
 
 /// Work by its name.
 type WorkerEntry = (&'static str, fn(&[u8]));
 
-const fn entry<W: Work>() -> WorkerEntry {
-    (W::NAME, serve::<W>)
+const fn entry<F: Fact>() -> WorkerEntry {
+    (F::NAME, |request| serve(request, work::<F>))
 }
 
 const ENTRIES: &[WorkerEntry] = &[
-    entry::<FactWork<ReferenceFact>>(),
-    entry::<FactWork<CurveFact>>(),
-    entry::<FactWork<LimitsFact>>(),
-    entry::<FactWork<PathFact>>(),
-    entry::<FactWork<TimeFact>>(),
-    entry::<FactWork<MotionTimeFact>>(),
-    entry::<FactWork<FrequencyFact>>(),
-    entry::<FactWork<RhoFact>>(),
-    entry::<FactWork<ElementErrors>>(),
-    entry::<FactWork<StudyFact>>(),
+    entry::<ReferenceFact>(),
+    entry::<CurveFact>(),
+    entry::<LimitsFact>(),
+    entry::<PathFact>(),
+    entry::<TimeFact>(),
+    entry::<MotionTimeFact>(),
+    entry::<FrequencyFact>(),
+    entry::<RhoFact>(),
+    entry::<ElementErrors>(),
+    entry::<StudyFact>(),
 ];
 
 /// Waits for requests of the page.

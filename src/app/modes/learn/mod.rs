@@ -56,7 +56,7 @@ pub(crate) enum Needs {
 
 facts! {
     /// Errors of all elements.
-    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, observe| Ok(locking::errors(scene, observe));
+    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, observe, _| Ok(locking::errors(scene, observe));
 }
 
 fn without_element(scene: &Scene) -> Scene {
