@@ -8,7 +8,6 @@ pub(crate) mod facts;
 pub(crate) mod fallback;
 pub(crate) mod history;
 pub(crate) mod live;
-pub(crate) mod past;
 pub(crate) mod playback;
 pub(crate) mod recovery;
 pub(crate) mod run;

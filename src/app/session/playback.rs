@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::history::History;
-use crate::app::session::past::Past;
 use crate::mesh::MaterialPoint;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status};
@@ -20,7 +19,6 @@ pub(crate) struct Companion {
     pub integrator: IntegratorKind,
     pub simulation: Simulation,
     pub history: History,
-    past: Past,
     /// `true` while the displayed moment is earlier than the one at which this motion was added.
     pub is_absent: bool,
 }
@@ -30,8 +28,6 @@ pub(crate) struct Companion {
 pub(crate) struct Playback {
     pub clock: RealTimeClock,
     pub history: History,
-    /// Recorded moments of the last seconds.
-    past: Past,
     /// Time of the displayed moment, s; `None` if it is the latest.
     shown: Option<f64>,
     /// Playing time since the start, s: simulated time over speed.
@@ -96,16 +92,16 @@ impl Playback {
     /// Records the current moment of the motion and its companions.
     fn keep_moment(&mut self, simulation: &Simulation) {
         let most_bytes = MAX_BYTES / (1 + self.companions.len());
-        self.past.record(simulation, most_bytes);
+        self.history.keep_moment(simulation, most_bytes);
         for companion in self.companions.iter_mut().filter(|companion| !companion.is_absent) {
-            companion.past.record(&companion.simulation, most_bytes);
+            companion.history.keep_moment(&companion.simulation, most_bytes);
         }
         self.kept = self.played;
     }
 
     /// Returns the times of the first and the last recorded moment, s; `None` if there is only one or none.
     pub(crate) fn span(&self) -> Option<[f64; 2]> {
-        let moments = self.past.moments();
+        let moments = self.history.moments();
         let ends = [moments.front()?.state().time(), moments.back()?.state().time()];
         (ends[0] < ends[1]).then_some(ends)
     }
@@ -123,14 +119,14 @@ impl Playback {
     /// Displays the recorded moment closest to `time`, s. Later moments are kept until the next step.
     pub(crate) fn show_moment(&mut self, time: f64, simulation: &mut Simulation) {
         self.keep_latest(simulation);
-        let Some(time) = self.past.nearest(time) else { return };
+        let Some(time) = self.history.nearest(time) else { return };
         self.show_exactly(time, simulation);
     }
 
     /// Displays the next recorded moment (`forward`) or the previous one. Returns `false` if there is none.
     pub(crate) fn show_neighbour(&mut self, forward: bool, simulation: &mut Simulation) -> bool {
         self.keep_latest(simulation);
-        let Some(time) = self.past.neighbour(simulation.state().time(), forward) else { return false };
+        let Some(time) = self.history.neighbour(simulation.state().time(), forward) else { return false };
         self.show_exactly(time, simulation);
         true
     }
@@ -145,13 +141,13 @@ impl Playback {
         // The grabbed state is another moment.
         simulation.release();
         self.release();
-        let Some(moment) = self.past.at(time) else { return };
+        let Some(moment) = self.history.at(time) else { return };
         if simulation.return_to(moment).is_err() {
             return;
         }
         self.shown = (self.span().is_some_and(|[_, last]| time < last)).then_some(time);
         for companion in &mut self.companions {
-            let moment = companion.past.at(time);
+            let moment = companion.history.at(time);
             companion.is_absent = moment.is_none_or(|moment| companion.simulation.return_to(moment).is_err());
         }
     }
@@ -160,13 +156,11 @@ impl Playback {
     fn discard_future(&mut self) {
         let shown = self.shown.take();
         let is_whole = self.companions.iter().all(|companion| !companion.is_absent);
-        let latest = self.past.moments().back().map(|moment| moment.state().time()).filter(|_| !is_whole);
+        let latest = self.history.moments().back().map(|moment| moment.state().time()).filter(|_| !is_whole);
         let Some(time) = shown.or(latest) else { return };
-        self.past.truncate_after(time);
         self.history.truncate_after(time);
-        let here = self.past.at(time);
+        let here = self.history.at(time);
         for companion in &mut self.companions {
-            companion.past.truncate_after(time);
             companion.history.truncate_after(time);
             if let Some(here) = here.filter(|_| companion.is_absent) {
                 // Cannot fail: the state belongs to the same body.
@@ -177,8 +171,8 @@ impl Playback {
     }
 
     fn discard_past(&mut self) {
-        self.past.clear();
-        self.companions.iter_mut().for_each(|companion| companion.past.clear());
+        self.history.clear_moments();
+        self.companions.iter_mut().for_each(|companion| companion.history.clear_moments());
         (self.shown, self.kept) = (None, self.played);
     }
 
@@ -247,9 +241,9 @@ impl Playback {
         // The companion shares the body's equations.
         let Ok(mut companion) = Simulation::with_system(&scene, simulation.system().clone()) else { return };
         if companion.restore(simulation.state()).is_ok() {
-            let (history, past) = (History::default(), Past::default());
-            self.companions.push(Companion { integrator, simulation: companion, history, past, is_absent: false });
-            self.companions.last_mut().into_iter().for_each(|c| c.past.record(&c.simulation, MAX_BYTES));
+            let mut history = History::default();
+            history.keep_moment(&companion, MAX_BYTES);
+            self.companions.push(Companion { integrator, simulation: companion, history, is_absent: false });
         }
     }
 
