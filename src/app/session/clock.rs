@@ -102,32 +102,27 @@ impl RealTimeClock {
         self.factor = None;
     }
 
-    /// Starts the frame at `now`, s, and returns the number of whole steps of length `step`, s, that are due.
-    fn begin(&mut self, now: f64, step: f64) -> u32 {
-        let Some(last) = self.last.replace(now) else {
-            self.counted = (now, 0.0);
-            // The first frame makes one step, so that the motion visibly starts.
-            return 1;
+    /// Starts the frame at `now`, s, in which whole steps of length `step`, s, are due.
+    pub(crate) fn begin(&mut self, now: f64, step: f64) -> Steps {
+        let due = match self.last.replace(now) {
+            Some(last) => {
+                self.owed += (now - last).clamp(0.0, LONGEST_FRAME) * self.speed;
+                // The tolerance counts a time that is shorter than a step by rounding only as a step: a frame as long as
+                // a step makes one.
+                (self.owed / step + 1e-6) as u32
+            }
+            None => {
+                self.counted = (now, 0.0);
+                // The first frame makes one step, so that the motion visibly starts.
+                1
+            }
         };
-        self.owed += (now - last).clamp(0.0, LONGEST_FRAME) * self.speed;
-        // The tolerance counts a time that is shorter than a step by rounding only as a step: a frame as long as a step
-        // makes one.
-        (self.owed / step + 1e-6) as u32
+        Steps { due, made: 0, begun: Instant::now() }
     }
 
-    /// Starts the frame at `now`, s, with time steps of length `step`, s.
-    pub(crate) fn begin_steps(&mut self, now: f64, step: f64) -> Steps {
-        Steps { due: self.begin(now, step), made: 0, begun: Instant::now() }
-    }
-
-    /// Ends a frame in which `steps` of length `step`, s, were made.
-    pub(crate) fn end_steps(&mut self, steps: &Steps, step: f64) {
-        self.end(steps.due, steps.made, step);
-    }
-
-    /// Ends a frame in which `made` of the `due` steps were made. Missing steps are dropped: the motion slows down on a
+    /// Ends a frame in which `steps` of length `step`, s, were made. Missing steps are dropped: the motion slows down on a
     /// machine that cannot keep up.
-    fn end(&mut self, due: u32, made: u32, step: f64) {
+    pub(crate) fn end(&mut self, &Steps { due, made, .. }: &Steps, step: f64) {
         self.owed = if made < due { 0.0 } else { (self.owed - f64::from(made) * step).max(0.0) };
         let now = self.last.unwrap_or_default();
         self.counted.1 += f64::from(made) * step;
@@ -150,9 +145,10 @@ mod tests {
         let frames = (4.0 / frame).round() as u32;
         let mut all = 0;
         for i in 0..=frames {
-            let due = clock.begin(f64::from(i) * frame, 1.0 / 60.0);
-            clock.end(due, due, 1.0 / 60.0);
-            all += due;
+            let mut steps = clock.begin(f64::from(i) * frame, 1.0 / 60.0);
+            steps.made = steps.due;
+            clock.end(&steps, 1.0 / 60.0);
+            all += steps.due;
         }
         all
     }
@@ -172,11 +168,11 @@ mod tests {
         let mut clock = RealTimeClock::default();
         let mut made = 0;
         for i in 0..60 {
-            let due = clock.begin(f64::from(i) * 0.05, 0.01);
-            assert!(due <= 11, "the debt grows: {due} steps are due");
-            let able = due.min(2);
-            clock.end(due, able, 0.01);
-            made += able;
+            let mut steps = clock.begin(f64::from(i) * 0.05, 0.01);
+            assert!(steps.due <= 11, "the debt grows: {steps:?}");
+            steps.made = steps.due.min(2);
+            clock.end(&steps, 0.01);
+            made += steps.made;
         }
         assert!(made < 125);
         assert!(clock.lags() && clock.factor().is_some_and(|f| (0.3..0.5).contains(&f)), "{clock:?}");
@@ -185,9 +181,10 @@ mod tests {
     #[test]
     fn a_frame_after_a_long_absence_makes_up_for_little() {
         let mut clock = RealTimeClock::default();
-        let due = clock.begin(0.0, 0.01);
-        clock.end(due, due, 0.01);
-        assert!(clock.begin(3600.0, 0.01) <= 10);
+        let mut steps = clock.begin(0.0, 0.01);
+        steps.made = steps.due;
+        clock.end(&steps, 0.01);
+        assert!(clock.begin(3600.0, 0.01).due <= 10);
     }
     #[test]
     fn fast_vibrations_are_slowed_to_one_period_per_second() {

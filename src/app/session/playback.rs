@@ -44,14 +44,14 @@ impl Playback {
     /// Makes the time steps that are due at `now`, s.
     pub(crate) fn advance(&mut self, now: f64, simulation: &mut Simulation) {
         let step = simulation.scene().dynamics.time_step;
-        let mut steps = self.clock.begin_steps(now, step);
+        let mut steps = self.clock.begin(now, step);
         while steps.next() {
             self.make_step(simulation);
             if simulation.is_at_rest() && !self.companions_move() {
                 break;
             }
         }
-        self.clock.end_steps(&steps, step);
+        self.clock.end(&steps, step);
         if self.played - self.kept >= BETWEEN_MOMENTS {
             self.keep_moment(simulation);
         }

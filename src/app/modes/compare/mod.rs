@@ -233,11 +233,11 @@ impl Compare {
             return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
-        let mut steps = self.clock.begin_steps(now, step);
+        let mut steps = self.clock.begin(now, step);
         while self.goes_on() && steps.next() {
             self.step();
         }
-        self.clock.end_steps(&steps, step);
+        self.clock.end(&steps, step);
     }
 
     /// Applies the scene at rest, and iterates.
