@@ -3,8 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use crate::app::platform::{IS_PAGE, files};
 use crate::scene::{self, MeshFile, Scene, SceneError, Source, built_in_mesh};
 use crate::sentence::{Sentence, sentence};
@@ -33,23 +31,9 @@ pub(crate) fn built_in(id: &str) -> Option<(Source, Scene)> {
     Some((source, scene))
 }
 
-/// Reason for which a scene was not saved.
-#[derive(Debug, Error)]
-#[error("{}", Sentence::from(self))]
-pub(crate) enum SaveError {
-    Toml(#[from] SceneError),
-    File { path: PathBuf, reason: std::io::Error },
-}
-
-impl From<&SaveError> for Sentence {
-    fn from(error: &SaveError) -> Self {
-        match error {
-            SaveError::Toml(error) => {
-                sentence!("the scene could not be written as TOML: %{error}", error = error.to_string())
-            }
-            SaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
-        }
-    }
+/// Returns the reason for which a file was not written.
+fn not_written(path: &Path, reason: &std::io::Error) -> Sentence {
+    Sentence::located(path.display().to_string(), reason.to_string())
 }
 
 impl Document {
@@ -89,9 +73,12 @@ impl Document {
     /// Opens a scene.
     ///
     /// # Errors
-    /// [`SceneError`].
-    pub(crate) fn open(source: Source) -> Result<Self, SceneError> {
-        let original = files::open(&source)?;
+    /// Reason for which there is no scene.
+    pub(crate) fn open(source: Source) -> Result<Self, Sentence> {
+        let original = files::open(&source).map_err(|error| match &error {
+            error @ SceneError::Syntax { .. } => sentence!("not a scene: %{error}", error),
+            error => error.into(),
+        })?;
         Ok(Self::new(source, original))
     }
 
@@ -128,15 +115,17 @@ impl Document {
     /// mesh is written beside it.
     ///
     /// # Errors
-    /// [`SaveError`]; the file is unchanged.
-    pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, SaveError> {
+    /// Reason for which it was not written; the file is unchanged.
+    pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, Sentence> {
         let mut written = self.relocated(scene, path);
         if let Some(mesh) = written.mesh.as_mut().filter(|_| !IS_PAGE) {
             save_built_in_mesh(mesh, path)?;
         }
         let read = self.text.as_deref().map(str::to_owned).or_else(|| files::text(&self.source));
-        let toml = scene::edited(&read.unwrap_or_default(), &written)?;
-        files::save(path, toml.as_bytes()).map_err(|reason| SaveError::File { path: path.to_owned(), reason })?;
+        let toml = scene::edited(&read.unwrap_or_default(), &written).map_err(|error| {
+            sentence!("the scene could not be written as TOML: %{error}", error = error.to_string())
+        })?;
+        files::save(path, toml.as_bytes()).map_err(|reason| not_written(path, &reason))?;
         let source = Source { name: path.to_owned(), assignments: Vec::new() };
         let saved = Self::with_text(source, scene.clone(), Some(toml.into()));
         Ok(Self { opened: self.opened.clone(), mesh_folder: self.mesh_folder.clone(), ..saved })
@@ -145,7 +134,7 @@ impl Document {
 
 /// Writes a built-in mesh beside the scene file at `path`, and names it there; a different file with its name stays, and
 /// the scene keeps the built-in mesh.
-fn save_built_in_mesh(mesh: &mut MeshFile, path: &Path) -> Result<(), SaveError> {
+fn save_built_in_mesh(mesh: &mut MeshFile, path: &Path) -> Result<(), Sentence> {
     let Some(folder) = path.parent() else { return Ok(()) };
     let name = Path::new(&mesh.file).file_name().and_then(|name| name.to_str()).map(str::to_owned);
     let (Some(text), Some(name)) = (built_in_mesh(&mesh.file, folder), name) else { return Ok(()) };
@@ -153,7 +142,7 @@ fn save_built_in_mesh(mesh: &mut MeshFile, path: &Path) -> Result<(), SaveError>
     match std::fs::read_to_string(&beside) {
         Ok(present) if present == text => {}
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            files::save(&beside, text.as_bytes()).map_err(|reason| SaveError::File { path: beside, reason })?;
+            files::save(&beside, text.as_bytes()).map_err(|reason| not_written(&beside, &reason))?;
         }
         _ => return Ok(()),
     }

@@ -20,12 +20,11 @@ use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
 use nalgebra::Vector2;
-use thiserror::Error;
 use web_time::{Duration, Instant};
 
 use crate::app::platform::IS_PAGE;
 use crate::app::session::background::Background;
-use crate::app::session::document::{Document, SaveError};
+use crate::app::session::document::Document;
 use crate::app::session::facts::{Facts, ShownFacts};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::live::{Compared, Follower, Live, first_probe};
@@ -36,8 +35,8 @@ use crate::app::task::solve::{Equations, Model, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene, SceneError, Source};
-use crate::sentence::{Sentence, sentence};
+use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene, Source};
+use crate::sentence::Sentence;
 use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
 use crate::state::State;
 use crate::study::{Reference, SolveFromRest, StudyError, is_unstable};
@@ -86,24 +85,6 @@ pub(crate) enum Notice {
     },
     SolveDied,
     NoThread(io::Error),
-}
-
-/// Reason for which an edit was refused. The session is unchanged.
-#[derive(Debug, Error)]
-#[error("{}", Sentence::from(self))]
-pub(crate) enum EditError {
-    Scene(#[from] SceneError),
-    Simulation(#[from] SimulationError),
-}
-
-impl From<&EditError> for Sentence {
-    fn from(error: &EditError) -> Self {
-        match error {
-            EditError::Scene(error @ SceneError::Syntax { .. }) => sentence!("not a scene: %{error}", error),
-            EditError::Scene(error) => error.into(),
-            EditError::Simulation(error) => error.into(),
-        }
-    }
 }
 
 /// Grab of the body with the pointer during one frame. The fields are applied in this order.
@@ -369,14 +350,15 @@ impl Session {
     /// changes when its first snapshot arrives.
     ///
     /// # Errors
-    /// [`EditError`]; the session is unchanged. Errors of a mesh that is made in the background are reported later as a
+    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background are reported later as a
     /// [`Notice`].
-    pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, EditError> {
+    pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
+        let refused = |error: SimulationError| Sentence::from(&error);
         let before = self.version();
         let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
         match edit {
             Edit::Scene(label, scene) => {
-                self.set_scene(*scene)?;
+                self.set_scene(*scene).map_err(refused)?;
                 self.record(before, Some(label));
                 self.background.before.iter_mut().for_each(|before| before.label = Some(label));
             }
@@ -391,21 +373,21 @@ impl Session {
                         Version { scene: document.original.clone(), document }
                     }
                 };
-                self.replace(document, scene)?;
+                self.replace(document, scene).map_err(refused)?;
                 self.record(before, None);
             }
             Edit::Restore(copy) => {
                 let (document, scene) = *copy;
-                self.replace(document, scene)?;
+                self.replace(document, scene).map_err(refused)?;
                 self.record(before, None);
             }
             Edit::Undo => {
                 let step = self.undo.undo(before);
-                self.go_to(step)?;
+                self.go_to(step).map_err(refused)?;
             }
             Edit::Redo => {
                 let step = self.undo.redo(before);
-                self.go_to(step)?;
+                self.go_to(step).map_err(refused)?;
             }
         }
         // With other settings an exploded body would still be kilometres long.
@@ -521,8 +503,8 @@ impl Session {
     /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
     ///
     /// # Errors
-    /// [`SaveError`]; the file is unchanged.
-    pub(crate) fn save(&mut self, path: &Path) -> Result<(), SaveError> {
+    /// Reason for which the scene was not saved; the file is unchanged.
+    pub(crate) fn save(&mut self, path: &Path) -> Result<(), Sentence> {
         let saved = self.document.save(&self.scene, path)?;
         let before = std::mem::replace(&mut self.document, saved);
         let in_background = self.background.before.iter_mut().map(|before| &mut before.version);

@@ -8,13 +8,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 use web_time::{Duration, Instant};
 
 use crate::app::language::fill;
 use crate::app::platform::settings::{self, CopyPlace};
 use crate::app::session::document::Document;
-use crate::scene::{Scene, SceneError, Source};
+pub use crate::app::session::undo::Version as Unsaved;
+use crate::scene::{Scene, Source};
 
 /// Largest number of windows that are open or have crashed.
 const PLACES: usize = 100;
@@ -22,24 +22,6 @@ const PLACES: usize = 100;
 const PAUSE: Duration = Duration::from_secs(1);
 /// Time after a failure before another attempt.
 const AFTER_FAILURE: Duration = Duration::from_secs(30);
-
-/// Edited scene, and its document as last opened or saved.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unsaved {
-    pub(crate) document: Document,
-    pub(crate) scene: Scene,
-}
-
-/// Reason for which a copy cannot be read.
-#[derive(Debug, Error)]
-enum CopyError {
-    #[error(transparent)]
-    File(#[from] io::Error),
-    #[error(transparent)]
-    Toml(#[from] toml::de::Error),
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-}
 
 /// Content of a copy's file.
 #[derive(Deserialize, Serialize)]
@@ -76,12 +58,12 @@ fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
 
 impl Unsaved {
     /// Reads edits from a copy.
-    fn read(file: &Path) -> Result<Self, CopyError> {
-        let copy: Copy = toml::from_str(&settings::read(file)?)?;
+    fn read(file: &Path) -> io::Result<Self> {
+        let copy: Copy = toml::from_str(&settings::read(file)?).map_err(io::Error::other)?;
         let name = PathBuf::from(copy.name);
         let folder = name.parent().unwrap_or(Path::new("")).to_owned();
-        let original = Scene::from_toml_in(&copy.original, &folder)?;
-        let scene = Scene::from_toml_in(&copy.scene, &folder)?;
+        let original = Scene::from_toml_in(&copy.original, &folder).map_err(io::Error::other)?;
+        let scene = Scene::from_toml_in(&copy.scene, &folder).map_err(io::Error::other)?;
         let source = Source { name, assignments: copy.assignments };
         let document = Document::with_text(source, original, copy.file.map(Into::into));
         Ok(Self { document, scene })
@@ -112,7 +94,7 @@ impl RecoveryCopies {
         for number in 0..PLACES {
             let Some(place) = settings::lock(folder, number)? else { continue };
             match Unsaved::read(&place.file) {
-                Err(CopyError::File(error)) if error.kind() == io::ErrorKind::NotFound => {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {
                     let (left, edits) = left.unzip();
                     return Ok((Self { place, written: None, last: None, left, unreadable }, edits));
                 }

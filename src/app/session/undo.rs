@@ -10,9 +10,9 @@ const MAX_STEPS: usize = 200;
 
 /// Scene of an earlier state of the session, and its document.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Version {
-    pub document: Document,
-    pub scene: Scene,
+pub struct Version {
+    pub(crate) document: Document,
+    pub(crate) scene: Scene,
 }
 
 /// State of the pointer in one frame.

@@ -5,12 +5,12 @@ use std::path::Path;
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::platform::{IS_PAGE, files, page};
-use crate::app::session::document::SaveError;
-use crate::app::session::{Edit, EditError};
+use crate::app::session::Edit;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
 use crate::app::shell::messages::banner;
 use crate::scene::{Source, registry};
+use crate::sentence::Sentence;
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
@@ -20,7 +20,7 @@ impl Lab {
         }
     }
 
-    fn try_open(&mut self, source: Source) -> Result<(), EditError> {
+    fn try_open(&mut self, source: Source) -> Result<(), Sentence> {
         let opened = self.desk.session.apply(Edit::Open(source));
         self.apply_session_changes();
         opened?;
@@ -33,8 +33,8 @@ impl Lab {
     /// Saves the scene to a file, and shows a message of success.
     ///
     /// # Errors
-    /// [`SaveError`]; no message is shown.
-    fn save(&mut self, ctx: &egui::Context, path: &Path) -> Result<(), SaveError> {
+    /// Reason for which it was not saved; no message is shown.
+    fn save(&mut self, ctx: &egui::Context, path: &Path) -> Result<(), Sentence> {
         self.desk.session.save(path)?;
         self.settings.add_recent(path);
         self.say(ctx, fill!("Saved %{file}", file = path.display()));
