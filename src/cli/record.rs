@@ -15,12 +15,9 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     let LookArgs { theme, language, adapter } = look;
     let options = RecordOptions { size, seconds, speed, fps, overwrite, theme, language, adapter: adapter.adapter };
     let source = scene.map(|name| scene::Source { name, assignments: set.assignments });
-    let opened = source.map(|source| Ok::<_, CliError>((scene::open(&source)?, source))).transpose()?;
+    let opened = source.map(|source| scene::open(&source).map(|scene| (source, scene))).transpose()?;
     let watch = Watch::new();
-    let recorded = match opened {
-        Some((scene, source)) => app::record(&source, scene, &options, &output, &|progress| watch.observe(progress)),
-        None => app::record_story(&options, &output, &|progress| watch.observe(progress)),
-    };
+    let recorded = app::record(opened, &options, &output, &|progress| watch.observe(progress));
     drop(watch);
     let recorded = recorded?;
     if recorded.pictures == 0 {

@@ -10,13 +10,13 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 26_385),
+    ("app", &["src/app"], 26_307),
     ("study", &["src/study"], 7_028),
     ("model", &["src/model", "src/scene"], 3_236),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
     ("simulation", &["src/simulation"], 2_664),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_502),
+    ("cli", &["src/cli"], 2_499),
     ("dynamics", &["src/dynamics"], 1_999),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 62_049;
+const SRC: usize = 61_968;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -609,15 +609,15 @@ impl Session {
         self.playback.clock.rest();
     }
 
-    /// Makes this number of iterations, or one time step of a motion.
-    pub(crate) fn iterate(&mut self, iterations: u32) {
+    /// Makes one iteration or time step.
+    pub(crate) fn iterate(&mut self) {
         if self.is_motion() {
             self.playback.step(&mut self.model.simulation);
             self.timings = *self.model.simulation.last_iteration();
             return;
         }
         self.timings = Timings::default();
-        (0..iterations).for_each(|_| self.iterate_once());
+        self.iterate_once();
     }
 
     fn iterate_once(&mut self) {
@@ -639,7 +639,7 @@ impl Session {
         if !self.is_motion() && is_at_rest {
             self.reset();
         }
-        self.iterate(1);
+        self.iterate();
     }
 
     /// Returns to rest, or to the start of the motion.
@@ -660,7 +660,7 @@ impl Session {
     pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
         self.wait_for_background();
         while *self.model.simulation.status() == Status::Running {
-            self.iterate(1);
+            self.iterate();
         }
         if self.is_motion() {
             shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
@@ -675,7 +675,7 @@ impl Session {
     pub(crate) fn solve_from_rest(&mut self) {
         self.reset();
         while *self.model.simulation.status() == Status::Running {
-            self.iterate(1);
+            self.iterate();
         }
         self.certify();
     }
@@ -888,7 +888,7 @@ impl Session {
         self.running = false;
         let is_shown = self.playback.show_neighbour(forward, &mut self.model.simulation);
         if forward && !is_shown {
-            self.iterate(1);
+            self.iterate();
         }
     }
 

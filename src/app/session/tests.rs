@@ -12,9 +12,20 @@ fn cantilever(force: f64) -> Scene {
     Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")
 }
 
+fn source(name: impl Into<PathBuf>) -> Source {
+    Source { name: name.into(), assignments: Vec::new() }
+}
+
 fn session(scene: Scene) -> Session {
     let simulation = Simulation::new(&scene).unwrap();
-    Session::new(Source { name: "-".into(), assignments: Vec::new() }, scene, simulation)
+    Session::new(source("-"), scene, simulation)
+}
+
+/// Returns a session with a scene of this name.
+fn open(source: Source) -> Session {
+    let scene = crate::scene::open(&source).unwrap();
+    let simulation = Simulation::new(&scene).unwrap();
+    Session::new(source, scene, simulation)
 }
 
 fn with_force(session: &Session, force: f64) -> Edit {
@@ -66,7 +77,7 @@ fn a_refused_edit_leaves_the_session_unchanged() {
     assert!(session.apply(Edit::Scene("Poisson ν", Box::new(wrong))).is_err());
     assert!(*session.scene() == scene && tip(&session) == first && !session.can_undo());
     assert_eq!(session.take_changed(), Changed::default());
-    assert!(session.apply(Edit::Open(Source { name: "nowhere.toml".into(), assignments: Vec::new() })).is_err());
+    assert!(session.apply(Edit::Open(source("nowhere.toml"))).is_err());
     assert!(*session.scene() == scene && !session.can_undo());
 }
 
@@ -156,7 +167,7 @@ fn a_scene_is_saved_and_read_again_when_its_file_has_changed() {
     fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
     session.check_file();
     assert!(session.is_outdated());
-    let changed = session.apply(Edit::Open(Source { name: path, assignments: Vec::new() })).unwrap();
+    let changed = session.apply(Edit::Open(source(path))).unwrap();
     assert!(changed.document && !session.is_outdated() && *session.scene() == session.document().original);
     assert!(session.scene().loads == cantilever(-50.0).loads && session.can_undo());
 }
@@ -174,7 +185,7 @@ fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
     session.grab(Grab { start: Some(point), target: Some(target), release: false });
     assert!(session.simulation().mouse_spring().is_some());
     let before = tip(&session);
-    (0..40).for_each(|_| session.iterate(1));
+    (0..40).for_each(|_| session.iterate());
     assert!(tip(&session) > before, "the pull lifts the tip");
     assert_eq!(session.simulation().mouse_spring().map(|(spring, _)| spring.target()), Some(target));
     session.grab(Grab { release: true, ..Grab::default() });
@@ -192,14 +203,14 @@ fn an_exploded_motion_starts_again_with_other_settings() {
     let scene = Scene::beam(2.0, 0.5).clamp("left").probe("tip", "right").gravity([0.0, -9.81]);
     let mut session = session(scene.moving(IntegratorKind::SymplecticEuler, 0.05));
     while !session.has_ended() {
-        session.iterate(1);
+        session.iterate();
     }
     assert!(matches!(session.simulation().status(), Status::Stopped(_)), "{:?}", session.simulation().status());
     let mut scene = session.scene().clone();
     scene.dynamics.integrator = IntegratorKind::TrBdf2;
     session.apply(Edit::Scene("Integrator", Box::new(scene))).unwrap();
     assert_eq!((session.simulation().state().time(), tip(&session)), (0.0, 0.0));
-    session.iterate(1);
+    session.iterate();
     assert!(session.simulation().state().time() > 0.0 && tip(&session).abs() < 0.1, "{}", tip(&session));
 }
 
@@ -221,7 +232,7 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     let (spring, force) = session.simulation().mouse_spring().unwrap();
     assert!(force.norm() < 1e-6 * spring.largest_force(), "a hand that does not pull pulls with {force} N");
     session.grab(Grab { target: Some(Vector2::new(3.0, 2.0)), ..Grab::default() });
-    (0..40).for_each(|_| session.iterate(1));
+    (0..40).for_each(|_| session.iterate());
     assert!(tip(&session) > 1.0, "the pull lifts the tip");
     session.grab(Grab { release: true, ..Grab::default() });
     assert_eq!(numbers(&session), before);
@@ -232,7 +243,7 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     session.solve(ShownFacts::default());
     let accepted = numbers(&session);
     session.grab(Grab { start: Some(point), ..Grab::default() });
-    (0..10).for_each(|_| session.iterate(1));
+    (0..10).for_each(|_| session.iterate());
     session.grab(Grab { release: true, ..Grab::default() });
     assert!(numbers(&session) == accepted && !session.iterates(), "{:?}", accepted.0);
     session.apply(Edit::Undo).unwrap();
@@ -278,10 +289,8 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     fs::write(path("first.toml"), cantilever(-100.0).to_toml().unwrap()).unwrap();
-    let source = Source { name: path("first.toml"), assignments: vec!["load.0.force=[0,-150]".into()] };
-    let scene = crate::scene::open(&source).unwrap();
-    let simulation = Simulation::new(&scene).unwrap();
-    let mut session = Session::new(source, scene.clone(), simulation);
+    let mut session = open(Source { name: path("first.toml"), assignments: vec!["load.0.force=[0,-150]".into()] });
+    let scene = session.scene().clone();
     for (label, force) in [("Force", -200.0), ("Direction", -300.0), ("Force", -400.0)] {
         let Edit::Scene(_, edited) = with_force(&session, force) else { unreachable!() };
         session.apply(Edit::Scene(label, edited)).unwrap();
@@ -315,7 +324,7 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     assert_eq!(session.document().path(), Some(path("third.toml").as_path()));
     wait(&mut session);
     // An earlier document keeps its own file.
-    session.apply(Edit::Open(Source { name: path("first.toml"), assignments: Vec::new() })).unwrap();
+    session.apply(Edit::Open(source(path("first.toml")))).unwrap();
     wait(&mut session);
     session.save(&path("fourth.toml")).unwrap();
     session.apply(Edit::Undo).unwrap();
@@ -354,9 +363,7 @@ fn restored_edits_know_what_their_file_contained() {
 fn a_full_disk_leaves_file_and_copy_as_they_were() {
     const FOLDER: &str = "WARPBEAM_TEST_FULL_DISK";
     let edited = |folder: &Path, force: f64| {
-        let source = Source { name: folder.join("scene.toml"), assignments: Vec::new() };
-        let scene = crate::scene::open(&source).unwrap();
-        let mut session = Session::new(source, scene.clone(), Simulation::new(&scene).unwrap());
+        let mut session = open(source(folder.join("scene.toml")));
         session.apply(with_force(&session, force)).unwrap();
         session
     };
@@ -405,7 +412,7 @@ fn a_large_document_that_becomes_small_starts_over() {
     let mut session = session(cantilever(-100.0));
     session.solve(ShownFacts::default());
     let large = large(6);
-    let document = Document::new(Source { name: "large".into(), assignments: Vec::new() }, large.clone());
+    let document = Document::new(source("large"), large.clone());
     session.apply(Edit::Restore(Box::new((document, large)))).unwrap();
     assert!(session.is_working() && !session.take_changed().document);
     let small = Edit::Scene("Cells along", Box::new(cantilever(-1000.0)));
@@ -424,7 +431,7 @@ fn a_large_result_is_certified_in_the_background() {
     let scene = large(3).with_method(MethodKind::Newton);
     let mut session = session(scene.clone());
     while session.iterates() {
-        session.iterate(1);
+        session.iterate();
     }
     let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
     assert!(session.request_facts(ShownFacts::default(), false) && session.is_certifying());
@@ -440,12 +447,12 @@ fn a_large_result_is_certified_in_the_background() {
     // An edit in the meantime keeps its own result.
     session.apply(with_force(&session, -1100.0)).unwrap();
     while session.iterates() {
-        session.iterate(1);
+        session.iterate();
     }
     session.request_facts(ShownFacts::default(), false);
     session.apply(with_force(&session, -1200.0)).unwrap();
     while session.iterates() || session.is_certifying() {
-        session.iterate(1);
+        session.iterate();
         session.request_facts(ShownFacts::default(), false);
     }
     own.set_force(LoadId::nth(0), [0.0, -1200.0]).unwrap();
@@ -488,22 +495,15 @@ fn a_frame_makes_as_many_iterations_as_it_has_time_for() {
 #[test]
 fn a_saved_scene_has_its_mesh() {
     let [first, second] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    let open = |path: &Path| {
-        let source = Source { name: path.to_owned(), assignments: Vec::new() };
-        let scene = crate::scene::open(&source).unwrap();
-        let simulation = Simulation::new(&scene).unwrap();
-        Session::new(source, scene, simulation)
-    };
-    let bracket = Source { name: "bracket".into(), assignments: Vec::new() };
-    let scene = crate::scene::open(&bracket).unwrap();
-    let mut session = Session::new(bracket, scene.clone(), Simulation::new(&scene).unwrap());
+    let open_file = |path: &Path| open(source(path));
+    let mut session = open(source("bracket"));
     let path = first.path().join("mine.toml");
     session.save(&path).unwrap();
     assert!(!session.is_edited(), "saving is no edit");
-    let name = |path: &Path| open(path).scene().mesh.as_ref().unwrap().file.clone();
+    let name = |path: &Path| open_file(path).scene().mesh.as_ref().unwrap().file.clone();
     assert_eq!(name(&path), "bracket.msh");
     // Saved in another folder, and there once more after an edit.
-    let mut session = open(&path);
+    let mut session = open_file(&path);
     let elsewhere = second.path().join("copy.toml");
     for young in [2e6, 3e6] {
         let mut edited = session.scene().clone();
@@ -511,16 +511,12 @@ fn a_saved_scene_has_its_mesh() {
         session.set_scene(edited).unwrap();
         session.save(&elsewhere).unwrap();
         assert!(!session.is_edited());
-        assert_eq!(open(&elsewhere).scene().material.young, young);
+        assert_eq!(open_file(&elsewhere).scene().material.young, young);
         assert_eq!(Path::new(&name(&elsewhere)), first.path().join(".").join("bracket.msh"));
     }
     // Another file with the name of the built-in mesh is left alone.
     std::fs::write(second.path().join("bracket.msh"), "mine").unwrap();
-    let mut session = Session::new(
-        Source { name: "bracket".into(), assignments: Vec::new() },
-        scene.clone(),
-        Simulation::new(&scene).unwrap(),
-    );
+    let mut session = open(source("bracket"));
     session.save(&second.path().join("third.toml")).unwrap();
     assert_eq!(std::fs::read_to_string(second.path().join("bracket.msh")).unwrap(), "mine");
     assert_eq!(name(&second.path().join("third.toml")), "../meshes/bracket.msh");

@@ -216,7 +216,7 @@ impl Lab {
             session.reset();
         }
         if line == learn::SOLVE {
-            session.iterate(1);
+            session.iterate();
         }
         if let Some(lesson) = &mut self.lesson {
             lesson.learn.line = line;

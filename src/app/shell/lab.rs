@@ -241,9 +241,9 @@ impl Lab {
         self.desk.session.iterates()
     }
 
-    /// Makes this number of iterations, or one time step of a motion.
-    pub(crate) fn iterate(&mut self, iterations: u32) {
-        self.desk.session.iterate(iterations);
+    /// Makes one iteration or time step.
+    pub(crate) fn iterate(&mut self) {
+        self.desk.session.iterate();
         if !self.desk.session.is_motion() {
             self.show_last_line();
         }

@@ -19,8 +19,8 @@ const EXACT: usize = 32;
 #[derive(Debug)]
 pub(super) struct GifPalette {
     colors: Vec<Rgb>,
-    /// Indices of colours looked up so far, with `true` for those whose nearest palette colour differs visibly.
-    known: HashMap<Rgb, (u8, bool)>,
+    /// Indices of colours looked up so far.
+    known: HashMap<Rgb, u8>,
 }
 
 impl GifPalette {
@@ -47,9 +47,8 @@ impl GifPalette {
         self.colors.as_flattened()
     }
 
-    /// Computes the palette indices of an image's pixels, without dithering, whose pattern would flicker. Returns the
-    /// number of pixels without a similar palette colour.
-    pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) -> usize {
+    /// Computes the palette indices of an image's pixels, without dithering, whose pattern would flicker.
+    pub(super) fn indices(&mut self, picture: &Picture, indices: &mut Vec<u8>) {
         /// Largest number of cached colours.
         const MAX_KNOWN: usize = 1 << 18;
         let Self { colors: palette, known } = self;
@@ -57,19 +56,16 @@ impl GifPalette {
             known.clear();
         }
         indices.clear();
-        let mut poor = 0;
         let mut last = None;
         for color in colors(picture) {
             // Adjacent pixels mostly have the same colour.
-            let (place, is_poor) = match last {
+            let place = match last {
                 Some((before, found)) if before == color => found,
                 _ => *known.entry(color).or_insert_with(|| nearest(palette, color)),
             };
-            last = Some((color, (place, is_poor)));
+            last = Some((color, place));
             indices.push(place);
-            poor += usize::from(is_poor);
         }
-        poor
     }
 }
 
@@ -77,16 +73,13 @@ fn colors(picture: &Picture) -> impl Iterator<Item = Rgb> {
     picture.rgba.as_chunks().0.iter().map(|&[r, g, b, _]: &[u8; 4]| [r, g, b])
 }
 
-/// Returns the index of the nearest colour, and `true` if it differs visibly.
-fn nearest(palette: &[Rgb], color: Rgb) -> (u8, bool) {
-    /// Squared distance above which colours differ visibly: about 20 of 255 in every channel.
-    const FAR: u32 = 4000;
+/// Returns the index of the nearest colour.
+fn nearest(palette: &[Rgb], color: Rgb) -> u8 {
     let distance = |other: &Rgb| -> u32 {
         // The eye is most sensitive to green, and least to blue.
         other.iter().zip(color).zip([3, 6, 1]).map(|((&a, b), weight)| weight * u32::from(a.abs_diff(b)).pow(2)).sum()
     };
-    let nearest = (0..=u8::MAX).zip(palette).map(|(place, other)| (distance(other), place)).min();
-    nearest.map_or((0, true), |(distance, place)| (place, distance > FAR))
+    (0..=u8::MAX).zip(palette).min_by_key(|(_, other)| distance(other)).map_or(0, |(place, _)| place)
 }
 
 /// Means of groups of similar colours, of which a frequent one weighs more than a rare one.

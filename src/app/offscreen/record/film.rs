@@ -18,23 +18,9 @@ pub enum MovieFormat {
     Folder,
 }
 
-/// Duration of a frame, as a fraction of a second.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Delay {
-    numerator: u16,
-    denominator: u16,
-}
-
-impl Delay {
-    pub(super) fn seconds(self) -> f64 {
-        f64::from(self.numerator) / f64::from(self.denominator)
-    }
-
-    /// Returns the duration extended by a number of seconds.
-    fn longer(self, seconds: f64) -> Self {
-        let more = (seconds * f64::from(self.denominator)).round() as u16;
-        Self { numerator: self.numerator.saturating_add(more), ..self }
-    }
+/// Returns a duration, s, in the unit of a GIF, 1/100 s.
+fn hundredths(seconds: f64) -> u16 {
+    (100.0 * seconds).round() as u16
 }
 
 impl MovieFormat {
@@ -64,15 +50,14 @@ impl MovieFormat {
         }
     }
 
-    /// Returns the duration of a frame at this rate, or the nearest one that the format supports.
-    pub(super) fn delay(self, rate: u16) -> Delay {
+    /// Returns the duration of a frame at this rate, or the nearest one that the format supports, s.
+    pub(super) fn delay(self, rate: u16) -> f64 {
         /// Viewers replace shorter delays of a GIF, in 1/100 s, by a longer default.
         const SHORTEST: u16 = 2;
+        let wanted = 1.0 / f64::from(rate.max(1));
         match self {
-            Self::Gif => {
-                Delay { numerator: ((100.0 / f64::from(rate.max(1))).round() as u16).max(SHORTEST), denominator: 100 }
-            }
-            Self::Folder => Delay { numerator: 1, denominator: rate.max(1) },
+            Self::Gif => f64::from(hundredths(wanted).max(SHORTEST)) / 100.0,
+            Self::Folder => wanted,
         }
     }
 }
@@ -81,7 +66,8 @@ impl MovieFormat {
 /// frame; without one its file is removed.
 pub(super) struct Film {
     path: PathBuf,
-    delay: Delay,
+    /// Duration of a frame, s.
+    delay: f64,
     /// Number of frames.
     pictures: u64,
     /// Length of the GIF with these frames, bytes.
@@ -123,7 +109,7 @@ impl Film {
     pub(super) fn create(
         path: &Path,
         format: MovieFormat,
-        delay: Delay,
+        delay: f64,
         samples: &[Picture],
         size: [u32; 2],
     ) -> Result<Self, RecordError> {
@@ -151,15 +137,14 @@ impl Film {
     pub(super) fn add(&mut self, picture: &Picture, hold: f64) -> Result<(), RecordError> {
         let Self { path, delay, pictures, length, gif } = self;
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
-        let shown = delay.longer(hold);
         match gif {
             Some(gif) => {
-                gif.add(picture, shown).map_err(|e| failed(&e))?;
+                gif.add(picture, *delay + hold).map_err(|e| failed(&e))?;
                 let file = gif.encoder.get_mut();
                 *length = file.flush().and_then(|()| file.stream_position()).map_err(|e| failed(&e))?;
             }
             None => {
-                let copies = 1 + (hold / delay.seconds()).round() as u64;
+                let copies = 1 + (hold / *delay).round() as u64;
                 for copy in 1..=copies {
                     let path = path.join(format!("frame-{:04}.png", *pictures + copy));
                     picture.write_png(&path).map_err(|e| RecordError::Write { path, reason: e.to_string() })?;
@@ -203,8 +188,8 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RecordError {
 }
 
 impl Gif {
-    /// Adds the changed part of a frame: the smallest rectangle that contains it.
-    fn add(&mut self, picture: &Picture, shown: Delay) -> Result<(), gif::EncodingError> {
+    /// Adds the changed part of a frame that is shown for this time: the smallest rectangle that contains it.
+    fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), gif::EncodingError> {
         let Self { encoder, palette, before, now } = self;
         palette.indices(picture, now);
         let width = picture.size[0] as usize;
@@ -214,7 +199,7 @@ impl Gif {
         // Cannot fail: frames are much smaller.
         let small = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
         encoder.write_frame(&gif::Frame {
-            delay: shown.numerator,
+            delay: hundredths(seconds),
             left: small(rect.left),
             top: small(rect.top),
             width: small(rect.width),
@@ -262,11 +247,12 @@ mod tests {
 
     #[test]
     fn delays_are_rounded_to_the_units_of_the_format() {
-        for (rate, hundredths) in [(25, 4), (50, 2), (30, 3), (100, 2), (1, 100), (4, 25)] {
-            assert_eq!(MovieFormat::Gif.delay(rate), Delay { numerator: hundredths, denominator: 100 });
+        for (rate, expected) in [(25, 4), (50, 2), (30, 3), (100, 2), (1, 100), (4, 25)] {
+            assert_eq!(hundredths(MovieFormat::Gif.delay(rate)), expected);
+            assert_eq!(MovieFormat::Gif.delay(rate), f64::from(expected) / 100.0);
         }
-        assert!((MovieFormat::Folder.delay(30).seconds() - 1.0 / 30.0).abs() < 1e-15);
-        assert_eq!(MovieFormat::Gif.delay(4).longer(2.0).numerator, 225);
+        assert!((MovieFormat::Folder.delay(30) - 1.0 / 30.0).abs() < 1e-15);
+        assert_eq!(hundredths(MovieFormat::Gif.delay(4) + 2.0), 225);
     }
 
     #[test]

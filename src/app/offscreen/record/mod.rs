@@ -8,28 +8,30 @@ use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
-pub use self::story::record_story;
 use crate::app::language::{self, Language, fill};
 use crate::app::offscreen::shot::Canvas;
+use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
+use crate::app::shell::story;
 use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
 use crate::progress::{Observer, Progress};
 use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
-use crate::scene::{Analysis, Scene, Source};
+use crate::scene::{Analysis, Scene, Source, registry};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Field, PointValues, Simulation, SimulationError, Status};
 use crate::state::State;
 
 mod colors;
 mod film;
-mod story;
 
 /// Default frames per second of a motion: a rate that GIF represents exactly.
 const MOTION_RATE: u16 = 25;
 /// Default frames per second of an iteration: slow enough to see each frame.
 const SEARCH_RATE: u16 = 4;
+/// Default frames per second of the story of the first start.
+const STORY_RATE: u16 = 10;
 /// Duration for which an equilibrium is shown at the end, s.
 const HOLD: f64 = 2.0;
 /// Tolerance for rounding, as a fraction of a step or of the time between frames.
@@ -131,15 +133,15 @@ pub struct Recorded {
     pub status: Status,
 }
 
-/// Records the scene's motion, or its iteration to equilibrium, from the start. The simulation runs twice: once to find
-/// the ranges of the camera and of the colours, so that both are constant, and once to draw. A recording cancelled by
-/// `observe` is shorter; if no frame has been drawn yet, there is none.
+/// Records a scene's motion, or its iteration to equilibrium, from the start; without a scene, the story of the first
+/// start as the window tells it. The simulation runs twice: once to find the ranges of the camera and of the colours, so
+/// that both are constant, and once to draw. A recording cancelled by `observe` is shorter; if no frame has been drawn
+/// yet, there is none.
 ///
 /// # Errors
 /// [`AppError::Render`], [`AppError::Record`].
 pub fn record(
-    source: &Source,
-    mut scene: Scene,
+    of: Option<(Source, Scene)>,
     options: &RecordOptions,
     output: &Path,
     observe: Observer<'_>,
@@ -149,11 +151,14 @@ pub fn record(
         // Fails before the simulation, not after it.
         film::clear(output, false)?;
     }
+    let is_story = of.is_none();
+    let missing = || AppError::Window("the scene to begin with is missing".to_owned());
+    let (source, mut scene) = of.or_else(|| built_in(registry::DEFAULT)).ok_or_else(missing)?;
     let moves = scene.analysis == Analysis::Dynamic;
-    if !moves && (options.seconds.is_some() || options.speed.is_some()) {
+    if !moves && !is_story && (options.seconds.is_some() || options.speed.is_some()) {
         return Err(RecordError::NotInMotion.into());
     }
-    if let Some(seconds) = options.seconds {
+    if let Some(seconds) = options.seconds.filter(|_| moves) {
         scene.dynamics.duration = seconds;
     }
     let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
@@ -162,28 +167,48 @@ pub fn record(
     let gpu = Gpu::headless_on(options.adapter.as_deref())?;
     let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.theme.into())?;
 
-    let delay = format.delay(options.fps.unwrap_or(if moves { MOTION_RATE } else { SEARCH_RATE }));
-    let reel = Reel { between: delay.seconds() * options.speed.unwrap_or(1.0), duration: scene.dynamics.duration };
-    let mut recorded =
-        Recorded { pictures: 0, rate: 1.0 / delay.seconds(), format, interrupted: true, status: Status::Running };
-    let Some(preview) = Preview::new(&reel, again()?, observe) else { return Ok(recorded) };
+    let rate = match moves {
+        true => MOTION_RATE,
+        false if is_story => STORY_RATE,
+        false => SEARCH_RATE,
+    };
+    let delay = format.delay(options.fps.unwrap_or(rate));
+    let reel = Reel { between: delay * options.speed.unwrap_or(1.0), duration: scene.dynamics.duration };
+    let mut recorded = Recorded { pictures: 0, rate: 1.0 / delay, format, interrupted: true, status: Status::Running };
+    let mut preview = None;
+    if !is_story {
+        preview = Preview::new(&reel, again()?, observe);
+        if preview.is_none() {
+            return Ok(recorded);
+        }
+    }
+    let told = (story::seconds() / delay).ceil() as u64;
+    let pictures = preview.as_ref().map_or(told, |preview| preview.pictures);
 
     let new_lab = || -> Result<Lab, AppError> {
         let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-        lab.set_panel(false);
         lab.set_language(options.language);
-        let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
-        lab.fix_view(camera, preview.range);
+        if let Some(preview) = &preview {
+            lab.set_panel(false);
+            let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
+            lab.fix_view(camera, preview.range);
+        } else {
+            lab.tell_story();
+        }
         Ok(lab)
     };
     let mut samples = Vec::new();
     if format == MovieFormat::Gif {
         let mut lab = new_lab()?;
-        for state in &preview.samples {
+        for state in preview.iter().flat_map(|preview| &preview.samples) {
             // Cannot fail: the state belongs to the same equations.
             if lab.restore(state) {
                 samples.push(draw(&mut canvas, &mut lab, 0)?);
             }
+        }
+        for k in (0..SAMPLES as u64).filter(|_| is_story) {
+            tell(&mut lab, delay, (k * pictures + pictures / 2) / SAMPLES as u64);
+            samples.push(draw(&mut canvas, &mut lab, 0)?);
         }
     }
 
@@ -193,20 +218,29 @@ pub fn record(
     }
     let now = sentence!("recording %{file}", file = output.display().to_string());
     let mut film = Film::create(output, format, delay, &samples, options.size)?;
-    for k in 0..preview.pictures {
-        let fraction = k as f64 / preview.pictures as f64;
-        let reached = reel.advance(k, &mut lab, &mut |_| observe(Progress { fraction, now: Some(&now) }));
+    for k in 0..pictures {
+        let progress = Progress { fraction: k as f64 / pictures as f64, now: Some(&now) };
+        let goes_on = match is_story {
+            true => observe(progress).is_continue(),
+            false => {
+                let observe = &mut |_| observe(progress);
+                reel.advance(k, &mut lab, Lab::simulation, Lab::iterate, observe) == Reached::Picture
+            }
+        };
         // Even a cancelled recording has one frame, because a file without frames is invalid.
-        if k > 0 && reached != Reached::Picture {
+        if k > 0 && !goes_on {
             break;
         }
+        if is_story {
+            tell(&mut lab, delay, k);
+        }
         let picture = draw(&mut canvas, &mut lab, k)?;
-        let last = k + 1 == preview.pictures;
-        film.add(&picture, if last && !moves { HOLD } else { 0.0 })?;
+        let holds = k + 1 == pictures && !moves && !is_story;
+        film.add(&picture, if holds { HOLD } else { 0.0 })?;
         recorded.pictures = k + 1;
     }
     film.finish()?;
-    recorded.interrupted = recorded.pictures < preview.pictures;
+    recorded.interrupted = recorded.pictures < pictures;
     recorded.status = match lab.simulation().status() {
         // The last frame may be earlier than the last step.
         Status::Running if moves && !recorded.interrupted => Status::Finished,
@@ -215,7 +249,13 @@ pub fn record(
     Ok(recorded)
 }
 
-/// Draws the lab, with the time or the iteration above the body.
+/// Shows frame `k` of the story, whose frames last for `delay`, s.
+fn tell(lab: &mut Lab, delay: f64, k: u64) {
+    lab.advance(k as f64 * delay);
+    lab.finish_story_frame();
+}
+
+/// Draws the lab, with the time or the iteration above the body; the story has captions of its own.
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
     language::speak(lab.language());
     let simulation = lab.simulation();
@@ -225,6 +265,7 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
             let digits = -simulation.scene().dynamics.time_step.log10();
             format!("{:.*} s", digits.ceil().clamp(2.0, 9.0) as usize, simulation.state().time())
         }
+        None if lab.story().is_some() => String::new(),
         None => fill!("iteration %{n}", n = k),
     };
     canvas.draw(lab, &mut |ctx| {
@@ -254,45 +295,28 @@ enum Reached {
     CalledOff,
 }
 
-/// Simulation that is advanced from frame to frame: alone, or in a lab, which records the trail.
-trait Moving {
-    fn simulation(&self) -> &Simulation;
-    fn step(&mut self);
-}
-
-impl Moving for Simulation {
-    fn simulation(&self) -> &Simulation {
-        self
-    }
-
-    fn step(&mut self) {
-        Simulation::step(self);
-    }
-}
-
-impl Moving for Lab {
-    fn simulation(&self) -> &Simulation {
-        self.simulation()
-    }
-
-    fn step(&mut self) {
-        self.iterate(1);
-    }
-}
-
 impl Reel {
-    /// Advances a simulation to frame `k`: to the last step that is not later. `observe` receives the time.
-    fn advance(&self, k: u64, body: &mut impl Moving, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
-        let time = |body: &dyn Moving| body.simulation().state().time();
+    /// Advances a simulation, alone or in a lab, which records the trail, to frame `k`: to the last step that is not later.
+    /// `observe` receives the time.
+    fn advance<B>(
+        &self,
+        k: u64,
+        body: &mut B,
+        simulation: fn(&B) -> &Simulation,
+        step: fn(&mut B),
+        observe: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Reached {
+        let time = |body: &B| simulation(body).state().time();
+        let is_running = |body: &B| *simulation(body).status() == Status::Running;
         if observe(time(body)).is_break() {
             return Reached::CalledOff;
         }
-        if body.simulation().motion().is_none() {
+        if simulation(body).motion().is_none() {
             if k > 0 {
-                if *body.simulation().status() != Status::Running {
+                if !is_running(body) {
                     return Reached::End;
                 }
-                body.step();
+                step(body);
             }
             return Reached::Picture;
         }
@@ -300,15 +324,15 @@ impl Reel {
         if at > self.duration + NO_TIME * self.between {
             return Reached::End;
         }
-        let step = body.simulation().scene().dynamics.time_step;
-        while *body.simulation().status() == Status::Running && time(body) + step <= at + NO_TIME * step {
-            body.step();
+        let time_step = simulation(body).scene().dynamics.time_step;
+        while is_running(body) && time(body) + time_step <= at + NO_TIME * time_step {
+            step(body);
             if observe(time(body)).is_break() {
                 return Reached::CalledOff;
             }
         }
         // A motion that has been stopped has no further frames.
-        let given_up = matches!(body.simulation().status(), Status::Stopped(_)) && time(body) + step <= at;
+        let given_up = matches!(simulation(body).status(), Status::Stopped(_)) && time(body) + time_step <= at;
         if given_up { Reached::End } else { Reached::Picture }
     }
 }
@@ -343,7 +367,7 @@ impl Preview {
         loop {
             let fraction = |time| if moves { time / reel.duration } else { 0.0 };
             let observe = &mut |time| observe(Progress { fraction: fraction(time), now: Some(&now) });
-            match reel.advance(preview.pictures, &mut simulation, observe) {
+            match reel.advance(preview.pictures, &mut simulation, |own| own, |own| _ = own.step(), observe) {
                 Reached::CalledOff => return None,
                 Reached::End => break,
                 Reached::Picture => {}
@@ -416,7 +440,8 @@ mod tests {
     /// Advances through all frames, calls `each` for every frame, and returns their number.
     fn run(reel: &Reel, mut simulation: Simulation, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
         for k in 0.. {
-            match reel.advance(k, &mut simulation, &mut |_| ControlFlow::Continue(())) {
+            match reel.advance(k, &mut simulation, |own| own, |own| _ = own.step(), &mut |_| ControlFlow::Continue(()))
+            {
                 Reached::Picture => each(k, &simulation),
                 _ => return k,
             }
