@@ -293,7 +293,7 @@ impl App {
     fn open_graphics(&mut self, event_loop: &ActiveEventLoop, bare: BareWindow) {
         let (opening, display, ctx) = (self.opening.clone(), event_loop.owned_display_handle(), self.ctx.clone());
         let (window, adapter) = (bare.window.clone(), self.adapter.clone());
-        platform::graphics::open(async move {
+        platform::start::open(async move {
             let made = Graphics::new(&window, display, adapter.as_deref()).await;
             *opening.borrow_mut() = Some(made.map(|graphics| OpenWindow::new(graphics, bare, &ctx)));
             window.request_redraw();

@@ -46,6 +46,11 @@ fn first_size(event_loop: &ActiveEventLoop, wanted: [f32; 2]) -> LogicalSize<f64
     })
 }
 
+/// Runs `opening` of the graphics device to its end.
+pub(crate) fn open(opening: impl Future<Output = ()> + 'static) {
+    pollster::block_on(opening);
+}
+
 /// Runs the event loop; returns the application when the window is closed.
 ///
 /// # Errors

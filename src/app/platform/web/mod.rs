@@ -3,7 +3,6 @@
 mod browser;
 pub(crate) mod clipboard;
 pub(crate) mod files;
-pub(crate) mod graphics;
 pub(crate) mod new_file;
 pub(crate) mod page;
 pub(crate) mod settings;

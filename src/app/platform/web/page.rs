@@ -1,13 +1,11 @@
 //! Page around the window: its address, its title, its messages, and the report that tests read.
 
 use std::cell::{Cell, RefCell};
-use std::string::FromUtf8Error;
 
+use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
-use base64::{DecodeError, Engine as _};
 use miniz_oxide::deflate::compress_to_vec;
-use miniz_oxide::inflate::{DecompressError, decompress_to_vec_with_limit};
-use thiserror::Error;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use wasm_bindgen::prelude::*;
 use web_sys::{Blob, DragEvent, Event, UrlSearchParams};
 use winit::event_loop::EventLoopProxy;
@@ -34,24 +32,13 @@ thread_local! {
     static LISTENS: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Reason for which the scene in a link cannot be read.
-#[derive(Debug, Error)]
-pub(crate) enum LinkError {
-    #[error("{0}")]
-    Encoding(#[from] DecodeError),
-    #[error("{0}")]
-    Compression(DecompressError),
-    #[error("{0}")]
-    Text(#[from] FromUtf8Error),
-}
-
 /// Request in the address of the page.
 #[derive(Debug, Default)]
 pub(crate) struct Address {
     /// Name of a built-in scene.
     pub scene: Option<String>,
     /// TOML text of a scene, or the reason for which the link has none.
-    pub toml: Option<Result<String, LinkError>>,
+    pub toml: Option<Result<String, String>>,
     /// Language of the window.
     pub language: Option<String>,
     /// Number of a card of Learn, from 1.
@@ -98,11 +85,11 @@ pub(crate) fn prefers_reduced_motion() -> bool {
     query.is_some_and(|query| query.matches())
 }
 
-/// Returns the text of a scene in a link.
-fn decode(packed: &str) -> Result<String, LinkError> {
-    let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed)?;
-    let text = decompress_to_vec_with_limit(&bytes, MAX_SCENE_BYTES).map_err(LinkError::Compression)?;
-    Ok(String::from_utf8(text)?)
+/// Returns the text of a scene in a link, or the reason for which it cannot be read.
+fn decode(packed: &str) -> Result<String, String> {
+    let bytes = BASE64_URL_SAFE_NO_PAD.decode(packed).map_err(|error| error.to_string())?;
+    let text = decompress_to_vec_with_limit(&bytes, MAX_SCENE_BYTES).map_err(|error| error.to_string())?;
+    String::from_utf8(text).map_err(|error| error.to_string())
 }
 
 /// Returns the address of the page with a scene in it.

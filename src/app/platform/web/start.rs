@@ -13,6 +13,11 @@ pub(crate) fn window(attributes: WindowAttributes, _: &ActiveEventLoop, _: [f32;
     attributes.with_canvas(browser::canvas())
 }
 
+/// Runs `opening` of the graphics device while the page goes on.
+pub(crate) fn open(opening: impl Future<Output = ()> + 'static) {
+    wasm_bindgen_futures::spawn_local(opening);
+}
+
 /// Starts the event loop, which runs as long as the page is open.
 ///
 /// # Errors
