@@ -79,10 +79,17 @@ where
     Sentence::from(text).render(&tr)
 }
 
-/// Translates a sentence and inserts values for its placeholders `%{name}`.
+/// Translates a sentence and inserts values for its placeholders `%{name}`, each written `name = value`, or `name` for a
+/// variable of that name.
 macro_rules! fill {
-    ($english:literal, $($name:ident = $value:expr),+ $(,)?) => {
-        $crate::app::language::filled($english, &[$(stringify!($name)),+], &[$(::std::string::ToString::to_string(&$value)),+])
+    ($english:literal, $($name:ident $(= $value:expr)?),+ $(,)?) => {
+        $crate::app::language::filled($english, &[$(stringify!($name)),+], &[$(fill!(@text $name $($value)?)),+])
+    };
+    (@text $name:ident) => {
+        ::std::string::ToString::to_string(&$name)
+    };
+    (@text $name:ident $value:expr) => {
+        ::std::string::ToString::to_string(&$value)
     };
 }
 pub(super) use fill;

@@ -134,7 +134,7 @@ impl Lab {
         }
         banner(ui, |ui| {
             let file = session.document().source.name.display();
-            ui.label(fill!("%{file} has changed on disk.", file = file));
+            ui.label(fill!("%{file} has changed on disk.", file));
             if ui.button(tr("Reload")).clicked() {
                 actions.push(Action::Reload);
             }
@@ -151,7 +151,7 @@ impl Lab {
                 ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
                 self.say(ctx, tr("Scene copied as TOML").to_owned());
             }
-            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error)),
         }
     }
 
@@ -166,7 +166,7 @@ impl Lab {
                 ctx.copy_text(page::link(&toml));
                 self.say(ctx, tr("Link copied").to_owned());
             }
-            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error = error)),
+            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error)),
         }
     }
 }

@@ -70,10 +70,10 @@ impl Lab {
             let text = match step {
                 Some(step) => fill!(
                     "%{integrator} is unstable: its critical time step is %{step}",
-                    integrator = integrator,
+                    integrator,
                     step = engineering(step, "s")
                 ),
-                None => fill!("%{integrator} is unstable: its time steps fail", integrator = integrator),
+                None => fill!("%{integrator} is unstable: its time steps fail", integrator),
             };
             self.say(ctx, text);
         }
@@ -82,7 +82,7 @@ impl Lab {
                 Notice::Rejected { label: Some(label), message } => self.refuse(ctx, label, message),
                 Notice::Rejected { label: None, message } => self.say(ctx, said(&message)),
                 Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
-                Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error = error)),
+                Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error)),
             }
         }
     }

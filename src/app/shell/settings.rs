@@ -79,7 +79,7 @@ impl Settings {
         match read {
             Ok(table) => (Self::of(table), None),
             Err(reason) => {
-                let message = fill!("%{file} could not be read: %{reason}", file = file.display(), reason = reason);
+                let message = fill!("%{file} could not be read: %{reason}", file = file.display(), reason);
                 (Self::default(), Some(message))
             }
         }

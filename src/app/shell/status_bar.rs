@@ -118,7 +118,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
                 (None, None) if is_without_reference => tr("no reference").into(),
                 (_, None) => sought.map_or(Cow::default(), |done| {
                     let percent = format!("{:.0}", 100.0 * done);
-                    fill!("computing the reference: %{percent} %", percent = percent).into()
+                    fill!("computing the reference: %{percent} %", percent).into()
                 }),
             },
             tip: [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
@@ -149,7 +149,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
                 _ if rho.is_none() => Cow::default(),
                 _ if simulation.status().is_success() => tr("per iteration").into(),
                 // The equilibrium that is sought is not drawn.
-                Some(load) => fill!("at %{load}", load = load).into(),
+                Some(load) => fill!("at %{load}", load).into(),
                 None => tr("at the full load").into(),
             },
             tip: tr(
@@ -290,11 +290,11 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, slot: 
 pub(crate) fn phase_text(scene: &Scene, phase: Phase) -> String {
     let body = body_text(scene);
     match phase {
-        Phase::Meshing => fill!("Meshing %{body}", body = body),
-        Phase::LinearSolve => fill!("Factorizing %{body}", body = body),
-        Phase::Iterating(0) => fill!("Solving %{body}", body = body),
-        Phase::Iterating(n) => fill!("Solving %{body}, iteration %{n}", body = body, n = n),
-        Phase::Certifying => fill!("Checking stability of %{body}", body = body),
+        Phase::Meshing => fill!("Meshing %{body}", body),
+        Phase::LinearSolve => fill!("Factorizing %{body}", body),
+        Phase::Iterating(0) => fill!("Solving %{body}", body),
+        Phase::Iterating(n) => fill!("Solving %{body}, iteration %{n}", body, n),
+        Phase::Certifying => fill!("Checking stability of %{body}", body),
     }
 }
 

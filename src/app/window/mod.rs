@@ -102,7 +102,7 @@ pub fn run(
 
 /// Returns the warning for edits of which there is no copy.
 fn no_copy(reason: impl std::fmt::Display) -> String {
-    fill!("Unsaved changes would not survive a crash: %{reason}", reason = reason)
+    fill!("Unsaved changes would not survive a crash: %{reason}", reason)
 }
 
 struct App {
@@ -247,7 +247,7 @@ impl App {
             }
         }
         if let Some(reason) = open.bare.clipboard.after(&output.platform_output) {
-            self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason = reason));
+            self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason));
             self.ctx.request_repaint();
         }
         open.bare.input.handle_platform_output_with_event_loop(
@@ -323,11 +323,7 @@ impl App {
                 open.bare.window.request_redraw();
                 self.open = Some(open);
                 if let Some(reason) = self.lost.clone() {
-                    self.say(fill!(
-                        "Graphics restarted with %{adapter}: %{reason}",
-                        adapter = adapter,
-                        reason = reason
-                    ));
+                    self.say(fill!("Graphics restarted with %{adapter}: %{reason}", adapter, reason));
                 }
             }
             Some(Err(error)) => self.quit(event_loop, Some(error)),
@@ -404,8 +400,8 @@ impl App {
             (None, None) => return,
         };
         let message = match saved {
-            Ok(file) => fill!("Saved %{file}", file = file),
-            Err(reason) => fill!("No screenshot: %{reason}", reason = reason),
+            Ok(file) => fill!("Saved %{file}", file),
+            Err(reason) => fill!("No screenshot: %{reason}", reason),
         };
         self.say(message);
     }
@@ -419,7 +415,7 @@ impl App {
                 Ok(()) => self.settings = settings,
                 Err(error) => {
                     let reason = format!("{}: {error}", file.display());
-                    self.warn(fill!("The settings are not saved: %{reason}", reason = reason));
+                    self.warn(fill!("The settings are not saved: %{reason}", reason));
                 }
             }
         }

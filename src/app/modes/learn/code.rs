@@ -77,7 +77,7 @@ fn stiffness(simulation: &Simulation, _: usize) -> String {
 fn gradient(simulation: &Simulation, picked: usize) -> String {
     let Some(Triangle { gradient: f, .. }) = Triangle::of(simulation, picked) else { return String::new() };
     let [a, b, c, d] = [f.m11, f.m12, f.m21, f.m22].map(|v| format!("{v:.2}").replace('-', "\u{2212}"));
-    fill!("triangle %{n}: [%{a} %{b}; %{c} %{d}]", n = picked, a = a, b = b, c = c, d = d)
+    fill!("triangle %{n}: [%{a} %{b}; %{c} %{d}]", n = picked, a, b, c, d)
 }
 
 fn rotation(simulation: &Simulation, _: usize) -> String {
@@ -88,7 +88,7 @@ fn rotation(simulation: &Simulation, _: usize) -> String {
 
 fn matrix(simulation: &Simulation, _: usize) -> String {
     let n = simulation.system().dofs();
-    fill!("A: %{n} \u{d7} %{n} (clamped nodes removed)", n = n)
+    fill!("A: %{n} \u{d7} %{n} (clamped nodes removed)", n)
 }
 
 fn displacement(simulation: &Simulation, _: usize) -> String {
@@ -107,9 +107,9 @@ fn residual_text(residual: f64) -> String {
 fn verdict(simulation: &Simulation, _: usize) -> String {
     let iterations = count(simulation.iterations(), "iteration");
     match simulation.status() {
-        Status::Converged => fill!("yes, after %{iterations}", iterations = iterations),
+        Status::Converged => fill!("yes, after %{iterations}", iterations),
         Status::Running => fill!("no: r = %{r}, repeat", r = residual_text(simulation.residual())),
-        _ => fill!("given up after %{iterations}", iterations = iterations),
+        _ => fill!("given up after %{iterations}", iterations),
     }
 }
 
@@ -128,7 +128,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         let next = ("Next line", "The next line; the line that solves makes an iteration (N)", true);
         step_buttons(ui, shown, next, actions);
         let iterations = count(simulation.iterations(), "iteration");
-        ui.add(egui::Label::new(fill!("%{iterations} so far", iterations = iterations)).extend());
+        ui.add(egui::Label::new(fill!("%{iterations} so far", iterations)).extend());
     });
     let has_moved = std::mem::replace(&mut learn.shown_line, learn.line) != learn.line;
     // The buttons do not scroll with the lines.
@@ -181,7 +181,7 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     let plain = formula::plain(code);
     response.widget_info(|| {
         let text = match numbers {
-            Some(numbers) => fill!("line %{n}: %{code}; %{numbers}", n = number + 1, code = plain, numbers = numbers),
+            Some(numbers) => fill!("line %{n}: %{code}; %{numbers}", n = number + 1, code = plain, numbers),
             None => format!("{} {plain}", number + 1),
         };
         WidgetInfo::labeled(Role::Label, true, text)

@@ -72,7 +72,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let angle = angle_text(triangle.rotation);
-    ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked, angle = angle));
+    ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked, angle));
     let s = triangle.stretch;
     ui.label(fill!(
         "strain \u{3b5}: along %{along}, across %{across}, shear \u{3b3} %{shear}",

@@ -68,7 +68,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     };
     let palette = Palette::new(ui.visuals());
     let angle = angle_text(triangle.rotation);
-    ui.label(fill!("Triangle %{n}, rotated by %{angle}", n = learn.picked, angle = angle));
+    ui.label(fill!("Triangle %{n}, rotated by %{angle}", n = learn.picked, angle));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);

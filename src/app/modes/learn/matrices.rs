@@ -52,9 +52,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
          unknowns. Red is positive, blue negative.",
         n = learn.picked,
         nodes = triangle.nodes.map(|n| n.to_string()).join(", "),
-        all = all,
+        all,
         clamped = all - free,
-        free = free,
+        free,
     );
     ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
 }
@@ -78,8 +78,7 @@ fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangl
         }
     }
     let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
-    let text =
-        fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all = all, free = free);
+    let text = fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all, free);
     let (rect, _) = cells(ui, palette, (side, matrix.amax(), &text), &matrix, &name_of, &stored);
     let cell = rect.width() / all as f32;
     let block = |i: usize, j: usize, size: f32| {

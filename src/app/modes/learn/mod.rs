@@ -279,9 +279,7 @@ impl Learn {
                 if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
                     actions.push(Action::Card(card - 1));
                 }
-                ui.label(
-                    RichText::new(fill!("%{n} of %{count}", n = card + 1, count = count)).color(palette.secondary),
-                );
+                ui.label(RichText::new(fill!("%{n} of %{count}", n = card + 1, count)).color(palette.secondary));
                 let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
                 if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
                     actions.push(Action::Card(card + 1));

@@ -189,7 +189,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         title: curve_title(scene),
         axes: axes(shown),
         series: all,
-        head: [fill!("at %{load}", load = load), displacement_text(scene)],
+        head: [fill!("at %{load}", load), displacement_text(scene)],
         quantities: quantities(FigureQuantity::new(said(&name), unit), scene),
     }
 }
@@ -200,7 +200,7 @@ fn departure_text(departures: &[Departure], (full, unit): (f64, &str)) -> Option
     let percent = each(&|departure| departure.percent.to_string());
     let loads = each(&|departure| engineering(three_digits(departure.at.factor * full), unit));
     (!departures.is_empty())
-        .then(|| (fill!("beam theory off by %{percent} %", percent = percent), fill!("at %{load}", load = loads)))
+        .then(|| (fill!("beam theory off by %{percent} %", percent), fill!("at %{load}", load = loads)))
 }
 
 #[cfg(test)]

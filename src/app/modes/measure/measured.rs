@@ -48,19 +48,19 @@ pub(crate) fn parts(study: &Study, m: &Measurement) -> String {
     let (StudyReference::Motion(reference), Some(motion)) = (&study.reference, m.motion) else {
         let parts = fill!(
             "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
-            unknowns = unknowns,
-            mesh = mesh,
-            iteration = iteration,
-            theory = theory
+            unknowns,
+            mesh,
+            iteration,
+            theory
         );
         return [Some(parts), runs_away(study, m)].into_iter().flatten().collect::<Vec<_>>().join(" ");
     };
     fill!(
         "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the energy put in.",
-        unknowns = unknowns,
-        mesh = mesh,
+        unknowns,
+        mesh,
         steps = iteration,
-        theory = theory,
+        theory,
         duration = engineering(three_digits(reference.duration()), "s"),
         drift = drift_text(0.01 * motion.drift_of_input_percent)
     )
