@@ -82,6 +82,13 @@ pub(crate) enum Action {
 }
 
 impl Action {
+    /// Returns the action that changes a scene, for the field with this label.
+    pub(crate) fn edit(label: &'static str, scene: &Scene, change: impl FnOnce(&mut Scene)) -> Self {
+        let mut scene = Box::new(scene.clone());
+        change(&mut scene);
+        Self::Edit(label, scene)
+    }
+
     /// Returns `true` if the action exists here: only a web page has links.
     pub(crate) fn is_available(&self) -> bool {
         IS_PAGE || !matches!(self, Self::CopyLink)

@@ -4,10 +4,10 @@ use crate::app::session::has_mesh_of;
 use egui::Ui;
 
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::panel::{Action, NumberRow, PanelState, number_rows};
+use crate::app::panel::Panel;
 use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::number_field::{NumberField, SliderScale, show_message};
+use crate::app::widgets::number_field::{NumberField, NumberRow, show_message};
 use crate::format::{engineering, number, three_digits};
 use crate::scene::{Beam, Material, Plane, Scene, limits};
 
@@ -32,55 +32,24 @@ const PRESETS: [MaterialPreset; 4] = [
 /// Returns the rows of the material. The limit of Poisson's ratio differs between plane stress and plane strain.
 fn material_rows(plane: Plane) -> [NumberRow; 4] {
     [
-        NumberRow {
-            field: NumberField {
-                label: "Young E",
-                tooltip: "Young's modulus, Pa: stiffness of the material. Rubber 1e6, wood 1e10, steel 2e11.",
-                limit: limits::YOUNG,
-                slider: 1e3..=1e12,
-                scale: SliderScale::Logarithmic(1e3),
-                whole: false,
-            },
-            get: |s| s.material.young,
-            set: |s, v| s.material.young = v,
-        },
-        NumberRow {
-            field: NumberField {
-                label: "Poisson ν",
-                tooltip: "Poisson's ratio: lateral contraction over extension. 0.5 keeps the volume; plane strain \
-                          needs less than 0.5.",
-                limit: plane.poisson_limit(),
-                slider: -0.5..=0.499,
-                scale: SliderScale::Linear,
-                whole: false,
-            },
-            get: |s| s.material.poisson,
-            set: |s, v| s.material.poisson = v,
-        },
-        NumberRow {
-            field: NumberField {
-                label: "Density",
-                tooltip: "Density, kg/m³: sets the weight, and the inertia in motion.",
-                limit: limits::DENSITY,
-                slider: 0.0..=20_000.0,
-                scale: SliderScale::Logarithmic(1.0),
-                whole: false,
-            },
-            get: |s| s.material.density,
-            set: |s, v| s.material.density = v,
-        },
-        NumberRow {
-            field: NumberField {
-                label: "Thickness t",
-                tooltip: "Thickness out of the plane, m: stiffness and weight are proportional to it.",
-                limit: limits::THICKNESS,
-                slider: 1e-3..=10.0,
-                scale: SliderScale::Logarithmic(1e-3),
-                whole: false,
-            },
-            get: |s| s.material.thickness,
-            set: |s, v| s.material.thickness = v,
-        },
+        NumberField::new("Young E", limits::YOUNG, 1e3..=1e12)
+            .logarithmic(1e3)
+            .tip("Young's modulus, Pa: stiffness of the material. Rubber 1e6, wood 1e10, steel 2e11.")
+            .row(|s| s.material.young, |s, v| s.material.young = v),
+        NumberField::new("Poisson ν", plane.poisson_limit(), -0.5..=0.499)
+            .tip(
+                "Poisson's ratio: lateral contraction over extension. 0.5 keeps the volume; plane strain needs less \
+                 than 0.5.",
+            )
+            .row(|s| s.material.poisson, |s, v| s.material.poisson = v),
+        NumberField::new("Density", limits::DENSITY, 0.0..=20_000.0)
+            .logarithmic(1.0)
+            .tip("Density, kg/m³: sets the weight, and the inertia in motion.")
+            .row(|s| s.material.density, |s, v| s.material.density = v),
+        NumberField::new("Thickness t", limits::THICKNESS, 1e-3..=10.0)
+            .logarithmic(1e-3)
+            .tip("Thickness out of the plane, m: stiffness and weight are proportional to it.")
+            .row(|s| s.material.thickness, |s, v| s.material.thickness = v),
     ]
 }
 
@@ -127,43 +96,34 @@ impl CellsThatFollow {
 }
 
 /// Shows length and height of the beam.
-pub(super) fn size(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let (Some(beam), Some(original)) = (&input.scene.beam, &input.original.beam) else { return };
+pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
+    const SPAN: f64 = 10.0;
+    let Some(original) = &panel.input.original.beam else { return };
     let sides = [
         (
-            "Length",
-            "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.",
-            limits::LENGTH,
+            NumberField::new("Length", limits::LENGTH, original.length / SPAN..=original.length * SPAN)
+                .logarithmic(original.length / SPAN)
+                .tip("Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it."),
             [beam.length, original.length],
         ),
         (
-            "Height",
-            "Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it.",
-            limits::HEIGHT,
+            NumberField::new("Height", limits::HEIGHT, original.height / SPAN..=original.height * SPAN)
+                .logarithmic(original.height / SPAN)
+                .tip("Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it."),
             [beam.height, original.height],
         ),
     ];
-    for (axis, (label, tooltip, limit, [present, original])) in sides.into_iter().enumerate() {
-        const SPAN: f64 = 10.0;
-        let field = NumberField {
-            label,
-            tooltip,
-            limit,
-            slider: original / SPAN..=original * SPAN,
-            scale: SliderScale::Logarithmic(original / SPAN),
-            whole: false,
-        };
-        let Some(new) = field.show_with_original(ui, &mut state.messages, present, Some(original)) else { continue };
-        let mut scene = Box::new(input.scene.clone());
-        let (length, height) = if axis == 0 { (new, beam.height) } else { (beam.length, new) };
-        scene.resize_beam(length, height);
-        if let Some(cells) = scene.beam.as_mut().and_then(|beam| beam.cells.get_mut(axis)) {
-            *cells = state.cells.count(axis, [present, new], *cells);
-        }
-        actions.push(Action::Edit(label, scene));
+    for (axis, (field, [present, original])) in sides.into_iter().enumerate() {
+        let Some(new) = panel.number(ui, &field, present, Some(original)) else { continue };
+        let cells = panel.state.cells.count(axis, [present, new], beam.cells[axis]);
+        panel.edit(field.label, |scene| {
+            let (length, height) = if axis == 0 { (new, beam.height) } else { (beam.length, new) };
+            scene.resize_beam(length, height);
+            scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = cells);
+        });
     }
     let slenderness = number(three_digits(beam.length / beam.height));
-    ui.label(fill!("Slenderness, length over height: %{slenderness}", slenderness = slenderness));
+    ui.label(fill!("Slenderness, length over height: %{slenderness}", slenderness));
 }
 
 /// Returns a summary of the mesh, such as `5 × 1, 24 unknowns`.
@@ -180,59 +140,45 @@ pub(super) fn mesh_summary(input: &Readout<'_>) -> String {
     joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
 }
 
-pub(super) fn material(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = input.scene;
+pub(super) fn material(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let present = panel.scene.material;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for MaterialPreset { name, young, poisson, density, .. } in PRESETS {
-            let preset = Material { young, poisson, density, ..scene.material };
+            let preset = Material { young, poisson, density, ..present };
             let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
-            let chosen = preset == scene.material;
+            let chosen = preset == present;
             if ui.add(option_button(chosen, tr(name))).on_hover_text(tip).clicked() && !chosen {
-                actions.push(Action::Edit("Young E", Box::new(Scene { material: preset, ..scene.clone() })));
+                panel.edit("Young E", |scene| scene.material = preset);
             }
         }
     });
-    number_rows(ui, input, state, actions, material_rows(scene.material.plane));
-    let m = &scene.material;
+    panel.rows(ui, material_rows(present.plane));
     ui.horizontal(|ui| {
         ui.label(tr("Plane"));
         for (plane, word, tip) in [
             (Plane::Stress, "stress", "Plane stress: no stress out of the plane, as in a thin plate."),
             (Plane::Strain, "strain", "Plane strain: no strain out of the plane, as in a slice of a long body."),
         ] {
-            if ui.radio(m.plane == plane, tr(word)).on_hover_text(tr(tip)).clicked() && m.plane != plane {
-                let mut scene = Box::new(scene.clone());
-                scene.material.plane = plane;
-                actions.push(Action::Edit("Plane", scene));
+            let chosen = present.plane == plane;
+            if ui.radio(chosen, tr(word)).on_hover_text(tr(tip)).clicked() && !chosen {
+                panel.edit("Plane", |scene| scene.material.plane = plane);
             }
         }
     });
-    show_message(ui, &state.messages, "Plane");
+    show_message(ui, &panel.state.messages, "Plane");
 }
 
-pub(super) fn mesh(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = input.scene;
-    for (axis, label, tooltip, most) in [
+pub(super) fn mesh(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let Some(beam) = &panel.scene.beam else { return };
+    for (axis, label, tip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles or a quadrilateral.", 40.0),
     ] {
-        let field = NumberField {
-            label,
-            tooltip,
-            limit: limits::CELLS,
-            slider: 1.0..=most,
-            scale: SliderScale::Logarithmic(1.0),
-            whole: true,
-        };
-        let Some(beam) = &scene.beam else { continue };
-        let original = input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
-        if let Some(new) = field.show_with_original(ui, &mut state.messages, f64::from(beam.cells[axis]), original) {
-            let mut scene = Box::new(scene.clone());
-            if let Some(beam) = &mut scene.beam {
-                beam.cells[axis] = new as u32;
-            }
-            actions.push(Action::Edit(label, scene));
+        let field = NumberField::new(label, limits::CELLS, 1.0..=most).logarithmic(1.0).whole().tip(tip);
+        let original = panel.input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
+        if let Some(new) = panel.number(ui, &field, f64::from(beam.cells[axis]), original) {
+            panel.edit(label, |scene| scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = new as u32));
         }
     }
 }

@@ -6,8 +6,7 @@ use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Ui, WidgetInfo, vec
 use nalgebra::Vector2;
 
 use crate::app::language::{count, fill, joined, tr};
-use crate::app::panel::{Action, PanelState, ViewOptions};
-use crate::app::readout::Readout;
+use crate::app::panel::Panel;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{
     acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,
@@ -53,17 +52,17 @@ const POINTS: [(&str, [f64; 2]); 8] = [
 ];
 
 /// Returns the named points of the beam, if the scene has one.
-fn points(scene: &Scene) -> impl Iterator<Item = (&'static str, Place)> {
+fn points(scene: &Scene) -> impl Iterator<Item = Place> {
     let beam = scene.beam.as_ref();
-    beam.into_iter().flat_map(|beam| POINTS.map(|(name, [along, across])| (name, beam.point(along, across).into())))
+    beam.into_iter().flat_map(|beam| POINTS.map(|(_, [along, across])| beam.point(along, across).into()))
 }
 
 /// Returns the description of a place.
 pub(super) fn text(scene: &Scene, place: &Place) -> String {
     match place {
         Place::Edge(name) => tr(name).to_owned(),
-        Place::At([x, y]) => match points(scene).find(|(_, point)| point == place) {
-            Some((name, _)) => tr(name).to_owned(),
+        Place::At([x, y]) => match points(scene).zip(POINTS).find(|(point, _)| point == place) {
+            Some((_, (name, _))) => tr(name).to_owned(),
             None => fill!("point %{place}", place = engineering_pair([*x, *y], "m")),
         },
     }
@@ -78,7 +77,7 @@ fn place_of(load: &Load) -> Option<Place> {
     }
 }
 
-/// Change of a load or support by its row.
+/// Change of a load, support or probe by its row.
 enum EdgeChange {
     Move(Place),
     /// Width, m.
@@ -86,16 +85,17 @@ enum EdgeChange {
     Remove,
 }
 
-/// Shows the row of a load or support with its place, and returns the user's change. The edge under the pointer is
+/// Shows the row of a load, support or probe with its place, and returns the user's change. The edge under the pointer is
 /// highlighted in the view. `width` is that of a load or support at a point, m; `more` shows further controls.
 fn row(
     ui: &mut Ui,
+    panel: &mut Panel<'_>,
     (label, id, remove): (&str, usize, &str),
-    (scene, present, width): (&Scene, &Place, Option<f64>),
-    places: impl Iterator<Item = (&'static str, Place)>,
-    (view, messages): (&mut ViewOptions, &mut Messages),
+    (present, width): (&Place, Option<f64>),
+    places: impl Iterator<Item = Place>,
     more: impl FnOnce(&mut Ui),
 ) -> Option<EdgeChange> {
+    let (scene, highlighted) = (panel.scene, &mut panel.view.edge);
     let mut change = None;
     ui.horizontal(|ui| {
         let name = ui.label(label);
@@ -108,10 +108,10 @@ fn row(
             more(ui);
             let picker = ComboBox::from_id_salt((label, id)).selected_text(text(scene, present));
             let combo = picker.width(ui.available_width()).truncate().show_ui(ui, |ui| {
-                for (_, place) in places {
+                for place in places {
                     let entry = ui.selectable_label(*present == place, text(scene, &place));
                     if let (true, Place::Edge(name)) = (entry.hovered() || entry.has_focus(), &place) {
-                        view.edge = Some(name.clone());
+                        *highlighted = Some(name.clone());
                     }
                     if entry.clicked() && *present != place {
                         change = Some(EdgeChange::Move(place));
@@ -120,13 +120,13 @@ fn row(
             });
             let tip = tr("Edge or point where it acts; choose another from the list");
             let button = combo.response.labelled_by(name.id).on_hover_text(tip);
-            if let (true, Place::Edge(name), None) = (button.hovered(), present, &view.edge) {
-                view.edge = Some(name.clone());
+            if let (true, Place::Edge(name), None) = (button.hovered(), present, &highlighted) {
+                *highlighted = Some(name.clone());
             }
         });
     });
     if let Place::At(at) = present {
-        change = change.or(coordinates(ui, (label, id), (*at, width), messages));
+        change = change.or(coordinates(ui, (label, id), (*at, width), &mut panel.state.messages));
     }
     change
 }
@@ -178,108 +178,59 @@ pub(super) fn summary(scene: &Scene) -> String {
     joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
-/// Shows the rows of all loads and supports.
-pub(super) fn show(
-    ui: &mut Ui,
-    input: &Readout<'_>,
-    state: &mut PanelState,
-    view: &mut ViewOptions,
-    actions: &mut Vec<Action>,
-) {
-    let (scene, system) = (input.scene, input.simulation.system());
+/// Shows the rows of all loads, supports and probes.
+pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let (scene, system) = (panel.scene, panel.input.simulation.system());
     let edges = |can_carry: fn(&System, &Edge) -> bool| {
-        system.edges().iter().filter(move |edge| can_carry(system, edge)).map(|edge| ("", Place::from(edge.name())))
+        system.edges().iter().filter(move |edge| can_carry(system, edge)).map(|edge| Place::from(edge.name()))
     };
+    let all = || edges(|_, _| true).chain(points(scene));
     let on_nodes = moved_points(scene, system.mesh());
     let say_if_on_node = |ui: &mut Ui, key: &str| {
         if let Some(point) = on_nodes.iter().find(|point| point.key == key) {
             let distance = engineering(three_digits(point.distance), "m");
-            ui.weak(fill!("on the nearest node, %{distance} away", distance = distance));
+            ui.weak(fill!("on the nearest node, %{distance} away", distance));
         }
     };
-    let mut edited = None;
     for (i, load) in scene.loads.iter().enumerate() {
         let Some(present) = place_of(load) else { continue };
         let remove = fill!("Remove load %{n}", n = i + 1);
-        let size = match load {
-            Load::Force { force: [x, y], .. } => engineering(three_digits(x.hypot(*y)), "N"),
-            Load::Moment { moment, .. } => engineering(three_digits(*moment), "N m"),
-            Load::Gravity { .. } => String::new(),
+        let (label, width, size) = match load {
+            Load::Force { force: [x, y], width, .. } => {
+                ("Force on", Some(*width), engineering(three_digits(x.hypot(*y)), "N"))
+            }
+            Load::Moment { moment, .. } => ("Moment on", None, engineering(three_digits(*moment), "N m")),
+            Load::Gravity { .. } => continue,
         };
-        let width = if let Load::Force { width, .. } = load { *width } else { 0.0 };
+        let edges = edges(if load.is_moment() { can_carry_moment } else { is_free });
+        let places = edges.chain(points(scene).filter(|_| !load.is_moment()));
         let size = |ui: &mut Ui| _ = ui.weak(&size);
-        let change = if load.is_moment() {
-            row(
-                ui,
-                (tr("Moment on"), i, &remove),
-                (scene, &present, None),
-                edges(can_carry_moment),
-                (view, &mut state.messages),
-                size,
-            )
-        } else {
-            row(
-                ui,
-                (tr("Force on"), i, &remove),
-                (scene, &present, Some(width)),
-                edges(is_free).chain(points(scene)),
-                (view, &mut state.messages),
-                size,
-            )
-        };
+        let change = row(ui, panel, (tr(label), i, &remove), (&present, width), places, size);
         say_if_on_node(ui, &format!("load.{i}"));
         let Some(change) = change else { continue };
-        let mut scene = Box::new(scene.clone());
-        match (change, &mut scene.loads[i]) {
-            (EdgeChange::Remove, _) => {
-                scene.loads.remove(i);
-                state.discard_force(i);
-            }
+        if matches!(change, EdgeChange::Remove) {
+            panel.state.discard_force(i);
+        }
+        panel.edit(SECTION, |scene| match (change, &mut scene.loads[i]) {
+            (EdgeChange::Remove, _) => _ = scene.loads.remove(i),
             (EdgeChange::Move(to), Load::Force { place, at_point, width, .. }) => {
                 move_by_hand(system, to, place, at_point, width);
             }
             (EdgeChange::Widen(to), Load::Force { at_point, width, .. }) => (*at_point, *width) = (true, to),
             (EdgeChange::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
             _ => {}
-        }
-        edited = Some(scene);
+        });
     }
     for (i, support) in scene.supports.iter().enumerate() {
-        let places = edges(|_, _| true).chain(points(scene));
         let mut fix = support.fix.clone();
         let remove = fill!("Remove support %{n}", n = i + 1);
-        let change = row(
-            ui,
-            (tr("Held at"), i, &remove),
-            (scene, &support.place, Some(support.width)),
-            places,
-            (view, &mut state.messages),
-            |ui| {
-                ui.spacing_mut().item_spacing.x = 2.0;
-                // The layout runs from right to left.
-                for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
-                    let is_fixed = fix.contains(&axis);
-                    let tip = fill!(
-                        "Fixes the displacement along %{axis}: a clamp fixes both directions, a roller one",
-                        axis = word
-                    );
-                    let button = option_button(is_fixed, word).min_size(vec2(22.0, 0.0));
-                    if ui.add(button).on_hover_text(tip).clicked() {
-                        match is_fixed {
-                            true => fix.retain(|other| *other != axis),
-                            false => fix.push(axis),
-                        }
-                    }
-                }
-            },
-        );
+        let place = (&support.place, Some(support.width));
+        let change = row(ui, panel, (tr("Held at"), i, &remove), place, all(), |ui| directions(ui, &mut fix));
         say_if_on_node(ui, &format!("support.{i}"));
-        let is_refixed = fix != support.fix;
-        if change.is_none() && !is_refixed {
+        if change.is_none() && fix == support.fix {
             continue;
         }
-        let mut scene = Box::new(scene.clone());
-        match (change, &mut scene.supports[i]) {
+        panel.edit(SECTION, |scene| match (change, &mut scene.supports[i]) {
             // A support that fixes no direction is removed.
             _ if fix.is_empty() => _ = scene.supports.remove(i),
             (Some(EdgeChange::Remove), _) => _ = scene.supports.remove(i),
@@ -288,34 +239,43 @@ pub(super) fn show(
             }
             (Some(EdgeChange::Widen(to)), support) => (support.at_point, support.width) = (true, to),
             (None, support) => *support = refixed(support, &fix),
-        }
-        edited = Some(scene);
+        });
     }
     for (i, probe) in scene.probes.iter().enumerate() {
-        let places = edges(|_, _| true).chain(points(scene));
-        let label = fill!("Probe %{name}", name = tr(&probe.name));
-        let remove = fill!("Remove the probe %{name}", name = tr(&probe.name));
-        let change =
-            row(ui, (&label, i, &remove), (scene, &probe.place, None), places, (view, &mut state.messages), |_| {});
-        let Some(change) = change else { continue };
-        let mut scene = Box::new(scene.clone());
-        match change {
-            EdgeChange::Remove => _ = scene.probes.remove(i),
-            EdgeChange::Move(to) => scene.probes[i].place = to,
-            EdgeChange::Widen(_) => {}
+        let name = tr(&probe.name);
+        let (label, remove) = (fill!("Probe %{name}", name), fill!("Remove the probe %{name}", name));
+        match row(ui, panel, (&label, i, &remove), (&probe.place, None), all(), |_| {}) {
+            Some(EdgeChange::Remove) => panel.edit(SECTION, |scene| _ = scene.probes.remove(i)),
+            Some(EdgeChange::Move(to)) => panel.edit(SECTION, |scene| scene.probes[i].place = to),
+            Some(EdgeChange::Widen(_)) | None => {}
         }
-        edited = Some(scene);
     }
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Add"));
-        for (word, tip, added) in ADDITIONS {
+        for (word, tip, add) in ADDITIONS {
             if ui.add(option_button(false, tr(word))).on_hover_text(tr(tip)).clicked() {
-                edited = Some(added(input));
+                panel.edit(SECTION, |scene| add(scene, system));
             }
         }
     });
-    actions.extend(edited.map(|scene| Action::Edit(SECTION, scene)));
-    show_message(ui, &state.messages, SECTION);
+    show_message(ui, &panel.state.messages, SECTION);
+}
+
+/// Shows the buttons of the directions that a support fixes.
+fn directions(ui: &mut Ui, fix: &mut Vec<Axis>) {
+    ui.spacing_mut().item_spacing.x = 2.0;
+    // The layout runs from right to left.
+    for (axis, word) in [(Axis::Y, "y"), (Axis::X, "x")] {
+        let is_fixed = fix.contains(&axis);
+        let tip =
+            fill!("Fixes the displacement along %{axis}: a clamp fixes both directions, a roller one", axis = word);
+        if ui.add(option_button(is_fixed, word).min_size(vec2(22.0, 0.0))).on_hover_text(tip).clicked() {
+            match is_fixed {
+                true => fix.retain(|other| *other != axis),
+                false => fix.push(axis),
+            }
+        }
+    }
 }
 
 /// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are
@@ -330,54 +290,38 @@ fn refixed(before: &Support, fix: &[Axis]) -> Support {
     support
 }
 
-/// Button that adds a load or support: its name, its tooltip, and the function that returns the extended scene.
-type Addition = (&'static str, &'static str, fn(&Readout<'_>) -> Box<Scene>);
+/// Button that adds a load, support or probe: its name, its tooltip, and the function that extends the scene.
+type Addition = (&'static str, &'static str, fn(&mut Scene, &System));
 const ADDITIONS: [Addition; 4] = [
-    ("Force", "Add a downward force at a place without one", with_another_force),
-    ("Moment", "Add a moment on an edge without one", with_another_moment),
-    (
-        "Support",
-        "Add a support at a place that is not held; x and y select the directions that it fixes",
-        with_another_support,
-    ),
-    ("Probe", "Add a probe: its displacement is in Details and in the table of Compare", with_another_probe),
+    ("Force", "Add a downward force at a place without one", add_force),
+    ("Moment", "Add a moment on an edge without one", add_moment),
+    ("Support", "Add a support at a place that is not held; x and y select the directions that it fixes", add_support),
+    ("Probe", "Add a probe: its displacement is in Details and in the table of Compare", add_probe),
 ];
 
-/// Returns the places that can carry a load: free edges, then points of the beam.
-fn free_places(input: &Readout<'_>) -> impl Iterator<Item = Place> {
-    let system = input.simulation.system();
+/// Adds a force at the first place without one: a free edge, or else a point of the beam.
+fn add_force(scene: &mut Scene, system: &System) {
     let usual = USUAL.into_iter().filter(|name| system.edges().iter().any(|e| e.name() == *name && is_free(system, e)));
     let others = system.edges().iter().filter(|edge| is_free(system, edge)).map(Edge::name);
-    usual.chain(others).map(Place::from).chain(points(input.scene).map(|(_, place)| place))
-}
-
-fn with_another_force(input: &Readout<'_>) -> Box<Scene> {
-    let mut scene = Box::new(input.scene.clone());
     let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
-    if let Some(place) = free_places(input).find(|place| !is_taken(place)) {
-        let present = OpeningLoads::of(&scene);
-        let [usual, _] = force_range(present, &scene.material, input.simulation.system());
-        scene.loads.push(force_by_hand(input.simulation.system(), place, [0.0, -usual]));
+    let place = usual.chain(others).map(Place::from).chain(points(scene)).find(|place| !is_taken(place));
+    if let Some(place) = place {
+        let [usual, _] = force_range(OpeningLoads::of(scene), &scene.material, system);
+        scene.loads.push(force_by_hand(system, place, [0.0, -usual]));
     }
-    scene
 }
 
-fn with_another_moment(input: &Readout<'_>) -> Box<Scene> {
-    let mut scene = Box::new(input.scene.clone());
-    let system = input.simulation.system();
+fn add_moment(scene: &mut Scene, system: &System) {
     let is_taken = |name: &str| scene.loads.iter().any(|l| matches!(l, Load::Moment { edge, .. } if edge == name));
     let mut edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
-    let first = edge_for_moment(&scene, system).filter(|name| !is_taken(name));
+    let first = edge_for_moment(scene, system).filter(|name| !is_taken(name));
     if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
-        let [usual, _] = moment_range(OpeningLoads::of(&scene), &scene.material, system);
+        let [usual, _] = moment_range(OpeningLoads::of(scene), &scene.material, system);
         scene.loads.push(Load::moment(&edge, usual));
     }
-    scene
 }
 
-fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
-    let mut scene = Box::new(input.scene.clone());
-    let system = input.simulation.system();
+fn add_support(scene: &mut Scene, system: &System) {
     let is_taken = |place: &Place| match place {
         Place::Edge(name) => system.edges().iter().any(|edge| edge.name() == name && !is_free(system, edge)),
         Place::At(at) => {
@@ -389,21 +333,21 @@ fn with_another_support(input: &Readout<'_>) -> Box<Scene> {
     };
     let edges = system.edges().iter().map(|edge| Place::from(edge.name()));
     // A beam that is held at one end gets a roller under the other end.
-    if let Some(place) = points(input.scene).map(|(_, place)| place).chain(edges).find(|place| !is_taken(place)) {
+    let place = points(scene).chain(edges).find(|place| !is_taken(place));
+    if let Some(place) = place {
         scene.supports.push(support_by_hand(system, place, &[Axis::Y]));
     }
-    scene
 }
 
-/// Returns the scene with a probe at a common point of the beam that has none, or in the middle of the body.
-fn with_another_probe(input: &Readout<'_>) -> Box<Scene> {
-    let mesh = input.simulation.system().mesh();
+/// Adds a probe at a common point of the beam that has none, or in the middle of the body.
+fn add_probe(scene: &mut Scene, system: &System) {
+    let mesh = system.mesh();
     let (low, high) = mesh.bounds();
-    let is_free = |place: &Place| input.scene.probes.iter().all(|probe| probe.place != *place);
-    let places = points(input.scene).filter_map(|(_, place)| match place {
+    let is_free = |place: &Place| scene.probes.iter().all(|probe| probe.place != *place);
+    let places = points(scene).filter_map(|place| match place {
         Place::At(at) if is_free(&place) => Some(Vector2::from(at)),
         _ => None,
     });
     let at = places.last().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
-    Box::new(with_probe(input.scene, input.simulation.system(), at))
+    *scene = with_probe(scene, system, at);
 }

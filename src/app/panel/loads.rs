@@ -1,15 +1,14 @@
 //! Panel section of force, gravity and moment.
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelState, edges};
-use crate::app::readout::Readout;
+use crate::app::panel::{Panel, PanelState, combo, edges};
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::widgets::number_field::NumberField;
 use crate::format::engineering;
-use crate::scene::{Load, Place, Scene, limits};
+use crate::scene::{Load, LoadId, Place, Scene, limits};
 use crate::sentence::sentence;
 
 /// Gravitational acceleration on earth, m/s².
@@ -53,96 +52,70 @@ pub(super) fn summary(scene: &Scene) -> String {
 }
 
 /// Shows the magnitude and the direction of the force; nothing if the scene has none.
-pub(super) fn force(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = input.scene;
-    let Some((chosen, force)) = chosen_force(scene, state) else { return };
-    choose(ui, scene, state);
+pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let (input, scene) = (panel.input, panel.scene);
+    let Some((chosen, force)) = chosen_force(scene, panel.state) else { return };
+    choose(ui, panel, chosen);
     let (magnitude, direction) = polar_form(force);
     let as_opened = forces(input.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
-    let direction = direction.unwrap_or(state.force_direction());
-    let opening = input.opening;
-    let [usual, largest] = force_range(opening, &scene.material, input.simulation.system());
-    let field = NumberField {
-        label: "Force",
-        tooltip: "Magnitude of the force, N. Larger or smaller values can be typed, such as 12 kN.",
-        limit: limits::FORCE,
-        slider: 0.0..=largest,
-        scale: SliderScale::Around(usual),
-        whole: false,
-    };
-    if let Some(new) = field.show_with_original(ui, &mut state.messages, magnitude, Some(original)) {
-        state.keep_force_direction(direction);
-        actions.push(Action::Edit("Force", with_force(input, chosen, vector(new, direction))));
+    let direction = direction.unwrap_or(panel.state.force_direction());
+    let [usual, largest] = force_range(input.opening, &scene.material, input.simulation.system());
+    let field = NumberField::new("Force", limits::FORCE, 0.0..=largest)
+        .around(usual)
+        .tip("Magnitude of the force, N. Larger or smaller values can be typed, such as 12 kN.");
+    if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
+        set_force(panel, "Force", chosen, (new, direction));
     }
-    let field = NumberField {
-        label: "Direction",
-        tooltip: "Direction of the force: 0° right, 90° up, −90° down.",
-        limit: TURN,
-        slider: -180.0..=180.0,
-        scale: SliderScale::Linear,
-        whole: false,
-    };
     let original = original_direction.map(shown_degrees);
-    if let Some(new) = field.show_with_original(ui, &mut state.messages, shown_degrees(direction), original) {
-        state.keep_force_direction(new);
-        actions.push(Action::Edit("Direction", with_force(input, chosen, vector(magnitude, new))));
+    if let Some(new) = panel.number(ui, &DIRECTION, shown_degrees(direction), original) {
+        set_force(panel, "Direction", chosen, (magnitude, new));
     }
 }
 
-/// Typed directions; 270° is −90°.
-const TURN: limits::Limit = limits::Limit { min: -360.0, max: 360.0, ..limits::DIRECTION };
+/// 270° can be typed for −90°.
+const DIRECTION: NumberField =
+    NumberField::new("Direction", limits::Limit { min: -360.0, max: 360.0, ..limits::DIRECTION }, -180.0..=180.0)
+        .tip("Direction of the force: 0° right, 90° up, −90° down.");
+
+/// Sets a force by its magnitude, N, and its direction, degrees.
+fn set_force(panel: &mut Panel<'_>, label: &'static str, load: usize, (magnitude, direction): (f64, f64)) {
+    panel.state.force_direction = Some(direction);
+    panel.edit(label, |scene| _ = scene.set_force(LoadId::nth(load), vector(magnitude, direction)));
+}
 
 /// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
-pub(super) fn gravity_and_moment(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = input.scene;
+pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let (input, scene) = (panel.input, panel.scene);
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
-    let direction = direction.or(state.gravity_direction).unwrap_or(DOWN);
+    let direction = direction.or(panel.state.gravity_direction).unwrap_or(DOWN);
     let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
-    let usual = if original > 0.0 { original } else { EARTH };
-    let field = NumberField {
-        label: "Gravity",
-        tooltip: "Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.",
-        limit: limits::ACCELERATION,
-        slider: 0.0..=1000.0,
-        scale: SliderScale::Around(usual),
-        whole: false,
-    };
-    if let Some(new) = field.show_with_original(ui, &mut state.messages, magnitude, Some(original)) {
-        state.gravity_direction = Some(direction);
-        actions.push(Action::Edit("Gravity", with_gravity(scene, vector(new, direction))));
-    }
-    let current = moment_of(scene);
-    let opening = input.opening;
-    let [usual, largest] = moment_range(opening, &scene.material, input.simulation.system());
-    let field = NumberField {
-        label: "Moment",
-        tooltip: "Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a \
-                  circle.",
-        limit: limits::MOMENT,
-        slider: -largest..=largest,
-        scale: SliderScale::Around(usual),
-        whole: false,
-    };
-    let original = moment_of(input.original).unwrap_or(0.0);
-    if let Some(new) = field.show_with_original(ui, &mut state.messages, current.unwrap_or(0.0), Some(original)) {
-        let mut scene = Box::new(input.scene.clone());
-        let first = scene.loads.iter_mut().find_map(|l| match l {
-            Load::Moment { moment, .. } => Some(moment),
-            _ => None,
+    let field = NumberField::new("Gravity", limits::ACCELERATION, 0.0..=1000.0)
+        .around(if original > 0.0 { original } else { EARTH })
+        .tip("Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.");
+    if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
+        panel.state.gravity_direction = Some(direction);
+        let own = scene.loads.iter().position(|load| matches!(load, Load::Gravity { .. }));
+        panel.edit("Gravity", |scene| match own {
+            Some(own) => _ = scene.set_gravity(LoadId::nth(own), vector(new, direction)),
+            None => scene.loads.push(Load::gravity(vector(new, direction))),
         });
-        match first {
-            Some(moment) => *moment = new,
-            None => match edges::edge_for_moment(&scene, input.simulation.system()) {
-                Some(edge) => scene.loads.push(Load::moment(&edge, new)),
-                None => {
-                    let message = sentence!("expected a straight edge without support; the body has none");
-                    state.messages.insert("Moment", message);
-                    return;
-                }
-            },
+    }
+    let [usual, largest] = moment_range(input.opening, &scene.material, input.simulation.system());
+    let field = NumberField::new("Moment", limits::MOMENT, -largest..=largest)
+        .around(usual)
+        .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");
+    let [current, original] = [scene, input.original].map(|scene| moment_of(scene).unwrap_or(0.0));
+    let Some(new) = panel.number(ui, &field, current, Some(original)) else { return };
+    let own = scene.loads.iter().position(Load::is_moment);
+    let edge = edges::edge_for_moment(scene, input.simulation.system());
+    match (own, edge) {
+        (Some(own), _) => panel.edit("Moment", |scene| _ = scene.set_moment(LoadId::nth(own), new)),
+        (None, Some(edge)) => panel.edit("Moment", |scene| scene.loads.push(Load::moment(&edge, new))),
+        (None, None) => {
+            let message = sentence!("expected a straight edge without support; the body has none");
+            panel.state.messages.insert("Moment", message);
         }
-        actions.push(Action::Edit("Moment", scene));
     }
 }
 
@@ -151,52 +124,23 @@ fn shown_degrees(degrees: f64) -> f64 {
     (degrees * 1e9).round() / 1e9
 }
 
-/// Returns the scene with a force replaced.
-fn with_force(input: &Readout<'_>, load: usize, new: [f64; 2]) -> Box<Scene> {
-    let mut scene = Box::new(input.scene.clone());
-    if let Some(Load::Force { force, .. }) = scene.loads.get_mut(load) {
-        *force = new;
-    }
-    scene
-}
-
 /// Lets the user choose the force that the sliders set, if the scene has several.
-fn choose(ui: &mut Ui, scene: &Scene, state: &mut PanelState) {
-    let Some((present, _)) = chosen_force(scene, state).filter(|_| forces(scene).count() > 1) else { return };
-    let name = |i: usize, place: &Place| {
-        let number = forces(scene).position(|(j, ..)| j == i).unwrap_or(0) + 1;
-        fill!("Force %{number}: %{place}", number = number, place = edges::text(scene, place))
-    };
-    let place = forces(scene).find(|(i, ..)| *i == present).map(|(_, place, _)| place);
-    ui.horizontal(|ui| {
-        let label = ui.label(tr("Selected force"));
-        let text = place.map_or_else(String::new, |place| name(present, place));
-        ComboBox::from_id_salt("chosen force")
-            .selected_text(text)
-            .width(ui.available_width())
-            .truncate()
-            .show_ui(ui, |ui| {
-                for (i, place, _) in forces(scene) {
-                    if ui.selectable_label(i == present, name(i, place)).clicked() {
-                        state.force = Some(i);
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text(tr("The force that the sliders change; dragging an arrow selects its force"));
+fn choose(ui: &mut Ui, panel: &mut Panel<'_>, present: usize) {
+    let scene = panel.scene;
+    let names = forces(scene).zip(1..).map(|((i, place, _), number)| {
+        (i, fill!("Force %{number}: %{place}", number, place = edges::text(scene, place)))
     });
-}
-
-fn with_gravity(scene: &Scene, new: [f64; 2]) -> Box<Scene> {
-    let mut scene = Box::new(scene.clone());
-    let first = scene.loads.iter_mut().find_map(|l| match l {
-        Load::Gravity { acceleration, .. } => Some(acceleration),
-        _ => None,
-    });
-    match first {
-        Some(acceleration) => *acceleration = new,
-        None => scene.loads.push(Load::gravity(new)),
+    let names: Vec<(usize, String)> = names.collect();
+    if names.len() < 2 {
+        return;
     }
-    scene
+    let chosen = names.iter().find(|(i, _)| *i == present).map_or("", |(_, name)| name);
+    let tip = "The force that the sliders change; dragging an arrow selects its force";
+    combo(ui, "Selected force", chosen, tip, Some(0.0), |ui| {
+        for (i, name) in &names {
+            if ui.selectable_label(*i == present, name).clicked() {
+                panel.state.force = Some(*i);
+            }
+        }
+    });
 }

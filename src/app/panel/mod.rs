@@ -12,7 +12,7 @@ use crate::app::language::{spaced, tr};
 use crate::app::view_options::{Mode, ViewOptions};
 use crate::app::viewport::arrow::DOWN;
 use crate::app::widgets::buttons::choice;
-use crate::app::widgets::number_field::{Messages, NumberField, SliderScale, show_message};
+use crate::app::widgets::number_field::{Messages, NumberField, NumberRow, show_message};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::method::METHODS;
 use crate::scene::{Analysis, Scene, limits};
@@ -36,19 +36,18 @@ pub(super) struct PanelState {
     /// `true` between a press and its release if there were messages before the press.
     has_old_messages: bool,
     /// Last directions, degrees, kept while a magnitude is zero.
-    force_direction: Option<f64>,
+    pub force_direction: Option<f64>,
     gravity_direction: Option<f64>,
     /// Index among the scene's loads of the force that the sliders set; the first force if it is `None` or no force.
-    force: Option<usize>,
+    pub force: Option<usize>,
+    /// Index of the support that the sliders move.
+    support: Option<usize>,
+    /// Index of the section that is shown, and the number of sections in the last frame.
+    section: Option<(usize, usize)>,
     cells: body::CellsThatFollow,
 }
 
 impl PanelState {
-    /// Resets the state for another scene.
-    pub(super) fn clear(&mut self) {
-        *self = Self::default();
-    }
-
     /// Removes messages when the pointer is released after the next press: the fields have their values again. A press
     /// that itself leads to a message keeps it.
     pub(super) fn fade_messages(&mut self, ctx: &egui::Context) {
@@ -61,11 +60,6 @@ impl PanelState {
         }
     }
 
-    /// Makes the sliders set this load of the scene, if it is a force.
-    pub(super) fn choose_force(&mut self, load: usize) {
-        self.force = Some(load);
-    }
-
     /// Updates the chosen force after the removal of a load: the same force stays chosen if it still exists.
     fn discard_force(&mut self, load: usize) {
         self.force =
@@ -75,11 +69,6 @@ impl PanelState {
     /// Returns the direction of a force of zero, degrees.
     pub(super) fn force_direction(&self) -> f64 {
         self.force_direction.unwrap_or(DOWN)
-    }
-
-    /// Stores the direction of a force that may become zero, degrees.
-    pub(super) fn keep_force_direction(&mut self, degrees: f64) {
-        self.force_direction = Some(degrees);
     }
 }
 
@@ -95,48 +84,43 @@ pub(super) fn show(
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
     // Set again below by the widget under the pointer.
     view.edge = None;
+    let scene = input.scene;
+    let panel = &mut Panel { input, scene, state, view, actions };
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         let palette = Palette::new(ui.visuals());
-        if !input.scene.about.is_empty() {
-            let about = spaced(RichText::new(tr(&input.scene.about)), SMALL).small().color(palette.secondary);
+        if !scene.about.is_empty() {
+            let about = spaced(RichText::new(tr(&scene.about)), SMALL).small().color(palette.secondary);
             ui.add(egui::Label::new(about).wrap());
         }
-        if view.mode == Mode::Compare {
+        if panel.view.mode == Mode::Compare {
             ui.small(tr("Each pane has its own method, element and mesh."));
         }
         ui.add_space(4.0);
-        method(ui, input, state, actions);
-        element(ui, input, state, actions);
-        accept_after(ui, input, state, actions);
+        solver(ui, panel);
         ui.add_space(2.0);
-        loads::force(ui, input, state, actions);
+        loads::force(ui, panel);
         ui.add_space(4.0);
-        if input.scene.analysis == Analysis::Dynamic {
-            fold(ui, "Time", &motion::summary(input), true, |ui| motion::show(ui, input, state, actions));
+        if scene.analysis == Analysis::Dynamic {
+            fold(ui, "Time", &motion::summary(scene), true, |ui| motion::show(ui, panel));
         }
-        let summary = loads::summary(input.scene);
-        fold(ui, "Gravity, moment", &summary, false, |ui| loads::gravity_and_moment(ui, input, state, actions));
-        let summary = edges::summary(input.scene);
-        fold(ui, edges::SECTION, &summary, false, |ui| edges::show(ui, input, state, view, actions));
-        if let Some(support) = supports::chosen(ui, input) {
-            let summary = supports::summary(input.scene, support);
-            fold(ui, "Moved support", &summary, true, |ui| supports::show(ui, input, support, state, actions));
+        fold(ui, "Gravity, moment", &loads::summary(scene), false, |ui| loads::gravity_and_moment(ui, panel));
+        fold(ui, edges::SECTION, &edges::summary(scene), false, |ui| edges::show(ui, panel));
+        if let Some((number, support)) = supports::chosen(panel) {
+            fold(ui, "Moved support", &supports::summary(support), true, |ui| {
+                supports::show(ui, panel, number, support)
+            });
         }
-        if let Some(beam) = &input.scene.beam {
-            fold(ui, "Beam", &body::size_summary(beam), false, |ui| body::size(ui, input, state, actions));
+        if let Some(beam) = &scene.beam {
+            fold(ui, "Beam", &body::size_summary(beam), false, |ui| body::size(ui, panel, beam));
         }
-        let summary = body::material_summary(input.scene);
-        fold(ui, "Material", &summary, false, |ui| body::material(ui, input, state, actions));
-        let summary = body::mesh_summary(input);
-        fold(ui, "Mesh", &summary, false, |ui| body::mesh(ui, input, state, actions));
-        if !input.scene.sections.is_empty() {
-            let summary = sections::summary(input);
-            fold(ui, "Sections", &summary, true, |ui| sections::show(ui, input, state, view, actions));
+        fold(ui, "Material", &body::material_summary(scene), false, |ui| body::material(ui, panel));
+        fold(ui, "Mesh", &body::mesh_summary(input), false, |ui| body::mesh(ui, panel));
+        if !scene.sections.is_empty() {
+            fold(ui, "Sections", &scene.sections.len().to_string(), true, |ui| sections::show(ui, panel));
         }
-        let summary = view::summary(view, input.scene);
-        fold(ui, "View", &summary, false, |ui| view::options(ui, input, state, view, actions));
-        fold(ui, "File", tr("open, save, picture"), false, |ui| view::keep(ui, input.scene, actions));
+        fold(ui, "View", &view::summary(panel.view, scene), false, |ui| view::options(ui, panel));
+        fold(ui, "File", tr("open, save, picture"), false, |ui| view::keep(ui, panel));
         if let Some(errors) = errors {
             fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
         }
@@ -184,101 +168,87 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     });
 }
 
-/// Row of the panel that edits a number of the scene.
-struct NumberRow {
-    field: NumberField,
-    get: fn(&Scene) -> f64,
-    set: fn(&mut Scene, f64),
+/// What the panel shows in a frame, its state, and the actions that it requests.
+struct Panel<'a> {
+    input: &'a Readout<'a>,
+    scene: &'a Scene,
+    state: &'a mut PanelState,
+    view: &'a mut ViewOptions,
+    actions: &'a mut Vec<Action>,
 }
 
-/// Shows the rows of a table.
-fn number_rows(
-    ui: &mut Ui,
-    input: &Readout<'_>,
-    state: &mut PanelState,
-    actions: &mut Vec<Action>,
-    rows: impl IntoIterator<Item = NumberRow>,
-) {
-    for NumberRow { field, get, set } in rows {
-        let original = Some(get(input.original));
-        if let Some(new) = field.show_with_original(ui, &mut state.messages, get(input.scene), original) {
-            let mut scene = Box::new(input.scene.clone());
-            set(&mut scene, new);
-            actions.push(Action::Edit(field.label, scene));
+impl Panel<'_> {
+    /// Requests a change of the scene.
+    fn edit(&mut self, label: &'static str, change: impl FnOnce(&mut Scene)) {
+        self.actions.push(Action::edit(label, self.scene, change));
+    }
+
+    /// Shows a number; returns the one that the user enters.
+    fn number(&mut self, ui: &mut Ui, field: &NumberField, value: f64, original: Option<f64>) -> Option<f64> {
+        field.show(ui, &mut self.state.messages, value, original)
+    }
+
+    /// Shows numbers of the scene.
+    fn rows(&mut self, ui: &mut Ui, rows: impl IntoIterator<Item = NumberRow>) {
+        for NumberRow { field, get, set } in rows {
+            if let Some(new) = self.number(ui, &field, get(self.scene), Some(get(self.input.original))) {
+                self.edit(field.label, |scene| set(scene, new));
+            }
         }
+    }
+
+    /// Shows a list with name and description of each value, for the change to one of them.
+    fn picker<T>(
+        &mut self,
+        ui: &mut Ui,
+        label: &'static str,
+        (chosen, about): (&str, &str),
+        entries: impl Iterator<Item = (T, &'static str, &'static str)>,
+        set: impl Fn(&mut Scene, T),
+    ) {
+        /// Width of the column of labels, points.
+        const LABELS: f32 = 74.0;
+        let palette = Palette::new(ui.visuals());
+        combo(ui, label, tr(chosen), about, Some(LABELS), |ui| {
+            for (value, id, about) in entries {
+                if choice(ui, &palette, id == chosen, id, about).clicked() && id != chosen {
+                    self.edit(label, |scene| set(scene, value));
+                    ui.close();
+                }
+            }
+        });
+        show_message(ui, &self.state.messages, label);
     }
 }
 
-/// Shows a picker with name and description of each entry. Returns the name of the entry that was picked.
-fn picker<'a>(
-    ui: &mut Ui,
-    label: &str,
-    chosen: (&str, &str),
-    entries: impl Iterator<Item = (&'a str, &'a str)>,
-) -> Option<&'a str> {
-    const LABEL_WIDTH: f32 = 74.0;
-    let palette = Palette::new(ui.visuals());
-    let mut picked = None;
+/// Shows a list that `entries` fills, with its label; beside a column of labels, points, it fills the row.
+fn combo(ui: &mut Ui, label: &str, chosen: &str, tip: &str, column: Option<f32>, entries: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         let left = ui.cursor().left();
         let name = ui.label(tr(label));
-        ui.add_space((left + LABEL_WIDTH - name.rect.right() - ui.spacing().item_spacing.x).max(0.0));
-        ComboBox::from_id_salt(label)
-            .selected_text(tr(chosen.0))
-            .width(ui.available_width())
-            .height(420.0)
-            .show_ui(ui, |ui| {
-                for (id, about) in entries {
-                    if choice(ui, &palette, id == chosen.0, id, about).clicked() && id != chosen.0 {
-                        picked = Some(id);
-                        ui.close();
-                    }
-                }
-            })
-            .response
-            .labelled_by(name.id)
-            .on_hover_text(tr(chosen.1));
+        let mut list = ComboBox::from_id_salt(label).selected_text(chosen).height(560.0);
+        if let Some(column) = column {
+            ui.add_space((left + column - name.rect.right() - ui.spacing().item_spacing.x).max(0.0));
+            list = list.width(ui.available_width()).truncate();
+        }
+        list.show_ui(ui, entries).response.labelled_by(name.id).on_hover_text(tr(tip));
     });
-    picked
 }
 
-fn method(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut Vec<Action>) {
-    let chosen = input.scene.solver.method.entry();
-    let entries = METHODS.iter().map(|entry| (entry.id, entry.about));
-    let picked = picker(ui, "Method", (chosen.id, chosen.about), entries);
-    if let Some(entry) = METHODS.iter().find(|entry| Some(entry.id) == picked) {
-        let mut scene = Box::new(input.scene.clone());
-        scene.solver.method = entry.kind;
-        actions.push(Action::Edit("Method", scene));
+/// Shows method and element, and the number of iterations after which a result is accepted, if the scene asks for that.
+fn solver(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let scene = panel.scene;
+    let (method, element) = (scene.solver.method.entry(), scene.element().entry());
+    let methods = METHODS.iter().map(|m| (m.kind, m.id, m.about));
+    panel.picker(ui, "Method", (method.id, method.about), methods, |scene, method| scene.solver.method = method);
+    let elements = scene.elements().map(|element| (element, element.id(), element.entry().about));
+    panel.picker(ui, "Element", (element.id, element.about), elements, Scene::set_element);
+    if [scene, panel.input.original].iter().any(|scene| scene.solver.accept_after > 0) {
+        panel.rows(ui, [ACCEPT_AFTER]);
     }
-    show_message(ui, &state.messages, "Method");
 }
 
-fn element(ui: &mut Ui, input: &Readout<'_>, state: &PanelState, actions: &mut Vec<Action>) {
-    let chosen = input.scene.element().entry();
-    let entries = input.scene.elements().map(|element| (element.id(), element.entry().about));
-    let picked = picker(ui, "Element", (chosen.id, chosen.about), entries);
-    if let Some(element) = input.scene.elements().find(|element| Some(element.id()) == picked) {
-        let mut scene = Box::new(input.scene.clone());
-        scene.set_element(element);
-        actions.push(Action::Edit("Element", scene));
-    }
-    show_message(ui, &state.messages, "Element");
-}
-
-/// Shows the number of iterations after which a result is accepted, if the scene asks for that.
-fn accept_after(ui: &mut Ui, input: &Readout<'_>, state: &mut PanelState, actions: &mut Vec<Action>) {
-    if [input.scene, input.original].iter().all(|scene| scene.solver.accept_after == 0) {
-        return;
-    }
-    let field = NumberField {
-        label: "Accept after",
-        tooltip: "Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.",
-        limit: limits::ACCEPT_AFTER,
-        slider: 0.0..=20.0,
-        scale: SliderScale::Linear,
-        whole: true,
-    };
-    let get = |s: &Scene| f64::from(s.solver.accept_after);
-    number_rows(ui, input, state, actions, [NumberRow { field, get, set: |s, v| s.solver.accept_after = v as u32 }]);
-}
+const ACCEPT_AFTER: NumberRow = NumberField::new("Accept after", limits::ACCEPT_AFTER, 0.0..=20.0)
+    .whole()
+    .tip("Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.")
+    .row(|s| f64::from(s.solver.accept_after), |s, v| s.solver.accept_after = v as u32);

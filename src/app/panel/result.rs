@@ -57,8 +57,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         {
             let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
             match input.is_fallback {
-                true => fill!("%{n} to the state that is drawn, residual %{residual}", n = n, residual = residual),
-                false => fill!("%{n} since the last change, residual %{residual}", n = n, residual = residual),
+                true => fill!("%{n} to the state that is drawn, residual %{residual}", n, residual),
+                false => fill!("%{n} since the last change, residual %{residual}", n, residual),
             }
         },
         "Iterations since the last change, from the state before it; the status has those from rest. Residual: out-of-balance force over the sum of the elements' absolute \
@@ -70,7 +70,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         |(error, reference)| {
             let whole = engineering(reference.displacement.norm(), "m");
             let own = percent(reference.own_error_percent);
-            fill!("%{error} ± %{own} of %{whole}", error = percent(error), own = own, whole = whole)
+            fill!("%{error} ± %{own} of %{whole}", error = percent(error), own, whole)
         },
     );
     row("Error", text, &error_tip(input.reference, input.reference_failure));
@@ -81,7 +81,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         let part = percent(100.0 * factor);
         let text = match factor == 1.0 {
             true => steps.to_string(),
-            false => fill!("%{n}, at %{part} of the load", n = steps, part = part),
+            false => fill!("%{n}, at %{part} of the load", n = steps, part),
         };
         row("Load steps", text, "Number of steps in which the load is applied");
     }
@@ -95,7 +95,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
             |rho| {
                 let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
                 let load = load_text(input.shown.scene()).filter(|_| input.is_fallback);
-                load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load = load, text = text))
+                load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
             },
         );
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
@@ -149,8 +149,8 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
         Some((stress, at)) => {
             let (stress, at) = (engineering(three_digits(stress), "Pa"), engineering_pair(at.into(), "m"));
             match quality.singularity {
-                Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress = stress, place = at),
-                None => fill!("%{stress} at %{place}", stress = stress, place = at),
+                Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress, place = at),
+                None => fill!("%{stress} at %{place}", stress, place = at),
             }
         }
         None => UNKNOWN.to_owned(),
@@ -163,7 +163,7 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let text = match (known, warnings.is_empty()) {
         (false, _) => UNKNOWN.to_owned(),
         (true, true) => strain,
-        (true, false) => fill!("%{strain}: too large", strain = strain),
+        (true, false) => fill!("%{strain}: too large", strain),
     };
     let tip = std::iter::once(tr("The largest principal strain").to_owned()).chain(warnings);
     let tip = tip.collect::<Vec<_>>().join("; ");
@@ -198,9 +198,9 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
         let linear = count(auto.linear_steps, "step");
         let tip = fill!(
             "%{factors} for %{solves}; %{linear} under linear theory",
-            factors = factors,
+            factors,
             solves = count(auto.solves, "back substitution"),
-            linear = linear
+            linear
         );
         row("Auto", sentence(&said(&auto.decision)), &tip);
     }

@@ -1,69 +1,47 @@
 //! Panel section of moving supports: prescribed displacements and rotations, and reactions.
 
-use egui::{ComboBox, Id, Ui};
+use egui::Ui;
 
 use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, PanelState};
-use crate::app::readout::Readout;
-use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::panel::{Panel, combo};
+use crate::app::widgets::number_field::NumberField;
 use crate::format::{Context, editable, engineering, engineering_pair, three_digits};
 use crate::scene::limits::Limit;
-use crate::scene::{Analysis, Axis, Place, Scene, Support, limits};
+use crate::scene::{Analysis, Axis, Place, Support, limits};
 use crate::simulation::Simulation;
 
-/// Returns the index of the support that the sliders move; `None` for a motion, or if no support of this scene has been
-/// moved.
-pub(super) fn chosen(ui: &Ui, input: &Readout<'_>) -> Option<usize> {
-    if input.scene.analysis == Analysis::Dynamic {
-        return None;
-    }
+/// Returns the support that the sliders move, with its index; `None` for a motion, or if no support of this scene has
+/// been moved.
+pub(super) fn chosen<'a>(panel: &mut Panel<'a>) -> Option<(usize, &'a Support)> {
+    let scene = panel.scene;
     // A support that has been dragged back to rest stays the chosen one.
-    let id = Id::unique(("support", input.scene_name));
-    let first = input.scene.supports.iter().position(Support::moves);
-    let remembered = ui.data(|data| data.get_temp::<usize>(id));
-    let chosen = remembered.or(first).filter(|&i| i < input.scene.supports.len());
-    if let Some(chosen) = chosen {
-        ui.data_mut(|data| data.insert_temp(id, chosen));
-    }
-    chosen
+    let first = || scene.supports.iter().position(Support::moves);
+    panel.state.support = panel.state.support.or_else(first);
+    let number = panel.state.support.filter(|_| scene.analysis == Analysis::Static)?;
+    Some((number, scene.supports.get(number)?))
 }
 
 /// Returns a summary of a support's prescribed displacement and rotation.
-pub(super) fn summary(scene: &Scene, number: usize) -> String {
-    scene.supports.get(number).map_or_else(String::new, |support| {
-        let displacement = engineering_pair(support.displacement, "m");
-        if support.turn == 0.0 {
-            displacement
-        } else {
-            joined([displacement, editable(support.turn.to_degrees(), "°")])
-        }
-    })
+pub(super) fn summary(support: &Support) -> String {
+    let turn = (support.turn != 0.0).then(|| editable(support.turn.to_degrees(), "°"));
+    joined([engineering_pair(support.displacement, "m")].into_iter().chain(turn))
 }
 
 /// Shows the sliders of a support: its displacement in fixed directions, and its rotation if it is an edge.
-pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut PanelState, actions: &mut Vec<Action>) {
-    let scene = input.scene;
-    let Some(support) = scene.supports.get(number) else { return };
-    let original = input.original.supports.get(number);
+pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, number: usize, support: &Support) {
+    let (scene, original) = (panel.scene, panel.input.original.supports.get(number));
     if scene.supports.len() > 1 {
-        ui.horizontal(|ui| {
-            let label = ui.label(tr("Support"));
-            ComboBox::from_id_salt("support")
-                .selected_text(tr(&support.place.to_string()))
-                .show_ui(ui, |ui| {
-                    for (i, other) in scene.supports.iter().enumerate() {
-                        if ui.selectable_label(i == number, tr(&other.place.to_string())).clicked() {
-                            ui.data_mut(|data| data.insert_temp(Id::unique(("support", input.scene_name)), i));
-                        }
-                    }
-                })
-                .response
-                .labelled_by(label.id)
-                .on_hover_text(tr("The support that the sliders move"));
+        let tip = "The support that the sliders move";
+        combo(ui, "Support", tr(&support.place.to_string()), tip, None, |ui| {
+            for (i, other) in scene.supports.iter().enumerate() {
+                if ui.selectable_label(i == number, tr(&other.place.to_string())).clicked() {
+                    panel.state.support = Some(i);
+                }
+            }
         });
     }
-    let reach = reach(0.1 * input.simulation.system().size());
-    for (axis, label, tooltip) in [
+    let reach = reach(0.1 * panel.input.simulation.system().size());
+    for (axis, label, tip) in [
         (
             Axis::X,
             "Move x",
@@ -75,49 +53,36 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, number: usize, state: &mut 
             "Prescribed displacement of the support upwards, m. Numbers with a unit can be typed, such as -3 mm.",
         ),
     ] {
-        if !support.fix.contains(&axis) {
-            continue;
-        }
         let component = usize::from(axis == Axis::Y);
-        let field = NumberField {
-            label,
-            tooltip,
-            limit: limits::COORDINATE,
-            slider: -reach..=reach,
-            scale: SliderScale::Linear,
-            whole: false,
-        };
-        let original = original.map(|support| support.displacement[component]);
-        if let Some(new) = field.show_with_original(ui, &mut state.messages, support.displacement[component], original)
+        let of = |support: &Support| support.displacement[component];
+        let field = NumberField::new(label, limits::COORDINATE, -reach..=reach).tip(tip);
+        if support.fix.contains(&axis)
+            && let Some(new) = panel.number(ui, &field, of(support), original.map(of))
         {
-            let edit = |support: &mut Support| support.displacement[component] = new;
-            actions.push(Action::Edit(label, edited(scene, number, edit)));
+            panel.edit(label, |scene| {
+                scene.supports.get_mut(number).into_iter().for_each(|support| support.displacement[component] = new);
+            });
         }
     }
-    if matches!(support.place, Place::Edge(_)) && support.fix.contains(&Axis::X) && support.fix.contains(&Axis::Y) {
-        let field = NumberField {
-            label: "Rotation",
-            tooltip: "Prescribed rotation of the support's edge about its middle, counter-clockwise: in degrees, or \
-                      with a unit, such as 0.5 rad.",
-            limit: Limit { unit: "°", min: limits::ROTATION.min.to_degrees(), max: limits::ROTATION.max.to_degrees() },
-            slider: -180.0..=180.0,
-            scale: SliderScale::Linear,
-            whole: false,
-        };
-        let original = original.map(|support| support.turn.to_degrees());
-        if let Some(new) = field.show_with_original(ui, &mut state.messages, support.turn.to_degrees(), original) {
-            actions.push(Action::Edit("Rotation", edited(scene, number, |support| support.turn = new.to_radians())));
-        }
+    let of = |support: &Support| support.turn.to_degrees();
+    if matches!(support.place, Place::Edge(_))
+        && support.fix.contains(&Axis::X)
+        && support.fix.contains(&Axis::Y)
+        && let Some(new) = panel.number(ui, &ROTATION, of(support), original.map(of))
+    {
+        panel.edit("Rotation", |scene| {
+            scene.supports.get_mut(number).into_iter().for_each(|support| support.turn = new.to_radians());
+        });
     }
 }
 
-fn edited(scene: &Scene, number: usize, edit: impl FnOnce(&mut Support)) -> Box<Scene> {
-    let mut scene = Box::new(scene.clone());
-    if let Some(support) = scene.supports.get_mut(number) {
-        edit(support);
-    }
-    scene
-}
+/// Limit of an angle that may have full turns, in degrees.
+pub(super) const TURNS: Limit =
+    Limit { unit: "°", min: limits::ROTATION.min.to_degrees(), max: limits::ROTATION.max.to_degrees() };
+const ROTATION: NumberField = NumberField::new("Rotation", TURNS, -180.0..=180.0).tip(
+    "Prescribed rotation of the support's edge about its middle, counter-clockwise: in degrees, or with a unit, such as \
+     0.5 rad.",
+);
 
 /// Returns a round number that is about as large as `length` or larger.
 fn reach(length: f64) -> f64 {
@@ -144,7 +109,7 @@ pub(super) fn reaction_rows(row: &mut dyn FnMut(&str, String, &str), simulation:
                 ),
             ),
             place @ Place::At(_) => {
-                (fill!("Support %{n}", n = i + 1), fill!("Reaction of the support at %{place}", place = place))
+                (fill!("Support %{n}", n = i + 1), fill!("Reaction of the support at %{place}", place))
             }
         };
         row(&name, joined([force].into_iter().chain(moment)), &tip);

@@ -1,97 +1,76 @@
 //! Panel section of the display options.
 
-use egui::{ComboBox, Id, TextEdit, Ui};
+use egui::{Id, TextEdit, Ui};
 
 use crate::app::language::{joined, tr};
-use crate::app::panel::{Action, PanelState, ViewOptions};
-use crate::app::readout::Readout;
-use crate::app::view_options::Magnification;
-use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::panel::{Action, Panel, combo};
+use crate::app::view_options::{Magnification, ViewOptions};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::text::with_keys;
 use crate::scene::{Analysis, Scene, limits};
 use crate::sentence::sentence;
 use crate::simulation::Field;
 
-pub(super) fn options(
-    ui: &mut Ui,
-    input: &Readout<'_>,
-    state: &mut PanelState,
-    view: &mut ViewOptions,
-    actions: &mut Vec<Action>,
-) {
-    ui.horizontal(|ui| {
-        let label = ui.label(tr("Colour"));
-        ComboBox::from_id_salt("field")
-            .selected_text(tr(view.field.name()))
-            .height(560.0)
-            .show_ui(ui, |ui| {
-                for (i, field) in Field::ALL.into_iter().enumerate() {
-                    // A line between stresses, strains, displacements and the rest.
-                    let before = i.checked_sub(1).and_then(|before| Field::ALL.get(before));
-                    if before.is_some_and(|before| before.unit() != field.unit()) {
-                        ui.separator();
-                    }
-                    if ui.selectable_label(field == view.field, tr(field.name())).clicked() {
-                        actions.push(Action::Color(field));
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text(tr("The quantity the body is coloured with"));
+pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let shown = panel.view.field;
+    combo(ui, "Colour", tr(shown.name()), "The quantity the body is coloured with", None, |ui| {
+        for (i, field) in Field::ALL.into_iter().enumerate() {
+            // A line between stresses, strains, displacements and the rest.
+            let before = i.checked_sub(1).and_then(|before| Field::ALL.get(before));
+            if before.is_some_and(|before| before.unit() != field.unit()) {
+                ui.separator();
+            }
+            if ui.selectable_label(field == shown, tr(field.name())).clicked() {
+                panel.actions.push(Action::Color(field));
+            }
+        }
     });
-    let mut fixed = view.fixed_range.is_some();
+    let values = panel.input.value_range;
+    let mut fixed = panel.view.fixed_range.is_some();
     if ui
         .checkbox(&mut fixed, tr("Fixed colour range"))
         .on_hover_text(tr("Keep the ends of the colour map fixed; otherwise they follow the values"))
         .changed()
     {
-        view.fixed_range = fixed.then_some(input.value_range);
+        panel.view.fixed_range = fixed.then_some(values);
     }
-    if let Some(range) = view.fixed_range {
-        let (factor, unit) = view.field.display_unit();
-        let span = limits::Limit { unit, min: -1e30, max: 1e30 };
+    if let Some(range) = panel.view.fixed_range {
+        let (factor, unit) = shown.display_unit();
         // The range of the current values, extended by half its width at both ends. It does not depend on the fixed
         // range, so the slider does not change while it is dragged.
-        let [low, high] = input.value_range.map(|end| factor * end);
-        let span_now = high - low;
-        let slider = low - 0.5 * span_now..=high + 0.5 * span_now;
+        let [low, high] = values.map(|end| factor * end);
+        let span = high - low;
         for (end, label) in ["Lowest", "Highest"].into_iter().enumerate() {
-            let field = NumberField {
-                label,
-                tooltip: "Limit of the colour map",
-                limit: span,
-                slider: slider.clone(),
-                scale: SliderScale::Linear,
-                whole: false,
-            };
-            if let Some(new) = field.show(ui, &mut state.messages, factor * range[end]) {
-                let mut changed = range;
-                changed[end] = new / factor;
-                // The middle colour of a field with a sign stays at 0.
-                if view.field.has_sign() {
-                    let largest = changed[end].abs();
-                    changed = [-largest, largest];
-                }
-                if changed[0] < changed[1] {
-                    view.fixed_range = Some(changed);
-                } else {
-                    let reason = match view.field.has_sign() {
-                        true => sentence!("expected a value other than 0: the colours are symmetric about 0"),
-                        false => sentence!("expected the lowest value below the highest"),
-                    };
-                    state.messages.insert(label, reason);
-                }
+            let limit = limits::Limit { unit, min: -1e30, max: 1e30 };
+            let field =
+                NumberField::new(label, limit, low - 0.5 * span..=high + 0.5 * span).tip("Limit of the colour map");
+            let Some(new) = panel.number(ui, &field, factor * range[end], None) else { continue };
+            let mut changed = range;
+            changed[end] = new / factor;
+            // The middle colour of a field with a sign stays at 0.
+            if shown.has_sign() {
+                let largest = changed[end].abs();
+                changed = [-largest, largest];
+            }
+            if changed[0] < changed[1] {
+                panel.view.fixed_range = Some(changed);
+            } else {
+                let reason = match shown.has_sign() {
+                    true => sentence!("expected a value other than 0: the colours are symmetric about 0"),
+                    false => sentence!("expected the lowest value below the highest"),
+                };
+                panel.state.messages.insert(label, reason);
             }
         }
     }
-    magnification(ui, state, view);
+    magnification(ui, panel);
+    let view = &mut *panel.view;
     ui.horizontal_wrapped(|ui| {
         let tip = "Each element's own values, not smoothed at the nodes: they jump where the mesh is coarse";
         ui.checkbox(&mut view.raw, tr("Each element alone")).on_hover_text(tr(tip));
         ui.checkbox(&mut view.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
         ui.checkbox(&mut view.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
-        if input.scene.analysis == Analysis::Dynamic {
+        if panel.scene.analysis == Analysis::Dynamic {
             ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Path of the tip (Y)"));
         } else {
             let tip = "Outline of the reference solution, where it is known (X)";
@@ -99,49 +78,33 @@ pub(super) fn options(
             ui.checkbox(&mut view.ghost, tr("Linear")).on_hover_text(tr("Outline of the linear solution (G)"));
         }
         if ui.button(tr("Fit")).on_hover_text(tr("Show the whole body (F)")).clicked() {
-            actions.push(Action::Fit);
+            panel.actions.push(Action::Fit);
         }
     });
 }
 
 /// Shows the factor of the drawn displacement.
-fn magnification(ui: &mut Ui, state: &mut PanelState, view: &mut ViewOptions) {
+fn magnification(ui: &mut Ui, panel: &mut Panel<'_>) {
     let names = [
         (Magnification::None, "True scale"),
         (Magnification::Automatic, "Automatic"),
         (Magnification::Factor(10.0), "Factor"),
     ];
-    let is_same = |a: Magnification| std::mem::discriminant(&a) == std::mem::discriminant(&view.magnification);
+    let present = panel.view.magnification;
+    let is_same = |a: Magnification| std::mem::discriminant(&a) == std::mem::discriminant(&present);
     let chosen = names.iter().find(|(own, _)| is_same(*own)).map_or("", |(_, name)| name);
-    let mut new = None;
-    ui.horizontal(|ui| {
-        let label = ui.label(tr("Displacement"));
-        let tip = "Draws the body with a multiple of its displacement; it cannot be grabbed then";
-        ComboBox::from_id_salt("magnification")
-            .selected_text(tr(chosen))
-            .show_ui(ui, |ui| {
-                for (own, name) in names {
-                    if ui.selectable_label(is_same(own), tr(name)).clicked() && !is_same(own) {
-                        new = Some(own);
-                    }
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text(tr(tip));
+    let tip = "Draws the body with a multiple of its displacement; it cannot be grabbed then";
+    combo(ui, "Displacement", tr(chosen), tip, None, |ui| {
+        for (own, name) in names {
+            if ui.selectable_label(is_same(own), tr(name)).clicked() && !is_same(own) {
+                panel.view.magnification = own;
+            }
+        }
     });
-    view.magnification = new.unwrap_or(view.magnification);
-    if let Magnification::Factor(factor) = view.magnification {
-        let field = NumberField {
-            label: "Magnification",
-            tooltip: "Factor of the drawn displacement",
-            limit: Magnification::LIMIT,
-            slider: 1.0..=1e4,
-            scale: SliderScale::Logarithmic(1.0),
-            whole: false,
-        };
-        if let Some(factor) = field.show(ui, &mut state.messages, factor) {
-            view.magnification = Magnification::Factor(factor);
+    if let Magnification::Factor(factor) = panel.view.magnification {
+        let field = NumberField::new("Magnification", Magnification::LIMIT, 1.0..=1e4).logarithmic(1.0);
+        if let Some(factor) = panel.number(ui, &field.tip("Factor of the drawn displacement"), factor, None) {
+            panel.view.magnification = Magnification::Factor(factor);
         }
     }
 }
@@ -163,7 +126,8 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 }
 
 /// Shows the name and the description of the scene, and the buttons that open, save and copy.
-pub(super) fn keep(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
+pub(super) fn keep(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let scene = panel.scene;
     type Part = fn(&mut Scene) -> &mut String;
     let parts: [(&str, &String, Part); 2] =
         [("Name", &scene.name, |scene| &mut scene.name), ("Description", &scene.about, |scene| &mut scene.about)];
@@ -178,9 +142,7 @@ pub(super) fn keep(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         };
         let response = ui.horizontal(field).inner;
         if response.lost_focus() && text != tr(own) {
-            let mut edited = Box::new(scene.clone());
-            part(&mut edited).clone_from(&text);
-            actions.push(Action::Edit(label, edited));
+            panel.edit(label, |scene| part(scene).clone_from(&text));
         }
         let is_typed = response.has_focus();
         ui.data_mut(|data| match is_typed {
@@ -203,7 +165,7 @@ pub(super) fn keep(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         ] {
             let tip = with_keys(ui.ctx(), tr(tip));
             if action.is_available() && ui.button(tr(name)).on_hover_text(tip).clicked() {
-                actions.push(action);
+                panel.actions.push(action);
             }
         }
     });

@@ -5,6 +5,7 @@ use crate::app::language::{fill, said};
 use crate::app::modes::compare::Compare;
 use crate::app::modes::figure;
 use crate::app::modes::learn;
+use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
 use crate::app::view_options::{Magnification, MeasureTab, Mode, Toggle};
@@ -33,7 +34,7 @@ impl Lab {
             viewport.clear_swept();
         }
         if changed.document {
-            panel.clear();
+            *panel = PanelState::default();
             measure.open(session.scene());
             (*compare, *motions) = (Compare::new(false), Compare::new(true));
             viewport.start(mesh);
@@ -97,8 +98,7 @@ impl Lab {
                 if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()
                     && rest.len() >= before
                 {
-                    let added = rest.len();
-                    self.desk.panel.choose_force(added);
+                    self.desk.panel.force = Some(rest.len());
                 }
             }
             Action::Apply(scene) => _ = self.apply(ctx, Edit::Scene("Method", scene)),
@@ -246,11 +246,11 @@ impl Lab {
             ctx.request_repaint();
         };
         if let Some((load, pull)) = interaction.load {
-            self.desk.panel.choose_force(load);
+            self.desk.panel.force = Some(load);
             let mut scene = self.scene().clone();
             let (label, set) = match pull {
                 Pull::Force(magnitude, degrees) => {
-                    self.desk.panel.keep_force_direction(degrees);
+                    self.desk.panel.force_direction = Some(degrees);
                     ("Force", scene.set_force(LoadId::nth(load), vector(magnitude, degrees)))
                 }
                 Pull::Moment(moment) => ("Moment", scene.set_moment(LoadId::nth(load), moment)),

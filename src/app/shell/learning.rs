@@ -2,6 +2,7 @@
 //! ends.
 
 use crate::app::modes::learn::Learn;
+use crate::app::panel::PanelState;
 use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
@@ -76,7 +77,7 @@ impl Lab {
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
         session.set_slow(setup.waits);
-        panel.clear();
+        *panel = PanelState::default();
         view.color_with(setup.field);
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);

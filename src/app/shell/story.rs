@@ -5,6 +5,7 @@ use egui::{Align2, Event, FontId, Painter, Rect, Role, Sense, Stroke, TouchPhase
 use nalgebra::Vector2;
 
 use crate::app::language::tr;
+use crate::app::panel::PanelState;
 use crate::app::platform::page;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
@@ -100,7 +101,7 @@ impl Lab {
         }
         session.rebase(source);
         session.set_running(true);
-        panel.clear();
+        *panel = PanelState::default();
         let own = ViewOptions { bars: view.bars, narrow: view.narrow, ..ViewOptions::default() };
         let view = std::mem::replace(view, own);
         let (is_still, lesson) = (self.reduces_motion(), self.lesson.take());

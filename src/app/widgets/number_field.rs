@@ -14,6 +14,7 @@ use crate::app::language::{fill, said, tr};
 use crate::app::widgets::load_scale::LoadScale;
 use crate::app::widgets::palette::Palette;
 use crate::format::{editable, number, three_digits};
+use crate::scene::Scene;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
 use crate::sentence::{Sentence, sentence};
@@ -26,48 +27,74 @@ pub(crate) struct NumberField {
     /// Label; unique in the panel.
     pub label: &'static str,
     /// Description of the value.
-    pub tooltip: &'static str,
+    tooltip: &'static str,
     /// Accepted values.
-    pub limit: Limit,
+    limit: Limit,
     /// Range of the slider. Typed values may lie outside it, but within the limit.
-    pub slider: RangeInclusive<f64>,
+    slider: RangeInclusive<f64>,
     /// Relation between values and positions on the slider.
-    pub scale: SliderScale,
+    scale: SliderScale,
     /// `true` if only whole numbers are accepted.
-    pub whole: bool,
+    whole: bool,
 }
 
 /// Relation between the values of a slider and the positions on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum SliderScale {
-    /// Proportional.
+enum SliderScale {
     Linear,
-    /// Logarithmic above this smallest positive value, and symmetric about zero.
     Logarithmic(f64),
-    /// Proportional around this value, and logarithmic far beyond it: [`LoadScale`].
     Around(f64),
+}
+
+/// Field of a number of the scene.
+pub(crate) struct NumberRow {
+    pub field: NumberField,
+    pub get: fn(&Scene) -> f64,
+    pub set: fn(&mut Scene, f64),
 }
 
 const VALUE_WIDTH: f32 = 104.0;
 
 impl NumberField {
-    /// Shows the row; returns the new value when the user has entered one within the limit.
-    pub(crate) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64) -> Option<f64> {
-        self.show_with_original(ui, messages, value, None)
+    /// Returns a field of any number within the limit, with a slider that is proportional to it.
+    pub(crate) const fn new(label: &'static str, limit: Limit, slider: RangeInclusive<f64>) -> Self {
+        Self { label, tooltip: "", limit, slider, scale: SliderScale::Linear, whole: false }
     }
 
-    /// Shows the row as [`Self::show`] does, for a value with an original: a double click, or Delete on the slider,
-    /// restores the original.
-    pub(crate) fn show_with_original(
-        &self,
-        ui: &mut Ui,
-        messages: &mut Messages,
-        value: f64,
-        original: Option<f64>,
-    ) -> Option<f64> {
+    /// Describes the value.
+    pub(crate) const fn tip(mut self, tooltip: &'static str) -> Self {
+        self.tooltip = tooltip;
+        self
+    }
+
+    /// Makes the slider logarithmic above this smallest positive value, and symmetric about zero.
+    pub(crate) const fn logarithmic(mut self, smallest: f64) -> Self {
+        self.scale = SliderScale::Logarithmic(smallest);
+        self
+    }
+
+    /// Makes the slider proportional around this value, and logarithmic far beyond it: [`LoadScale`].
+    pub(crate) const fn around(mut self, usual: f64) -> Self {
+        self.scale = SliderScale::Around(usual);
+        self
+    }
+
+    /// Accepts only whole numbers.
+    pub(crate) const fn whole(mut self) -> Self {
+        self.whole = true;
+        self
+    }
+
+    /// Edits a number of the scene.
+    pub(crate) const fn row(self, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)) -> NumberRow {
+        NumberRow { field: self, get, set }
+    }
+
+    /// Shows the row; returns the new value when the user has entered one within the limit. A double click, or Delete on
+    /// the slider, restores the original, if there is one.
+    pub(crate) fn show(&self, ui: &mut Ui, messages: &mut Messages, value: f64, original: Option<f64>) -> Option<f64> {
         let mut edited = None;
         let (mut is_reset, mut is_committed) = (false, false);
-        let tip = self.tip(original);
+        let tip = self.full_tip(original);
         let refused = RefCell::new(None);
         let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
         // In the frame after Escape egui reads the typed text once more.
@@ -142,34 +169,23 @@ impl NumberField {
         let refused = refused.into_inner();
         let is_settled = refused.is_none() && (is_committed || edited.is_some());
         let was_refused = is_settled && ui.data_mut(|data| data.remove_temp::<()>(refused_id)).is_some();
-        let accepted = match (refused, edited) {
-            (Some(reason), _) => {
+        let entered = match refused {
+            Some(reason) => {
                 ui.data_mut(|data| data.insert_temp(refused_id, ()));
-                messages.insert(self.label, reason);
-                None
+                Err(reason)
             }
-            (None, Some(new)) => match self.check(new) {
-                Ok(()) => {
-                    messages.remove(self.label);
-                    Some(new)
-                }
-                Err(error) => {
-                    messages.insert(self.label, error);
-                    None
-                }
-            },
-            (None, None) => {
-                // The present value was typed in place of a refused text.
-                if was_refused {
-                    messages.remove(self.label);
-                }
-                None
-            }
+            None => edited.map(|new| self.check(new).map(|()| new)).transpose(),
         };
+        match &entered {
+            Err(reason) => _ = messages.insert(self.label, reason.clone()),
+            // The present value may have been typed in place of a refused text.
+            Ok(new) if new.is_some() || was_refused => _ = messages.remove(self.label),
+            Ok(_) => {}
+        }
         if messages.contains_key(self.label) {
             show_over_slider(ui, messages, self.label, slider);
         }
-        accepted.filter(|&new| new != value)
+        entered.ok().flatten().filter(|&new| new != value)
     }
 
     /// Shows the slider; returns the value that it is moved to.
@@ -204,14 +220,14 @@ impl NumberField {
         (response, slid)
     }
 
-    /// Returns the tooltip: the description, and how to restore the original.
-    fn tip(&self, original: Option<f64>) -> String {
+    /// Returns the whole tooltip: the description, and how to restore the original.
+    fn full_tip(&self, original: Option<f64>) -> String {
         let tip = tr(self.tooltip);
         original.map_or_else(
             || tip.to_owned(),
             |original| {
                 let value = editable(original, self.limit.unit);
-                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value = value);
+                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value);
                 format!("{tip}\n{back}")
             },
         )

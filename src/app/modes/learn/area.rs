@@ -7,7 +7,7 @@ use super::{Learn, triangle};
 use crate::app::action::Action;
 use crate::app::language::{fill, percent, signed_percent, spaced, tr};
 use crate::app::readout::Readout;
-use crate::app::widgets::number_field::{NumberField, SliderScale};
+use crate::app::widgets::number_field::NumberField;
 use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
 use crate::format::{number, three_digits};
 use crate::scene::limits::Limit;
@@ -65,20 +65,11 @@ fn force(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<
         ui.label(tr("There is no force: set the card up again."));
         return;
     };
-    let field = NumberField {
-        label: "Tip force",
-        tooltip: "The size of the force on the tip",
-        limit: Limit { unit: "N", min: 1.0, max: 1e6 },
-        slider: 1e3..=LARGEST_FORCE,
-        scale: SliderScale::Linear,
-        whole: false,
-    };
+    let field = NumberField::new("Tip force", Limit { unit: "N", min: 1.0, max: 1e6 }, 1e3..=LARGEST_FORCE);
     let size = x.hypot(y);
-    if let Some(new) = field.show(ui, &mut learn.messages, size) {
-        let mut scene = Box::new(scene.clone());
-        if scene.set_force(LoadId::nth(number), [x, y].map(|v| v * new / size)).is_ok() {
-            actions.push(Action::Edit("Force", scene));
-        }
+    if let Some(new) = field.tip("The size of the force on the tip").show(ui, &mut learn.messages, size, None) {
+        let new = [x, y].map(|v| v * new / size);
+        actions.push(Action::edit("Force", scene, |scene| _ = scene.set_force(LoadId::nth(number), new)));
     }
 }
 

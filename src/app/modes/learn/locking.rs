@@ -59,9 +59,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         let chosen = scene.element() == element;
         let button = ui.add(Button::selectable(chosen, RichText::new(&text).size(16.0)));
         if button.clicked() && !chosen {
-            let mut scene = Box::new(scene.clone());
-            scene.set_element(element);
-            actions.push(Action::Edit("Element", scene));
+            actions.push(Action::edit("Element", scene, |scene| scene.set_element(element)));
         }
         ui.add(egui::Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
         ui.add_space(2.0);

@@ -34,17 +34,15 @@ pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: 
             let chosen = shown.scene.solver.method == method.kind;
             let text = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
             if ui.add(option_button(chosen, tr(text))).on_hover_text(tr(method.about)).clicked() && !chosen {
-                let mut scene = Box::new(shown.scene.clone());
-                scene.solver.method = method.kind;
-                actions.push(Action::Edit("Method", scene));
+                actions.push(Action::edit("Method", shown.scene, |scene| scene.solver.method = method.kind));
             }
         }
         let simulation = shown.simulation;
         let iterations = count(simulation.iterations(), "iteration");
         let text = match simulation.status() {
-            Status::Converged => fill!("converged after %{iterations}", iterations = iterations),
+            Status::Converged => fill!("converged after %{iterations}", iterations),
             Status::Running => iterations,
-            _ => fill!("given up after %{iterations}", iterations = iterations),
+            _ => fill!("given up after %{iterations}", iterations),
         };
         ui.add(egui::Label::new(text).extend());
     });
@@ -108,10 +106,10 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
         (Some(last), Some(rho)) => fill!(
             "Residual %{residual} after %{iterations}; rho = %{rho}",
             residual = format!("{last:.1e}"),
-            iterations = iterations,
+            iterations,
             rho = rho_number(rho)
         ),
-        _ => fill!("%{iterations} so far", iterations = iterations),
+        _ => fill!("%{iterations} so far", iterations),
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &text));
     response.on_hover_text(tr(

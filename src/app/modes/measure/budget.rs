@@ -13,7 +13,7 @@ use crate::app::action::Action;
 use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
 use crate::app::modes::measure::measured::{choices, fastest, frame_ms, meeting, nearest, parts};
 use crate::app::task::thread::POLL;
-use crate::app::widgets::number_field::{Messages, NumberField, SliderScale};
+use crate::app::widgets::number_field::{Messages, NumberField};
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
@@ -224,28 +224,17 @@ fn settings(
             ui.add(egui::Label::new(text).truncate());
         }
     });
-    let time = NumberField {
-        label: "Time ≤",
-        tooltip: "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame \
-                  lasts 16.7 ms).",
-        limit: limits::BUDGET_MS,
-        slider: 1e-3..=1e3,
-        scale: SliderScale::Logarithmic(1e-3),
-        whole: false,
-    };
-    let error = NumberField {
-        label: "Error ≤",
-        tooltip: "Largest error, percent of the reference displacement.",
-        limit: limits::MAX_ERROR_PERCENT,
-        slider: 1e-3..=100.0,
-        scale: SliderScale::Logarithmic(1e-3),
-        whole: false,
-    };
+    let time = NumberField::new("Time ≤", limits::BUDGET_MS, 1e-3..=1e3).logarithmic(1e-3).tip(
+        "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame lasts 16.7 ms).",
+    );
+    let error = NumberField::new("Error ≤", limits::MAX_ERROR_PERCENT, 1e-3..=100.0)
+        .logarithmic(1e-3)
+        .tip("Largest error, percent of the reference displacement.");
     ui.columns_const(|[left, right]| {
-        if let Some(time_ms) = time.show(left, messages, limits.time_ms) {
+        if let Some(time_ms) = time.show(left, messages, limits.time_ms, None) {
             limits.time_ms = time_ms;
         }
-        if let Some(error_percent) = error.show(right, messages, limits.error_percent) {
+        if let Some(error_percent) = error.show(right, messages, limits.error_percent, None) {
             limits.error_percent = error_percent;
         }
     });
@@ -266,21 +255,17 @@ fn settings(
         let count = match budget.study.filter(|study| !study.can_decide(budget.demand)) {
             Some(study) => {
                 let own = percent(study.own_error_percent);
-                fill!("Not known: the reference's own error may be %{own}", own = own)
+                fill!("Not known: the reference's own error may be %{own}", own)
             }
             // The row of Measure says that nothing has been measured.
             None if measured == 0 => String::new(),
             None if meeting.is_empty() => {
-                fill!("None of %{measured} settings meets both; nearest:", measured = measured)
+                fill!("None of %{measured} settings meets both; nearest:", measured)
             }
             None if meeting.iter().any(|m| budget.study.is_some_and(|study| !study.converges(m))) => {
-                fill!(
-                    "%{n} of %{measured} settings meet both; *: does not converge",
-                    n = meeting.len(),
-                    measured = measured
-                )
+                fill!("%{n} of %{measured} settings meet both; *: does not converge", n = meeting.len(), measured)
             }
-            None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured = measured),
+            None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured),
         };
         ui.add(egui::Label::new(count).truncate());
     });
@@ -370,11 +355,8 @@ fn legend(ui: &mut Ui, moves: bool) {
             return;
         }
         let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let text = RichText::new(fill!(
-            "%{shapes}; line: Pareto front; cross: current setting; ring: fastest",
-            shapes = shapes
-        ))
-        .small();
+        let text = RichText::new(fill!("%{shapes}; line: Pareto front; cross: current setting; ring: fastest", shapes))
+            .small();
         ui.label(text);
     });
 }

@@ -414,18 +414,18 @@ impl<'a> StripChart<'a> {
             false if strip.integrator.is_some() => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
                 name = name.as_str(),
-                good = good,
-                usable = usable,
+                good,
+                usable,
                 finishes = converges,
-                law = law
+                law
             ),
             false => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}",
                 name = name.as_str(),
-                good = good,
-                usable = usable,
-                converges = converges,
-                law = law
+                good,
+                usable,
+                converges,
+                law
             ),
         };
         let response = ui.interact(rect, ui.scope_id().with(("strip", row)), Sense::click());
@@ -457,16 +457,14 @@ impl<'a> StripChart<'a> {
         }
         let tip = if is_used { text } else { format!("{text}\n{}", tr("Click to use it")) };
         if response.on_hover_text(tip).clicked() && !is_used {
-            let mut own = scene.clone();
-            let label = if let Some(integrator) = strip.integrator {
-                own.dynamics.integrator = integrator;
-                "Integrator"
-            } else {
-                (own.solver.method, own.solver.accept_after) = (strip.method, strip.accept_after);
-                own.set_element(strip.element);
-                "Method"
-            };
-            actions.push(Action::Edit(label, Box::new(own)));
+            let label = if strip.integrator.is_some() { "Integrator" } else { "Method" };
+            actions.push(Action::edit(label, scene, |scene| match strip.integrator {
+                Some(integrator) => scene.dynamics.integrator = integrator,
+                None => {
+                    (scene.solver.method, scene.solver.accept_after) = (strip.method, strip.accept_after);
+                    scene.set_element(strip.element);
+                }
+            }));
         }
     }
 
