@@ -128,7 +128,7 @@ impl Lab {
             Action::Reset => {
                 self.reset();
                 // A card that waits for its steps waits again.
-                if self.lesson.as_ref().is_some_and(|lesson| lesson.learn.waits_for_steps()) {
+                if self.lesson.as_ref().is_some_and(|lesson| lesson.learn.card().setup.waits) {
                     self.desk.session.set_running(false);
                 }
             }

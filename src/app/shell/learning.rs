@@ -59,10 +59,10 @@ impl Lab {
     pub(super) fn set_card_up(&mut self) {
         let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
         let Some((source, mut scene)) = built_in("article") else { return };
-        (setup.edit)(&mut scene);
-        let reach = setup.reach.and_then(|reach| {
+        setup.edit(&mut scene);
+        let reach = setup.at_reach().and_then(|setup| {
             let mut scene = scene.clone();
-            reach(&mut scene);
+            setup.edit(&mut scene);
             let mut simulation = Simulation::new(&scene).ok()?;
             simulation.solve();
             Some(simulation)

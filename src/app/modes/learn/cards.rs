@@ -1,10 +1,6 @@
 //! Cards of the mode Learn. A new card is an entry here, and a module for its drawing.
 
-use egui::{Painter, Ui};
-
-use super::{CardView, Learn, Needs, area, code, exploded, frames, locking, matrices, residuals, to_measure};
-use crate::app::action::Action;
-use crate::app::readout::Readout;
+use super::area;
 use crate::scene::{Load, MethodKind, Scene};
 use crate::simulation::Field;
 
@@ -20,48 +16,77 @@ pub(crate) struct Card {
     /// Task for the reader.
     pub task: &'static str,
     pub setup: Setup,
-    /// Expensive results that the card shows.
-    pub needs: Needs,
-    /// Shows numbers and controls next to the text.
-    pub show: fn(&mut Ui, &Readout<'_>, &mut Learn, &mut Vec<Action>),
-    /// Paints over the body.
-    pub paint: fn(&Painter, &CardView<'_>, &Learn),
-    /// `true` if the elements are drawn apart from each other.
-    pub apart: bool,
-    /// `true` if a step goes to the next line of the pseudocode.
-    pub lines: bool,
+    pub content: CardContent,
+}
+
+/// What a card shows next to its text and over the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CardContent {
+    /// Growth of the area.
+    Area,
+    /// Frame of every triangle.
+    Frames,
+    /// Triangles apart from each other, rotated back.
+    Exploded,
+    Matrices,
+    /// Lines of the pseudocode; a step goes to the next one.
+    Code,
+    /// Residuals, with the buttons that iterate, or those of two methods.
+    Steps,
+    Methods,
+    /// Errors of all elements.
+    Elements,
+    /// Button that leads to Measure.
+    ToMeasure,
 }
 
 /// Scene and view of a card.
 #[derive(Clone, Copy)]
 pub(crate) struct Setup {
-    /// Edits the article's scene.
-    pub edit: fn(&mut Scene),
+    /// Method, and force on the article's beam, N.
+    method: MethodKind,
+    force: f64,
     pub field: Field,
     /// `true` if the outline of the reference solution is shown, and (`rest`) the outline at rest.
     pub exact: bool,
     pub rest: bool,
     /// `true` if the card iterates from rest when the user starts it, in slow motion.
     pub waits: bool,
-    /// Edits the scene so that it has the largest body that the card's slider reaches: the view leaves room for it from
-    /// the beginning.
-    pub reach: Option<fn(&mut Scene)>,
+    /// Largest force that the card's slider reaches, N: the view leaves room for its body from the beginning.
+    reach: Option<f64>,
 }
 
 /// Forces on the article's beam, N: with the first the warped iteration converges, with the second it does not.
 const NEAR: f64 = 30e3;
 const FAR: f64 = 60e3;
 
-fn with(scene: &mut Scene, method: MethodKind, force: f64) {
-    scene.solver.method = method;
-    for load in &mut scene.loads {
-        if let Load::Force { force: vector, .. } = load {
-            *vector = [0.0, -force];
+/// Setup of most cards.
+const SETUP: Setup = Setup {
+    method: MethodKind::Warped,
+    force: NEAR,
+    field: Field::VonMises,
+    exact: false,
+    rest: true,
+    waits: false,
+    reach: None,
+};
+
+impl Setup {
+    /// Edits the article's scene.
+    pub(crate) fn edit(&self, scene: &mut Scene) {
+        scene.solver.method = self.method;
+        for load in &mut scene.loads {
+            if let Load::Force { force, .. } = load {
+                *force = [0.0, -self.force];
+            }
         }
     }
-}
 
-fn nothing(_: &Painter, _: &CardView<'_>, _: &Learn) {}
+    /// Returns the setup with the largest force of the card's slider, if it has one.
+    pub(crate) fn at_reach(self) -> Option<Self> {
+        self.reach.map(|force| Self { force, ..self })
+    }
+}
 
 /// All cards, in the order of the article.
 pub(crate) const CARDS: &[Card] = &[
@@ -75,18 +100,13 @@ pub(crate) const CARDS: &[Card] = &[
                   matrix. J: rotation by 90\u{b0}. det: determinant, the factor by which an area grows.",
         task: "Drag the tip force and watch the area.",
         setup: Setup {
-            edit: |scene| with(scene, MethodKind::Linear, NEAR),
+            method: MethodKind::Linear,
             field: Field::LargestStrain,
             exact: true,
-            rest: true,
-            waits: false,
-            reach: Some(|scene| with(scene, MethodKind::Linear, area::LARGEST_FORCE)),
+            reach: Some(area::LARGEST_FORCE),
+            ..SETUP
         },
-        needs: Needs::Nothing,
-        show: area::show,
-        paint: nothing,
-        apart: false,
-        lines: false,
+        content: CardContent::Area,
     },
     Card {
         title: "Every triangle rotates",
@@ -97,19 +117,8 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix with positive eigenvalues. T: transpose. All are \
                   2\u{d7}2.",
         task: "Click a triangle to see its numbers.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, NEAR),
-            field: Field::RotationAngle,
-            exact: false,
-            rest: true,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Nothing,
-        show: frames::show,
-        paint: frames::paint,
-        apart: false,
-        lines: false,
+        setup: Setup { field: Field::RotationAngle, ..SETUP },
+        content: CardContent::Frames,
     },
     Card {
         title: "Rotate back",
@@ -119,19 +128,8 @@ pub(crate) const CARDS: &[Card] = &[
         formula: &["R^{T} F = S = I + \u{3b5}"],
         symbols: "\u{3b5}: strain, a symmetric 2\u{d7}2 matrix (Biot strain).",
         task: "Move the slider between the bent beam and the triangles rotated back.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, NEAR),
-            field: Field::LargestStrain,
-            exact: false,
-            rest: false,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Nothing,
-        show: exploded::show,
-        paint: exploded::paint,
-        apart: true,
-        lines: false,
+        setup: Setup { field: Field::LargestStrain, rest: false, ..SETUP },
+        content: CardContent::Exploded,
     },
     Card {
         title: "Rotate the stiffness instead",
@@ -143,19 +141,8 @@ pub(crate) const CARDS: &[Card] = &[
                   one triangle (element). R here: 6\u{d7}6, with the triangle\u{2019}s rotation in three blocks on its \
                   diagonal. \u{3a3}: sum over all triangles.",
         task: "Click triangles, and point at entries for their values.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, NEAR),
-            field: Field::RotationAngle,
-            exact: false,
-            rest: true,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Nothing,
-        show: matrices::show,
-        paint: frames::paint,
-        apart: false,
-        lines: false,
+        setup: Setup { field: Field::RotationAngle, ..SETUP },
+        content: CardContent::Matrices,
     },
     Card {
         title: "The method in ten lines",
@@ -167,19 +154,8 @@ pub(crate) const CARDS: &[Card] = &[
                   index int: internal forces, of all triangles; with index e: of one. r: residual, the share of the \
                   forces that is out of balance; \u{3a3} | f | adds the absolute values of each component at every node.",
         task: "Press \u{201c}Next line\u{201d} (N) and follow the numbers.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, NEAR),
-            field: Field::RotationAngle,
-            exact: false,
-            rest: true,
-            waits: true,
-            reach: None,
-        },
-        needs: Needs::Nothing,
-        show: code::show,
-        paint: frames::paint,
-        apart: false,
-        lines: true,
+        setup: Setup { field: Field::RotationAngle, waits: true, ..SETUP },
+        content: CardContent::Code,
     },
     Card {
         title: "Iterate",
@@ -190,19 +166,8 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
                   iteration converges from a start that is near enough.",
         task: "Press \u{201c}Step once\u{201d} (N) again and again: after a few steps the points fall along the line.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, NEAR),
-            field: Field::VonMises,
-            exact: false,
-            rest: true,
-            waits: true,
-            reach: None,
-        },
-        needs: Needs::Rho,
-        show: residuals::steps,
-        paint: nothing,
-        apart: false,
-        lines: false,
+        setup: Setup { waits: true, ..SETUP },
+        content: CardContent::Steps,
     },
     Card {
         title: "Beyond \u{3c1} = 1 it does not converge",
@@ -213,19 +178,8 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \
                   positions (m). Far from the equilibrium the residual leaves the line and levels off.",
         task: "Switch to newton, and back.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Warped, FAR),
-            field: Field::VonMises,
-            exact: false,
-            rest: true,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Rho,
-        show: residuals::methods,
-        paint: nothing,
-        apart: false,
-        lines: false,
+        setup: Setup { force: FAR, ..SETUP },
+        content: CardContent::Methods,
     },
     Card {
         title: "Shear locking",
@@ -235,19 +189,8 @@ pub(crate) const CARDS: &[Card] = &[
         formula: &["`error` = | u \u{2212} u_{`reference`} | / | u_{`reference`} |"],
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
         task: "Try t6 and q4.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Newton, NEAR),
-            field: Field::VonMises,
-            exact: true,
-            rest: true,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Errors,
-        show: locking::show,
-        paint: nothing,
-        apart: false,
-        lines: false,
+        setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
+        content: CardContent::Elements,
     },
     Card {
         title: "The trade-off",
@@ -257,18 +200,7 @@ pub(crate) const CARDS: &[Card] = &[
         formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
         task: "Open Measure, and press \u{201c}Measure on this machine\u{201d}.",
-        setup: Setup {
-            edit: |scene| with(scene, MethodKind::Newton, NEAR),
-            field: Field::VonMises,
-            exact: true,
-            rest: true,
-            waits: false,
-            reach: None,
-        },
-        needs: Needs::Nothing,
-        show: to_measure,
-        paint: nothing,
-        apart: false,
-        lines: false,
+        setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
+        content: CardContent::ToMeasure,
     },
 ];

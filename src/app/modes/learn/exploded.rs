@@ -43,7 +43,7 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
         for (element, nodes) in mesh.elements().enumerate() {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.nodes()[n as usize]).collect();
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
-            let shift = view.middle(element) - mean(corners);
+            let shift = mean(view.points_of(element)) - mean(corners);
             let line: Vec<_> = corners.iter().map(|p| view.place(p + shift)).collect();
             painter
                 .add(Shape::closed_line(line.clone(), Stroke::new(3.2, view.palette.canvas.gamma_multiply(strength))));

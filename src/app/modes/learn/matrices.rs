@@ -1,6 +1,6 @@
 //! Card of the matrices: Ke and R Ke Rᵀ of the selected triangle as coloured cells, and the assembled matrix.
 
-use egui::{Color32, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use nalgebra::DMatrix;
 
 use super::triangle::{Triangle, assembled};
@@ -79,7 +79,7 @@ fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangl
     }
     let stored = |i: usize, j: usize| coupled[(i / 2) * nodes + j / 2];
     let text = fill!("the body's matrix, %{all} by %{all}, of which %{free} by %{free} are left", all, free);
-    let (rect, _) = cells(ui, palette, (side, matrix.amax(), &text), &matrix, &name_of, &stored);
+    let rect = cells(ui, palette, (side, matrix.amax(), &text), &matrix, &name_of, &stored);
     let cell = rect.width() / all as f32;
     let block = |i: usize, j: usize, size: f32| {
         Rect::from_min_size(rect.min + vec2(j as f32, i as f32) * cell, vec2(size, size) * cell)
@@ -113,7 +113,7 @@ fn cells(
     matrix: &DMatrix<f64>,
     name: &dyn Fn(usize) -> String,
     stored: &dyn Fn(usize, usize) -> bool,
-) -> (Rect, Response) {
+) -> Rect {
     let count = matrix.nrows();
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
     let cell = side / count.max(1) as f32;
@@ -131,17 +131,13 @@ fn cells(
     }
     ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, palette.secondary), StrokeKind::Outside);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, text));
-    let under = response.hover_pos().and_then(|at| index(rect, cell, count, at));
-    let response = match under {
-        Some((i, j)) => {
-            let value =
-                if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { tr("no entry").into() };
-            let places = fill!("force: %{row}, displacement: %{column}", row = name(i), column = name(j));
-            response.on_hover_text_at_pointer(format!("{value}\n{places}"))
-        }
-        None => response,
-    };
-    (rect, response)
+    let under = response.hover_pos().map(|at| ((at - rect.min) / cell).floor());
+    if let Some((i, j)) = under.map(|at| (at.y as usize, at.x as usize)).filter(|&(i, j)| i < count && j < count) {
+        let value = if stored(i, j) { engineering(three_digits(matrix[(i, j)]), "N/m") } else { tr("no entry").into() };
+        let places = fill!("force: %{row}, displacement: %{column}", row = name(i), column = name(j));
+        response.on_hover_text_at_pointer(format!("{value}\n{places}"));
+    }
+    rect
 }
 
 fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
@@ -149,12 +145,4 @@ fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
     let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
     let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
     Color32::from_rgb(r, g, b)
-}
-
-/// Returns row and column of the cell at a position.
-fn index(rect: Rect, cell: f32, count: usize, at: Pos2) -> Option<(usize, usize)> {
-    let at = at - rect.min;
-    let at = pos2(at.x / cell, at.y / cell);
-    let inside = at.x >= 0.0 && at.y >= 0.0 && (at.x as usize) < count && (at.y as usize) < count;
-    inside.then_some((at.y as usize, at.x as usize))
 }

@@ -30,6 +30,7 @@ mod matrices;
 mod residuals;
 mod triangle;
 
+use cards::CardContent;
 pub(crate) use cards::{CARDS, Card};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
@@ -43,16 +44,6 @@ const NAVIGATION: f32 = 420.0;
 
 /// Largest number of elements that are painted one by one.
 const MAX_ELEMENTS: usize = 3000;
-
-/// Expensive results of a scene that a card shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Needs {
-    Nothing,
-    /// Spectral radius ρ of the warped iteration at the equilibrium.
-    Rho,
-    /// Errors of all elements.
-    Errors,
-}
 
 facts! {
     /// Errors of all elements.
@@ -113,12 +104,6 @@ impl CardView<'_> {
         self.points.get(element * each..(element + 1) * each).unwrap_or_default()
     }
 
-    /// Returns the centre of an element as drawn, m.
-    fn middle(&self, element: usize) -> Vector2<f64> {
-        let points = self.points_of(element);
-        points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64
-    }
-
     /// Returns the outline of an element as drawn.
     fn corners(&self, element: usize) -> Vec<Pos2> {
         let entry = self.simulation.system().mesh().element().entry();
@@ -156,22 +141,17 @@ impl Learn {
 
     /// Returns `true` if the elements are drawn apart from each other.
     pub(crate) fn is_apart(&self) -> bool {
-        self.card().apart && self.rotation_part > 0.0
+        self.card().content == CardContent::Exploded && self.rotation_part > 0.0
     }
 
     /// Returns the line of the pseudocode that a step goes to; `None` on other cards.
     pub(crate) fn next_line(&self, simulation: &Simulation, ended: bool) -> Option<usize> {
-        (self.card().lines && code::describes(simulation)).then(|| code::after(self.line, ended))
-    }
-
-    /// Returns `true` if the card iterates when the user starts it.
-    pub(crate) fn waits_for_steps(&self) -> bool {
-        self.card().setup.waits
+        (self.card().content == CardContent::Code && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
     /// Returns `true` if the card shows ρ at the equilibrium.
     pub(crate) fn shows_rho(&self) -> bool {
-        self.card().needs == Needs::Rho
+        matches!(self.card().content, CardContent::Steps | CardContent::Methods)
     }
 
     fn errors(&self, scene: &Scene) -> Option<&[ElementError]> {
@@ -180,19 +160,19 @@ impl Learn {
 
     /// Returns `true` while a result of a scene that the card shows is being computed.
     pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
-        self.card().needs == Needs::Errors && self.errors.is_pending(scene)
+        self.card().content == CardContent::Elements && self.errors.is_pending(scene)
     }
 
     /// Requests the results that the card shows.
     fn request(&mut self, scene: &Scene, ctx: &Context) {
-        if self.card().needs == Needs::Errors && self.errors.request(scene) {
+        if self.card().content == CardContent::Elements && self.errors.request(scene) {
             ctx.request_repaint_after(POLL);
         }
     }
 
     /// Computes the results that the card shows, and waits for them.
     pub(crate) fn wait(&mut self, scene: &Scene) {
-        if self.card().needs == Needs::Errors {
+        if self.card().content == CardContent::Elements {
             self.errors.wait(scene);
         }
     }
@@ -222,7 +202,31 @@ impl Learn {
 
     /// Paints over the body.
     pub(crate) fn paint(&self, painter: &Painter, view: &CardView<'_>) {
-        (self.card().paint)(painter, view, self);
+        match self.card().content {
+            CardContent::Frames | CardContent::Matrices | CardContent::Code => frames::paint(painter, view, self),
+            CardContent::Exploded => exploded::paint(painter, view, self),
+            _ => {}
+        }
+    }
+
+    /// Shows numbers and controls next to the text.
+    fn show_content(&mut self, ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
+        match self.card().content {
+            CardContent::Area => area::show(ui, shown, self, actions),
+            CardContent::Frames => frames::show(ui, shown, self, actions),
+            CardContent::Exploded => exploded::show(ui, shown, self, actions),
+            CardContent::Matrices => matrices::show(ui, shown, self, actions),
+            CardContent::Code => code::show(ui, shown, self, actions),
+            CardContent::Steps => residuals::steps(ui, shown, actions),
+            CardContent::Methods => residuals::methods(ui, shown, actions),
+            CardContent::Elements => locking::show(ui, shown, self, actions),
+            CardContent::ToMeasure => {
+                let tip = "Leave the cards, and measure your own scene (B)";
+                if ui.button(tr("Open Measure")).on_hover_text(tr(tip)).clicked() {
+                    actions.push(Action::Toggle(Toggle::Tab(MeasureTab::HowFast)));
+                }
+            }
+        }
     }
 
     /// Shows the card.
@@ -241,24 +245,21 @@ impl Learn {
             let bars = egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded;
             ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
             let number = self.card;
-            let scroll = |ui: &mut Ui, part: &str, show: &mut dyn FnMut(&mut Ui)| {
+            let (left, right) = split(ui.available_rect_before_wrap());
+            let mut column = |rect: Rect, part: &str, show: &mut dyn FnMut(&mut Ui)| {
+                let layout = egui::Layout::top_down(egui::Align::Min);
+                let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+                ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 // A scroll bar that appears would wrap the text differently, which might hide the bar again.
                 let room = ui.available_width() - ui.spacing().scroll.allocated_width();
                 let area = ScrollArea::vertical().id_salt((part, number)).auto_shrink([false, false]);
-                area.scroll_bar_visibility(bars).show(ui, |ui| {
+                area.scroll_bar_visibility(bars).show(&mut ui, |ui| {
                     ui.set_max_width(room);
                     show(ui);
                 });
             };
-            let (left, right) = split(ui.available_rect_before_wrap());
-            let mut column = |rect: Rect, show: &mut dyn FnMut(&mut Ui)| {
-                let layout = egui::Layout::top_down(egui::Align::Min);
-                let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
-                ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
-                show(&mut ui);
-            };
-            column(left, &mut |ui| scroll(ui, "words", &mut |ui| text(ui, card)));
-            column(right, &mut |ui| scroll(ui, "drawing", &mut |ui| (card.show)(ui, shown, self, actions)));
+            column(left, "words", &mut |ui| text(ui, card));
+            column(right, "drawing", &mut |ui| self.show_content(ui, shown, actions));
         });
     }
 
@@ -275,26 +276,20 @@ impl Learn {
             });
             at_right(ui, "cards", |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
-                let back = ui.add_enabled(card > 0, egui::Button::new(tr("\u{2039} Back")));
-                if back.on_hover_text(tr("The card before (left arrow)")).clicked() {
-                    actions.push(Action::Card(card - 1));
-                }
-                ui.label(RichText::new(fill!("%{n} of %{count}", n = card + 1, count)).color(palette.secondary));
-                let next = ui.add_enabled(card + 1 < count, egui::Button::new(tr("Next \u{203a}")));
-                if next.on_hover_text(tr("The next card (right arrow or Enter)")).clicked() {
-                    actions.push(Action::Card(card + 1));
-                }
-                let tip = "Restores this card\u{2019}s scene";
-                if ui.button(tr("Set up again")).on_hover_text(tr(tip)).clicked() {
-                    actions.push(Action::Card(card));
-                }
-                let tip = "A story of twenty seconds; any key or click ends it";
-                if ui.button(tr("Story")).on_hover_text(tr(tip)).clicked() {
-                    actions.push(Action::Story);
-                }
-                if ui.button(tr("Leave")).on_hover_text(tr("Back to your own scene (Esc)")).clicked() {
-                    actions.push(Action::Toggle(Toggle::Mode(Mode::Explore)));
-                }
+                let mut button = |ui: &mut Ui, is_on: bool, name: &str, tip: &str, action: Action| {
+                    if ui.add_enabled(is_on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+                        actions.push(action);
+                    }
+                };
+                let (before, after) = (Action::Card(card.saturating_sub(1)), Action::Card(card + 1));
+                button(ui, card > 0, "\u{2039} Back", "The card before (left arrow)", before);
+                let place = fill!("%{n} of %{count}", n = card + 1, count);
+                ui.label(RichText::new(place).color(palette.secondary));
+                button(ui, card + 1 < count, "Next \u{203a}", "The next card (right arrow or Enter)", after);
+                button(ui, true, "Set up again", "Restores this card\u{2019}s scene", Action::Card(card));
+                button(ui, true, "Story", "A story of twenty seconds; any key or click ends it", Action::Story);
+                let leave = Action::Toggle(Toggle::Mode(Mode::Explore));
+                button(ui, true, "Leave", "Back to your own scene (Esc)", leave);
             });
         });
     }
@@ -333,13 +328,6 @@ fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static 
         if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
             actions.push(action);
         }
-    }
-}
-
-/// Shows the button that leads to Measure.
-fn to_measure(ui: &mut Ui, _: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
-    if ui.button(tr("Open Measure")).on_hover_text(tr("Leave the cards, and measure your own scene (B)")).clicked() {
-        actions.push(Action::Toggle(Toggle::Tab(MeasureTab::HowFast)));
     }
 }
 
@@ -434,7 +422,7 @@ mod tests {
     fn every_card_sets_up_a_scene_and_has_a_text() {
         for card in CARDS {
             let (_, mut scene) = crate::app::session::document::built_in("article").unwrap();
-            (card.setup.edit)(&mut scene);
+            card.setup.edit(&mut scene);
             assert!(scene.validate().is_ok(), "{}", card.title);
             let sentences = card.text.split_inclusive(['.', '?']).filter(|s| s.trim().len() > 3).count();
             assert!((2..=4).contains(&sentences), "{}: {sentences} sentences", card.title);

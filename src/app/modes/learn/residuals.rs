@@ -3,7 +3,7 @@
 
 use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::{Learn, step_buttons};
+use super::step_buttons;
 use crate::app::action::Action;
 use crate::app::diagnosis::rho_number;
 use crate::app::language::{count, fill, tr};
@@ -15,7 +15,7 @@ use crate::scene::MethodKind;
 use crate::simulation::Status;
 
 /// Shows the buttons that iterate, and the residuals.
-pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.simulation.status() != Status::Running;
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
@@ -28,7 +28,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: &m
 }
 
 /// Shows the buttons that choose a method, and the residuals.
-pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, _: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
             let chosen = shown.scene.solver.method == method.kind;
