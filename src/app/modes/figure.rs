@@ -1,67 +1,43 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
 use crate::app::action::{Action, FigureFile};
-use crate::app::view_options::CurvePlot;
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
-use thiserror::Error;
+use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotBounds, PlotPoints, Points};
 
 use crate::app::language::tr;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
-use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{segments, still};
 use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureSeries, Ink, Mark};
 
-/// Reason for which a figure is not saved.
-#[derive(Debug, Error)]
-#[error("{}", Sentence::from(self))]
-pub(crate) enum FigureSaveError {
-    NoFile(#[from] std::io::Error),
-    File { path: PathBuf, reason: std::io::Error },
-}
-
-impl From<&FigureSaveError> for Sentence {
-    fn from(error: &FigureSaveError) -> Self {
-        match error {
-            FigureSaveError::NoFile(error) => error.to_string().into(),
-            FigureSaveError::File { path, reason } => Self::located(path.display().to_string(), reason.to_string()),
-        }
-    }
-}
-
 /// Saves a figure in the current folder under the first free name, and returns its path.
-pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, FigureSaveError> {
-    let new = NewFile::create(Path::new(""), file.extension())?;
+///
+/// # Errors
+/// Error of the operating system.
+pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, Sentence> {
+    let new = NewFile::create(Path::new(""), file.extension()).map_err(|error| error.to_string())?;
     let bytes = match file {
         FigureFile::Csv => figure.csv().into_bytes(),
         FigureFile::Svg => crate::plot::figure(figure).svg().into_bytes(),
     };
     let path = new.path().to_owned();
-    match files::save(&path, &bytes) {
-        Ok(()) => Ok(path),
-        Err(reason) => Err(FigureSaveError::File { path, reason }),
-    }
+    files::save(&path, &bytes).map_err(|error| Sentence::located(path.display().to_string(), error.to_string()))?;
+    Ok(path)
 }
 
-/// Parts of a figure in the window: the plot, and the table to its right.
-pub(crate) struct Parts {
-    pub plot: Rect,
-    pub table: Rect,
-}
-
-impl Parts {
-    pub(crate) fn of(whole: Rect) -> Self {
-        let split = whole.right() - (0.4 * whole.width()).clamp(196.0, 330.0);
-        Self {
-            plot: Rect::from_min_max(whole.min, pos2(split - 12.0, whole.bottom())),
-            table: Rect::from_min_max(pos2(split, whole.top()), whole.max),
-        }
-    }
+/// Shows a plot, and to its right its controls and its table; returns the area of the plot.
+pub(crate) fn beside(ui: &mut Ui, plot: impl FnOnce(&mut Ui), table: impl FnOnce(&mut Ui)) -> Rect {
+    let whole = ui.available_rect_before_wrap();
+    let split = whole.right() - (0.4 * whole.width()).clamp(196.0, 330.0);
+    let left = whole.with_max_x(split - 12.0);
+    ui.scope_builder(UiBuilder::new().max_rect(left), plot);
+    ui.scope_builder(UiBuilder::new().max_rect(whole.with_min_x(split)), table);
+    ui.advance_cursor_after_rect(whole);
+    left
 }
 
 /// Draws the plot.
@@ -69,10 +45,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
     let palette = Palette::new(ui.visuals());
     let corners = figure.corners();
     let [x, y] = [0, 1].map(|axis| figure.quantity(axis).map_or(("", ""), |q| (q.name.as_str(), q.unit)));
-    let mut plot = still(&palette, id, x, y).set_margin_fraction(egui::Vec2::ZERO);
-    for [x, y] in corners {
-        plot = plot.include_x(x).include_y(y);
-    }
+    let mut plot = still(&palette, id, x, y);
     if figure.has_one_scale() {
         plot = plot.data_aspect(1.0);
     }
@@ -81,6 +54,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
         (0..2).all(|i| p[i] >= corners[0][i] - slack[i] && p[i] <= corners[1][i] + slack[i])
     };
     plot.show(ui, |plot| {
+        plot.set_plot_bounds(PlotBounds::from_min_max(corners[0], corners[1]));
         let mut smaller = 0.0;
         for series in &figure.series {
             let color = color(&palette, series.ink);
@@ -99,7 +73,7 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
                     Mark::Line => segments(&places(None)),
                     _ => vec![places(None)],
                 };
-                for line in lines.into_iter().filter_map(|line| clipped(&line, corners)) {
+                for line in lines {
                     let line = Line::new(series.name.clone(), PlotPoints::from(line));
                     plot.line(line.color(color).width(2.0).style(style));
                 }
@@ -126,40 +100,6 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
     }
 }
 
-/// Returns the part of a line inside the corners, from its first point inside; `None` if the line is outside.
-fn clipped(line: &[[f64; 2]], [low, high]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]>> {
-    let inside = |p: &[f64; 2]| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
-    let mut kept = Vec::new();
-    for pair in line.windows(2) {
-        let [a, b] = [pair[0], pair[1]];
-        // Parameters of the part inside; Liang and Barsky 1984.
-        let (mut from, mut to) = (0.0_f64, 1.0_f64);
-        for i in 0..2 {
-            let d = b[i] - a[i];
-            for (distance, outward) in [(a[i] - low[i], -d), (high[i] - a[i], d)] {
-                if outward == 0.0 {
-                    if distance < 0.0 {
-                        to = -1.0;
-                    }
-                } else if outward < 0.0 {
-                    from = from.max(distance / outward);
-                } else {
-                    to = to.min(distance / outward);
-                }
-            }
-        }
-        if from > to {
-            continue;
-        }
-        let at = |t: f64| [0, 1].map(|i| a[i] + t * (b[i] - a[i]));
-        if kept.is_empty() {
-            kept.push(if inside(&a) { a } else { at(from) });
-        }
-        kept.push(if inside(&b) { b } else { at(to) });
-    }
-    (kept.len() > 1).then_some(kept)
-}
-
 fn color(palette: &Palette, ink: Ink) -> Color32 {
     match ink {
         Ink::Method(method) => palette.method(method),
@@ -174,26 +114,6 @@ fn marker_shape(mark: Mark) -> (MarkerShape, bool) {
         Mark::Cross => (MarkerShape::Cross, true),
         _ => (MarkerShape::Circle, true),
     }
-}
-
-/// Shows the choice of quantities and the export menu.
-pub(crate) fn controls(
-    ui: &mut Ui,
-    figure: &Figure,
-    offered: &[CurvePlot],
-    shown: CurvePlot,
-    actions: &mut Vec<Action>,
-) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
-        for &plot in offered {
-            let (word, tip) = plot.text();
-            if ui.add(option_button(plot == shown, tr(word))).on_hover_text(tr(tip)).clicked() {
-                actions.push(Action::Plot(plot));
-            }
-        }
-        export_menu(ui, figure, actions);
-    });
 }
 
 /// Shows the menu that exports a figure.
@@ -272,18 +192,4 @@ fn paint_mark(ui: &Ui, center: egui::Pos2, mark: Mark, color: Color32) {
 /// Returns the point of a figure for a load and the displacement under it.
 pub(crate) fn point(load: f64, u: nalgebra::Vector2<f64>) -> FigurePoint {
     FigurePoint::new([load, u.x, u.y])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_are_cut_at_the_corners() {
-        let corners = [[0.0, 0.0], [2.0, 1.0]];
-        let line = [[-1.0, 0.5], [1.0, 0.5], [1.0, 3.0]];
-        assert_eq!(clipped(&line, corners), Some(vec![[0.0, 0.5], [1.0, 0.5], [1.0, 1.0]]));
-        assert_eq!(clipped(&[[3.0, 0.0], [3.0, 1.0]], corners), None);
-        assert_eq!(clipped(&[[0.0, -1.0], [-1.0, 0.0]], corners), None);
-    }
 }

@@ -102,21 +102,43 @@ fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
 
 /// Adds an entry of a picker: its name, and a description under it.
 pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, about: &str) -> Response {
-    let (id, about) = (tr(id), tr(about));
-    let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
-    let mut job = LayoutJob::default();
-    job.append(id, 0.0, format(BODY, palette.text));
-    job.append("\n", 0.0, format(BODY, palette.text));
-    let secondary = if selected { palette.text } else { palette.secondary };
-    job.append(about, 0.0, format(SMALL, secondary));
-    let response = ui.add(Button::selectable(selected, job).wrap());
+    let id = tr(id);
+    let color = if selected { palette.text } else { palette.secondary };
+    let response = ui.add(Button::selectable(selected, described(id, tr(about), palette.text, color)).wrap());
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), selected, id));
     response
+}
+
+/// Lays out a name with a description under it, each in its colour.
+pub(crate) fn described(name: &str, about: &str, color: egui::Color32, about_color: egui::Color32) -> LayoutJob {
+    let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
+    let mut job = LayoutJob::default();
+    job.append(name, 0.0, format(BODY, color));
+    job.append("\n", 0.0, format(BODY, color));
+    job.append(about, 0.0, format(SMALL, about_color));
+    job
 }
 
 /// Returns a button for one of several options, or for on and off. It has a frame even if it is not selected.
 pub(crate) fn option_button<'a>(chosen: bool, text: impl IntoAtoms<'a>) -> Button<'a> {
     Button::selectable(chosen, text).frame_when_inactive(true)
+}
+
+/// Shows a button for each option, with its name and description, close to each other in a row; returns the one that was
+/// clicked.
+pub(crate) fn options<'a, T: PartialEq>(
+    ui: &mut Ui,
+    offered: impl Iterator<Item = (T, String, &'a str)>,
+    shown: Option<T>,
+) -> Option<T> {
+    ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
+    let mut clicked = None;
+    for (option, word, tip) in offered {
+        if ui.add(option_button(shown.as_ref() == Some(&option), tr(&word))).on_hover_text(tr(tip)).clicked() {
+            clicked = Some(option);
+        }
+    }
+    clicked
 }
 
 /// Shows controls at the right end of a row, from left to right: Tab goes through them in the order of reading, which a

@@ -21,6 +21,16 @@ const APART: [f32; 2] = [66.0, 26.0];
 /// Fraction of the x axis, from either end, in which a tick label would overlap the labels of the y axis or be cut.
 const CORNER: f64 = 0.02;
 
+/// Returns a plot that cannot be dragged or zoomed.
+pub(crate) fn fixed<'a>(id: &str, palette: &Palette) -> Plot<'a> {
+    Plot::new(id.to_owned())
+        .grid_color(palette.line)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+}
+
 /// Returns a plot that cannot be dragged or zoomed, with round ticks and values in engineering units.
 pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y: (&str, &'static str)) -> Plot<'a> {
     /// Formats a value between ticks with three digits.
@@ -42,7 +52,7 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
         },
     );
     let y_axis = AxisHints::new_y().label(y_name.to_owned()).min_thickness(Y_AXIS);
-    Plot::new(id.to_owned())
+    fixed(id, palette)
         .custom_x_axes(vec![x_axis])
         .custom_y_axes(vec![
             y_axis.formatter(move |mark, range| tick(mark.value, [*range.start(), *range.end()], y_unit)),
@@ -55,12 +65,7 @@ pub(crate) fn still<'a>(palette: &Palette, id: &str, x: (&str, &'static str), y:
             }
             HoverPosition::Elsewhere { .. } => None,
         })
-        .grid_color(palette.line)
         .grid_spacing(egui::Rangef::new(NEAREST, APART[1]))
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
 }
 
 /// Returns ticks at multiples of 1, 2 or 5 · 10ⁿ, as many as have room for their labels.

@@ -28,7 +28,7 @@ use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
-use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow, ScreenshotError};
+use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow};
 use crate::render::RenderError;
 use crate::scene::{Scene, Source};
 use crate::simulation::Simulation;
@@ -261,7 +261,7 @@ impl App {
         let views = self.lab.views(screen.pixels_per_point);
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
-        let screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
+        let mut screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         open.graphics.stage.paint(&open.graphics.gpu, &view, &screen, &primitives, &views);
         open.bare.window.pre_present_notify();
@@ -277,7 +277,7 @@ impl App {
         self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
         for request in requests {
             match request {
-                Request::Screenshot => self.say_saved(screenshot.as_ref()),
+                Request::Screenshot => self.say_saved(screenshot.take()),
                 Request::DiscardCopy => {
                     let edits = self.lab.unsaved();
                     let discarded = self.recovery.as_mut().map(|recovery| recovery.discard_left(edits));
@@ -365,26 +365,24 @@ impl App {
     /// Shows a message.
     fn say(&mut self, message: String) {
         self.lab.say(&self.ctx, message);
-        if let Some(open) = &self.open {
-            open.bare.window.request_redraw();
-        }
+        self.request_redraw();
+    }
+
+    fn request_redraw(&self) {
+        self.open.iter().for_each(|open| open.bare.window.request_redraw());
     }
 
     /// Prints and shows a warning, once.
     fn warn(&mut self, message: String) {
-        if self.lab.warn(message)
-            && let Some(open) = &self.open
-        {
-            open.bare.window.request_redraw();
+        if self.lab.warn(message) {
+            self.request_redraw();
         }
     }
 
     fn schedule(&mut self, delay: Duration) {
         self.wake = None;
         if delay.is_zero() {
-            if let Some(open) = &self.open {
-                open.bare.window.request_redraw();
-            }
+            self.request_redraw();
         } else {
             // A delay that overflows means never.
             self.wake = Instant::now().checked_add(delay);
@@ -392,10 +390,10 @@ impl App {
     }
 
     /// Says where a screenshot was saved, or why it was not; a page saves its frame now.
-    fn say_saved(&mut self, screenshot: Option<&Result<PathBuf, ScreenshotError>>) {
+    fn say_saved(&mut self, screenshot: Option<Result<PathBuf, String>>) {
         const NAME: &str = "warpbeam.png";
         let saved = match (screenshot, &self.open) {
-            (Some(saved), _) => saved.as_ref().map(|path| path.display().to_string()).map_err(ToString::to_string),
+            (Some(saved), _) => saved.map(|path| path.display().to_string()),
             (None, Some(open)) => platform::page::save_frame(&open.bare.window, NAME).map(|()| NAME.to_owned()),
             (None, None) => return,
         };
@@ -495,7 +493,7 @@ impl ApplicationHandler for App {
     }
 
     fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
-        self.open.iter().for_each(|open| open.bare.window.request_redraw());
+        self.request_redraw();
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {

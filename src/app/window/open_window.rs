@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use egui::{ClippedPrimitive, ViewportId};
 use egui_wgpu::ScreenDescriptor;
-use thiserror::Error;
 use winit::dpi::PhysicalSize;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
@@ -86,13 +85,14 @@ impl Graphics {
         screen: &ScreenDescriptor,
         primitives: &[ClippedPrimitive],
         views: &[View<'_>],
-    ) -> Result<PathBuf, ScreenshotError> {
-        let file = new_file("png")?;
+    ) -> Result<PathBuf, String> {
+        let file = NewFile::create(Path::new(""), "png").map_err(|error| error.to_string())?;
         let Self { gpu, stage, configuration, .. } = self;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let target = gpu.target("screenshot", configuration.format, screen.size_in_pixels, 1, usage);
         stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, primitives, views);
-        read_texture(gpu, &target)?.write_png(file.path()).map_err(RenderError::from)?;
+        let picture = read_texture(gpu, &target).map_err(|error| error.to_string())?;
+        picture.write_png(file.path()).map_err(|error| RenderError::from(error).to_string())?;
         Ok(file.path().to_owned())
     }
 
@@ -178,18 +178,4 @@ impl OpenWindow {
         self.bare.window.request_redraw();
         Ok(None)
     }
-}
-
-/// Creates a file with a new name in the current folder.
-pub(super) fn new_file(extension: &str) -> std::io::Result<NewFile> {
-    NewFile::create(Path::new(""), extension)
-}
-
-/// Reason for which there is no screenshot.
-#[derive(Debug, Error)]
-pub(super) enum ScreenshotError {
-    #[error(transparent)]
-    NoFile(#[from] std::io::Error),
-    #[error(transparent)]
-    Render(#[from] RenderError),
 }

@@ -2,7 +2,7 @@
 
 use crate::app::view_options::MotionPlot;
 use egui::{Color32, Ui, Vec2, vec2};
-use egui_plot::{Line, PlotPoint, PlotPoints, VLine};
+use egui_plot::{Line, PlotPoints, VLine};
 
 use crate::app::language::{fill, tr};
 use crate::app::session::history::{History, MotionSample};
@@ -25,49 +25,52 @@ const MAX_POINTS: usize = 1000;
 /// Size of the sample of a line's colour, points.
 const SAMPLE: Vec2 = vec2(14.0, 3.0);
 
-/// Named line of a plot.
+/// Named line of a plot over time.
 struct PlotLine {
     name: String,
     color: Color32,
     width: f32,
-    points: Vec<PlotPoint>,
+    points: Vec<[f64; 2]>,
 }
 
-/// Lines and axes of a plot.
-struct LinePlot<'a> {
-    id: &'a str,
-    /// Name and unit of each axis.
-    axes: [(&'a str, &'static str); 2],
-    lines: Vec<PlotLine>,
+impl PlotLine {
+    /// Returns the line of a value in the last seconds of a motion.
+    fn new(
+        (name, color, width): (String, Color32, f32),
+        (history, seconds): (&History, f64),
+        value: impl Fn(&MotionSample) -> f64,
+    ) -> Self {
+        let samples: Vec<&MotionSample> = history.last(seconds).collect();
+        let stride = samples.len().div_ceil(MAX_POINTS).max(1);
+        let points = samples.iter().rev().step_by(stride).map(|s| [s.time, value(s)]).collect();
+        Self { name, color, width, points }
+    }
 }
 
 /// Shows the chosen plot, with the names of its lines above it.
 pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, integrator: IntegratorKind) {
     let palette = Palette::new(ui.visuals());
-    // One line per motion.
     let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
-    let name = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
-    let lines = |points: &dyn Fn(&History) -> Vec<PlotPoint>| -> Vec<PlotLine> {
-        let line = |&(kind, history): &(IntegratorKind, &History)| PlotLine {
-            name: tr(kind.id()).to_owned(),
-            color: palette.integrator(kind),
-            width: 1.5,
-            points: points(history),
+    let probe = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
+    let before_end = playback.shown_time().zip(playback.span()).map(|(shown, [_, last])| last - shown);
+    let seconds = before_end.unwrap_or_default().max(SHOWN);
+    let per_motion = |name: &dyn Fn(&str) -> String, width: f32, value: &dyn Fn(&MotionSample) -> f64| {
+        let line = |&(kind, history): &(IntegratorKind, &History)| {
+            PlotLine::new((name(tr(kind.id())), palette.integrator(kind), width), (history, seconds), value)
         };
         motions.iter().map(line).collect()
     };
-    let time = (tr("time"), "s");
-    let before_end = playback.shown_time().zip(playback.span()).map(|(shown, [_, last])| last - shown);
-    let duration = before_end.unwrap_or_default().max(SHOWN);
-    let drawn = match chosen {
-        MotionPlot::Energy => {
-            LinePlot { id: "energy", axes: [time, (tr("energy"), "J")], lines: energies(&motions, duration, &palette) }
-        }
-        MotionPlot::Tip => {
-            let lines = lines(&|history| thinned(history, duration, |s| [s.time, s.displacement[axis]]));
-            LinePlot { id: "tip", axes: [time, (&name, "m")], lines }
+    let (id, y) = match chosen {
+        MotionPlot::Energy => ("energy", (tr("energy"), "J")),
+        MotionPlot::Tip => ("tip", (&*probe, "m")),
+    };
+    let lines: Vec<PlotLine> = match (&*chosen, &motions[..]) {
+        (MotionPlot::Tip, _) => per_motion(&str::to_owned, 1.5, &|s| s.displacement[axis]),
+        (MotionPlot::Energy, [(_, history)]) => energies(history, seconds, &palette),
+        (MotionPlot::Energy, _) => {
+            per_motion(&|integrator| fill!("total, %{integrator}", integrator), 2.5, &|s| s.ledger.total())
         }
     };
     ui.horizontal_wrapped(|ui| {
@@ -77,7 +80,7 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
             }
         }
         ui.spacing_mut().item_spacing.x = 14.0;
-        let shown = drawn.lines.iter().filter(|line| !line.points.is_empty());
+        let shown = lines.iter().filter(|line| !line.points.is_empty());
         for line in shown {
             let sample = |ui: &Ui, sample| _ = ui.painter().rect_filled(sample, 1.0, line.color);
             legend::entry(ui, &line.name, SAMPLE, &sample);
@@ -87,12 +90,11 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
         ui.centered_and_justified(|ui| ui.weak(tr("No time step yet: press Run or Step.")));
         return;
     }
-    let LinePlot { id, axes: [x, y], lines } = drawn;
     // Displayed moment, if it is not the latest.
     let cursor = playback.shown_time();
-    still(&palette, id, x, y).show(ui, |plot| {
+    still(&palette, id, (tr("time"), "s"), y).show(ui, |plot| {
         for PlotLine { name, color, width, points } in lines {
-            plot.line(Line::new(name, PlotPoints::Owned(points)).color(color).width(width));
+            plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(width));
         }
         if let Some(time) = cursor {
             plot.vline(VLine::new("", time).color(palette.text).width(1.0));
@@ -100,20 +102,10 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
     });
 }
 
-fn thinned(history: &History, duration: f64, point: impl Fn(&MotionSample) -> [f64; 2]) -> Vec<PlotPoint> {
-    let samples: Vec<&MotionSample> = history.last(duration).collect();
-    let stride = samples.len().div_ceil(MAX_POINTS).max(1);
-    let kept = samples.iter().rev().step_by(stride);
-    kept.map(|s| PlotPoint::from(point(s))).collect()
-}
-
-/// Name of a kind of energy, its colour, and the function that returns its value, J.
-type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
-
-/// Returns the energies of a motion by kind, and their sum; of several motions only the sum of each, for comparison.
-fn energies(motions: &[(IntegratorKind, &History)], duration: f64, palette: &Palette) -> Vec<PlotLine> {
+/// Returns the energies of a motion by kind, and their sum. Energies that are always zero have no line.
+fn energies(history: &History, seconds: f64, palette: &Palette) -> Vec<PlotLine> {
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
-    let kinds: [EnergyKind; 6] = [
+    let kinds: [(&str, Color32, fn(&MotionSample) -> f64); 6] = [
         ("kinetic", kinetic, |s| s.ledger.kinetic),
         ("elastic", elastic, |s| s.ledger.elastic),
         ("potential of loads", potential, |s| s.ledger.potential),
@@ -121,24 +113,10 @@ fn energies(motions: &[(IntegratorKind, &History)], duration: f64, palette: &Pal
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
-    let total = |history: &History| thinned(history, duration, |s| [s.time, s.ledger.total()]);
-    if let [(_, history)] = motions {
-        // Energies that are always zero have no line.
-        let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
-        let parts = shown.map(|(name, color, value)| PlotLine {
-            name: tr(name).to_owned(),
-            color,
-            width: 1.5,
-            points: thinned(history, duration, |s| [s.time, value(s)]),
-        });
-        let sum = PlotLine { name: tr("total").to_owned(), color: palette.text, width: 2.5, points: total(history) };
-        return parts.chain([sum]).collect();
-    }
-    let sum = |&(kind, history): &(IntegratorKind, &History)| PlotLine {
-        name: fill!("total, %{integrator}", integrator = tr(kind.id())),
-        color: palette.integrator(kind),
-        width: 2.5,
-        points: total(history),
+    let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
+    let line = |name, color, width, value: fn(&MotionSample) -> f64| {
+        PlotLine::new((tr(name).to_owned(), color, width), (history, seconds), value)
     };
-    motions.iter().map(sum).collect()
+    let parts = shown.map(|(name, color, value)| line(name, color, 1.5, value));
+    parts.chain([line("total", palette.text, 2.5, |s| s.ledger.total())]).collect()
 }

@@ -1,14 +1,14 @@
 //! Plots of sections: the stress along each section of the scene, and N, V and M along its beam.
 
-use egui::{Ui, UiBuilder};
+use egui::Ui;
 
 use crate::app::action::Action;
 use crate::app::language::{said, tr};
-use crate::app::modes::figure::{self, Parts};
+use crate::app::modes::figure;
 use crate::app::platform::IS_PAGE;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;
-use crate::app::widgets::buttons::option_button;
+use crate::app::widgets::buttons::options;
 use crate::format::Context;
 use crate::scene::Scene;
 use crate::section::{Section, SectionError};
@@ -34,23 +34,16 @@ struct Cuts {
 impl Cuts {
     fn of(simulation: &Simulation) -> Self {
         let (own, along) = (simulation.scene_sections(), simulation.diagram_sections().unwrap_or_default());
+        Self::new(simulation, own, along)
+    }
+
+    fn new(simulation: &Simulation, own: Vec<Result<Section, SectionError>>, along: Vec<Section>) -> Self {
         let all: Vec<Section> = own.iter().flatten().chain(&along).cloned().collect();
         Self {
             contexts: section_chart::contexts(&all, simulation),
             own,
             along,
             has_failed: false,
-            of: (simulation.state().clone(), simulation.scene().clone()),
-        }
-    }
-
-    /// Returns no sections of a simulation, because their computation ended unexpectedly.
-    fn failed(simulation: &Simulation) -> Self {
-        Self {
-            contexts: section_chart::contexts(&[], simulation),
-            own: Vec::new(),
-            along: Vec::new(),
-            has_failed: true,
             of: (simulation.state().clone(), simulation.scene().clone()),
         }
     }
@@ -90,7 +83,9 @@ impl SectionPlot {
                 Update::None | Update::Progress(()) => return true,
                 Update::Done(cuts) => self.cuts = Some(*cuts),
                 // The same computation would end in the same way.
-                Update::Died => self.cuts = Some(Cuts::failed(simulation)),
+                Update::Died => {
+                    self.cuts = Some(Cuts { has_failed: true, ..Cuts::new(simulation, Vec::new(), Vec::new()) });
+                }
             }
             self.computing = None;
         }
@@ -136,7 +131,6 @@ impl SectionPlot {
         (simulation, state): (&Simulation, Option<&str>),
         actions: &mut Vec<Action>,
     ) {
-        let whole = ui.available_rect_before_wrap();
         let count = self.cuts_of(simulation).map_or(self.count, |cuts| cuts.own.len());
         if std::mem::replace(&mut self.count, count) < count {
             // A new section is shown.
@@ -149,31 +143,25 @@ impl SectionPlot {
         let usual = if has_none { offered.last() } else { offered.first() };
         let shown = self.shown.filter(|figure| offered.contains(figure)).or(usual.copied());
         let drawn = cuts.zip(shown).map(|(cuts, shown)| cuts.figure(shown));
-        let parts = Parts::of(whole);
-        ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| match &drawn {
+        let reason = match cuts {
+            Some(cuts) if cuts.has_failed => "the computation ended unexpectedly",
+            Some(_) => "No section has been added.",
+            None => "Sections are computed after the solve.",
+        };
+        let show_plot = |ui: &mut Ui| match &drawn {
             Some(Ok(drawn)) => figure::plot(ui, "sections", drawn),
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
-            None => {
-                let reason = match cuts {
-                    Some(cuts) if cuts.has_failed => "the computation ended unexpectedly",
-                    Some(_) => "No section has been added.",
-                    None => "Sections are computed after the solve.",
-                };
-                ui.centered_and_justified(|ui| ui.weak(tr(reason)));
-            }
-        });
-        ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
+            None => _ = ui.centered_and_justified(|ui| ui.weak(tr(reason))),
+        };
+        let show_table = |ui: &mut Ui| {
             if let Some(state) = state {
                 ui.weak(state);
             }
             ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
-                for &figure in &offered {
-                    let (word, tip) = figure.text(offered.contains(&SectionFigure::Stress(1, 0)));
-                    if ui.add(option_button(Some(figure) == shown, &word)).on_hover_text(tr(tip)).clicked() {
-                        self.shown = Some(figure);
-                    }
-                }
+                let is_numbered = offered.contains(&SectionFigure::Stress(1, 0));
+                let texts = offered.iter().map(|figure| figure.text(is_numbered));
+                let texts = offered.iter().zip(texts).map(|(figure, (word, tip))| (*figure, word, tip));
+                self.shown = options(ui, texts, shown).or(self.shown);
                 if has_none {
                     let tip = "Adds a section through the middle of the body; the context menu of the body adds one at a point";
                     if ui.button(tr("Add a section")).on_hover_text(tr(tip)).clicked() {
@@ -188,8 +176,8 @@ impl SectionPlot {
             if let Some(Ok(drawn)) = &drawn {
                 figure::table(ui, drawn);
             }
-        });
-        ui.advance_cursor_after_rect(whole);
+        };
+        figure::beside(ui, show_plot, show_table);
     }
 }
 

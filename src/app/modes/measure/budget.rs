@@ -2,11 +2,11 @@
 
 use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
-use crate::app::widgets::plot::{X_AXIS, marker, segments};
+use crate::app::widgets::plot::{X_AXIS, fixed, marker, segments};
 use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui, vec2};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, PlotUi, Points,
-    Polygon, Text, VLine,
+    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi,
+    Points, Polygon, Text, VLine,
 };
 
 use crate::app::action::Action;
@@ -112,15 +112,16 @@ impl Budget {
 
     /// Shows limits and plot for the lab's scene.
     pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
-        let demand = Demand::from(self.limits);
+        let (mut limits, mut messages) = (self.limits, std::mem::take(&mut self.messages));
+        let demand = Demand::from(limits);
         let moves = scene.analysis == Analysis::Dynamic;
-        let study = self.study.known().filter(|_| !self.is_hidden).map(|(_, study)| study);
+        let study = self.study();
         let meeting = study.map(|study| meeting(study, demand)).unwrap_or_default();
         let budget = BudgetView {
             scene,
             study,
             choices: study.map(choices).unwrap_or_default(),
-            demand,
+            limits,
             best: study.and_then(|study| fastest(study, &meeting)),
             nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, demand)).unwrap_or_default(),
             meeting,
@@ -128,14 +129,13 @@ impl Budget {
             progress: self.study.progress().filter(|_| self.measured.is_some()),
             error: self.study.failure(scene),
         };
-        let (limits, messages) = (&mut self.limits, &mut self.messages);
         ui.add_space(4.0);
         let width = ui.available_width();
         let kind = usize::from(moves);
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 ui.set_width(LIST_WIDTH[kind].min(LIST_SHARE[kind] * width));
-                settings(ui, &budget, limits, messages, actions);
+                settings(ui, &budget, &mut limits, &mut messages, actions);
                 list(ui, &budget, actions);
             });
             ui.vertical(|ui| {
@@ -143,6 +143,7 @@ impl Budget {
                 plot(ui, &budget, actions);
             });
         });
+        (self.limits, self.messages) = (limits, messages);
     }
 }
 
@@ -152,8 +153,8 @@ struct BudgetView<'a> {
     study: Option<&'a Study>,
     /// All measured settings.
     choices: Vec<Measurement>,
-    demand: Demand,
-    /// Settings that meet the demand, fastest first.
+    limits: Limits,
+    /// Settings that meet the limits, fastest first.
     meeting: Vec<Measurement>,
     /// Fastest of them whose iteration converges when it runs on.
     best: Option<Measurement>,
@@ -165,6 +166,24 @@ struct BudgetView<'a> {
     progress: Option<(f64, &'a Sentence)>,
     /// Reason for which there is no study.
     error: Option<&'a Sentence>,
+}
+
+impl BudgetView<'_> {
+    /// Returns the bound of the error of a setting, percent.
+    fn error(&self, m: &Measurement) -> f64 {
+        self.study.map_or(f64::INFINITY, |study| study.error_bound(m))
+    }
+
+    /// Returns the position of a setting in the plot: the logarithms of time and error.
+    fn place(&self, m: &Measurement) -> [f64; 2] {
+        let error = self.error(m).clamp(SMALLEST_ERROR, LARGEST_ERROR);
+        [frame_ms(m).max(f64::MIN_POSITIVE).log10(), error.log10()]
+    }
+
+    /// Returns the action that applies a measured setting.
+    fn apply(&self, m: &Measurement) -> Action {
+        Action::Apply(Box::new(m.apply(self.scene)))
+    }
 }
 
 /// Width of the list, points, of a body at rest and of a motion, whose settings have longer names, and its largest fraction
@@ -199,28 +218,29 @@ fn settings(
             if ui.button(tr("Measure on this machine")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
-            let text = match (budget.error, budget.study) {
-                (Some(error), _) => RichText::new(said(error)).small().color(ui.visuals().error_fg_color),
-                (None, None) => RichText::new(tr("Not measured yet: about a minute.")).small(),
+            let visuals = ui.visuals();
+            let (text, color) = match (budget.error, budget.study) {
+                (Some(error), _) => (said(error), Some(visuals.error_fg_color)),
+                (None, None) => (tr("Not measured yet: about a minute.").to_owned(), None),
                 (None, Some(_)) if !budget.current => {
-                    let color = ui.visuals().warn_fg_color;
-                    RichText::new(tr("The body or its load has changed since.")).small().color(color)
+                    (tr("The body or its load has changed since.").to_owned(), Some(visuals.warn_fg_color))
                 }
                 (None, Some(study)) if study.is_partial => {
-                    let color = ui.visuals().warn_fg_color;
-                    RichText::new(tr("Cancelled: not everything has been measured.")).small().color(color)
+                    (tr("Cancelled: not everything has been measured.").to_owned(), Some(visuals.warn_fg_color))
                 }
                 (None, Some(study)) => {
                     let against = fill!("Error against %{reference}.", reference = said(&study.reference));
                     let extent = match study.reference {
-                        StudyReference::Rest(_) => None,
+                        StudyReference::Rest(_) => String::new(),
                         StudyReference::Motion(_) => {
-                            Some(tr("Coarse meshes only: `warpbeam study` measures all.").to_owned())
+                            format!("{} ", tr("Coarse meshes only: `warpbeam study` measures all."))
                         }
                     };
-                    RichText::new(extent.into_iter().chain([against]).collect::<Vec<_>>().join(" ")).small()
+                    (format!("{extent}{against}"), None)
                 }
             };
+            let text = RichText::new(text).small();
+            let text = color.map_or(text.clone(), |color| text.color(color));
             ui.add(egui::Label::new(text).truncate());
         }
     });
@@ -249,10 +269,10 @@ fn settings(
                 (Some(_), false) => "The body or its load has changed since.",
             }));
         if let (true, Some(best)) = (apply.clicked(), budget.best) {
-            actions.push(apply_action(&best, budget.scene));
+            actions.push(budget.apply(&best));
         }
         let measured = budget.choices.len();
-        let count = match budget.study.filter(|study| !study.can_decide(budget.demand)) {
+        let count = match budget.study.filter(|study| !study.can_decide(budget.limits.into())) {
             Some(study) => {
                 let own = percent(study.own_error_percent);
                 fill!("Not known: the reference's own error may be %{own}", own)
@@ -275,7 +295,6 @@ fn settings(
 /// a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let listed = if budget.meeting.is_empty() { &budget.nearest } else { &budget.meeting };
-    let error = |m: &Measurement| budget.study.map_or(f64::INFINITY, |study| study.error_bound(m));
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]);
     let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
@@ -295,7 +314,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         }
         for m in listed.get(rows).unwrap_or_default() {
             let mark = if budget.study.is_none_or(|study| study.converges(m)) { ' ' } else { '*' };
-            let bound = format!("\u{2264}{}", bound_percent(error(m)));
+            let bound = format!("\u{2264}{}", bound_percent(budget.error(m)));
             let name = said(&m.setting);
             let text = format!("{:>7}  {bound:>8}{mark} {name}", milliseconds(m));
             let label = ui.add_enabled(
@@ -305,15 +324,10 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             );
             let parts = budget.study.map(|study| parts(study, m)).unwrap_or_default();
             if label.on_hover_text(format!("{name}\n{parts}")).clicked() {
-                actions.push(apply_action(m, budget.scene));
+                actions.push(budget.apply(m));
             }
         }
     });
-}
-
-/// Returns the action that applies a measured setting to a scene.
-fn apply_action(m: &Measurement, scene: &Scene) -> Action {
-    Action::Apply(Box::new(m.apply(scene)))
 }
 
 /// Formats the time of a solve or of a frame.
@@ -330,12 +344,6 @@ fn decades(input: GridInput, step: usize) -> Vec<GridMark> {
 
 fn decade_text(mark: GridMark) -> String {
     number(10f64.powf(mark.value.round()))
-}
-
-/// Returns the position of a setting in the plot: the logarithms of time and error.
-fn place(study: &Study, m: &Measurement) -> [f64; 2] {
-    let error = study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR);
-    [frame_ms(m).max(f64::MIN_POSITIVE).log10(), error.log10()]
 }
 
 /// Shows the key of colours and shapes above the plot, which has no room for a legend; that of the shapes where it is not
@@ -374,8 +382,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     const NEAR: f32 = 12.0;
     let palette = Palette::new(ui.visuals());
     let text = palette.text;
-    let error = |m: &Measurement| budget.study.map_or(f64::INFINITY, |study| study.error_bound(m));
-    let place = |m: &Measurement| budget.study.map_or([0.0; 2], |study| place(study, m));
+    let place = |m: &Measurement| budget.place(m);
     let nearest = |x: f64, y: f64| {
         let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
         budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
@@ -394,7 +401,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let step =
         |[low, high]: [f64; 2], label: f32, room: f32| ((high - low) as f32 * label / room).ceil().max(1.0) as usize;
     let [step, step_up] = [step(x, LABEL, room), step(y, LINE, (ui.available_height() - X_AXIS).max(LINE))];
-    let shown = Plot::new("budget")
+    let shown = fixed("budget", &palette)
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label(tr(time))
@@ -410,20 +417,11 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         .y_axis_formatter(|mark, _| decade_text(mark))
         .label_formatter(|at| match at {
             egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(error(m)))),
+                .map(|m| format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(budget.error(m)))),
             egui_plot::HoverPosition::Elsewhere { .. } => None,
         })
-        .grid_color(palette.line)
-        .include_x(x[0])
-        .include_x(x[1])
-        .include_y(y[0])
-        .include_y(y[1])
-        .set_margin_fraction(egui::Vec2::ZERO)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
         .show(ui, |plot| {
+            plot.set_plot_bounds(PlotBounds::from_min_max([x[0], y[0]], [x[1], y[1]]));
             // Settings with the same colour and shape.
             let group = |m: &Measurement| (m.setting.series(), m.setting.element);
             let mut groups = Vec::new();
@@ -436,7 +434,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
                 own_error_zone(plot, &palette, x, [y[0], own.log10()]);
             }
             // Larger errors are drawn at the edge, as outlines.
-            let is_off = |m: &Measurement| error(m) > LARGEST_ERROR;
+            let is_off = |m: &Measurement| budget.error(m) > LARGEST_ERROR;
             for (series, element) in groups {
                 for off in [false, true] {
                     let own = budget.choices.iter().filter(|m| group(m) == (series, element) && is_off(m) == off);
@@ -452,12 +450,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             }
             let limit = palette.secondary;
             let style = LineStyle::dashed_dense();
-            if let Some(time) = budget.demand.max_time_ms {
-                plot.vline(VLine::new(tr("at most"), time.log10()).color(limit).style(style));
-            }
-            if let Some(error) = budget.demand.max_error_percent {
-                plot.hline(HLine::new(tr("at most"), error.log10()).color(limit).style(style));
-            }
+            plot.vline(VLine::new(tr("at most"), budget.limits.time_ms.log10()).color(limit).style(style));
+            plot.hline(HLine::new(tr("at most"), budget.limits.error_percent.log10()).color(limit).style(style));
             if let Some(own) = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)) {
                 let cross = Points::new(tr("current"), vec![place(own)]).shape(MarkerShape::Plus);
                 plot.points(cross.color(text).radius(9.0));
@@ -477,7 +471,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     if let Some(m) = under {
         ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         if shown.response.clicked() {
-            actions.push(apply_action(m, budget.scene));
+            actions.push(budget.apply(m));
         }
     }
 }

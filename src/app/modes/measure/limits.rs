@@ -42,42 +42,36 @@ const ROW: [f32; 2] = [13.0, 19.0];
 const HIGH_ROW: f32 = 40.0;
 
 /// The scene whose limits are shown.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct LimitMap {
-    /// Scene whose limits are shown. Its loads are those of the lab's scene, or have the same proportions.
-    base: Option<Scene>,
-    /// Part of the base's loads, or of its time step, that the lab's scene has.
-    factor: f64,
-}
-
-impl Default for LimitMap {
-    fn default() -> Self {
-        Self { base: None, factor: 1.0 }
-    }
+    /// Scene whose limits are shown, and the part of its loads, or of its time step, that the lab's scene has: the loads of
+    /// both have the same proportions.
+    base: Option<(Scene, f64)>,
 }
 
 impl LimitMap {
     /// Turns to the lab's scene. Another load in the range of the limits does not change them, nor do method and element.
     pub(crate) fn turn_to(&mut self, scene: &Scene) {
-        match self.base.as_ref().and_then(|base| part_of(base, scene)) {
-            Some(factor) => self.factor = factor,
-            None => *self = Self { base: Some(scene.clone()), ..Self::default() },
+        let part = self.base().and_then(|base| part_of(base, scene));
+        match (&mut self.base, part) {
+            (Some((_, own)), Some(part)) => *own = part,
+            (base, _) => *base = Some((scene.clone(), 1.0)),
         }
     }
 
     /// Returns the scene whose limits are shown.
     pub(crate) fn base(&self) -> Option<&Scene> {
-        self.base.as_ref()
+        self.base.as_ref().map(|(base, _)| base)
     }
 
     /// Shows the limits of the lab's scene.
-    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
         let scene = session.scene();
         let facts = &session.facts().limits;
-        let Some(base) = self.base.clone() else { return };
-        let limits = facts.so_far(&base);
+        let Some((base, part)) = &self.base else { return };
+        let limits = facts.so_far(base);
         let progress = facts.progress().map(|(done, _)| done as f32);
-        if let Some(reason) = facts.failure(&base) {
+        if let Some(reason) = facts.failure(base) {
             ui.centered_and_justified(|ui| ui.weak(said(reason)));
             return;
         }
@@ -90,7 +84,7 @@ impl LimitMap {
                     }
                     Analysis::Dynamic => tr("Computing the reference solution, and the motion with every integrator"),
                 });
-                ui.add(progress_bar(progress.unwrap_or_default()).desired_width(240.0));
+                ui.add(ProgressBar::new(progress.unwrap_or_default()).show_percentage().desired_width(240.0));
             });
             return;
         };
@@ -100,7 +94,7 @@ impl LimitMap {
         if let Some(done) = progress {
             ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
         }
-        let mut axis = LoadAxis::of(&base);
+        let mut axis = LoadAxis::of(base);
         if let Some(Beam { cells: [n, m], .. }) = &base.beam {
             axis.name = sentence!("%{load} on %{n} × %{m} cells", load = axis.name, n = *n, m = *m);
         }
@@ -110,44 +104,31 @@ impl LimitMap {
             let size = vec2(ui.available_width(), ui.available_height().max(least));
             let (below, _) = ui.allocate_exact_size(size, Sense::hover());
             let chart = StripChart::new(ui, below, limits, &axis);
-            self.chart(ui, &chart, &base, (scene, shown), actions);
-        });
-    }
-
-    /// Shows the chart of the limits.
-    fn chart(
-        &self,
-        ui: &Ui,
-        chart: &StripChart<'_>,
-        base: &Scene,
-        (scene, shown): (&Scene, &Simulation),
-        actions: &mut Vec<Action>,
-    ) {
-        let StripChart { limits, axis, .. } = *chart;
-        let load = chart.handle(ui, self.factor);
-        if let Some(factor) = load {
-            let placed = with_part(base, scene, axis, factor);
-            if placed != *scene {
-                actions.push(Action::Edit(chart.label(), Box::new(placed)));
+            let placed = chart.handle(ui, *part);
+            if let Some(factor) = placed {
+                let placed = with_part(base, scene, &axis, factor);
+                if placed != *scene {
+                    actions.push(Action::Edit(chart.label(), Box::new(placed)));
+                }
             }
-        }
-        chart.curve(ui);
-        for (row, strip) in limits.strips.iter().enumerate() {
-            chart.strip(ui, row, strip, scene, actions);
-        }
-        let factor = load.unwrap_or(self.factor);
-        if limits.contains(factor) {
-            // While a load is not reached, the body is that of another one.
-            let is_here = part_of(base, shown.scene()).is_none_or(|own| own == self.factor);
-            let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
-            chart.load_line(ui, factor, length);
-        }
+            chart.curve(ui);
+            for (row, strip) in limits.strips.iter().enumerate() {
+                chart.strip(ui, row, strip, scene, actions);
+            }
+            let factor = placed.unwrap_or(*part);
+            if limits.contains(factor) {
+                // While a load is not reached, the body is that of another one.
+                let is_here = part_of(base, shown.scene()).is_none_or(|own| own == *part);
+                let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
+                chart.load_line(ui, factor, length);
+            }
+        });
     }
 
     /// Shows the key of the colours once limits are known; a line breaks between entries.
     pub(crate) fn key(&self, ui: &mut Ui, session: &Session) {
         const BOX: Vec2 = vec2(10.0, 10.0);
-        if self.base.as_ref().is_none_or(|base| session.facts().limits.so_far(base).is_none()) {
+        if self.base().is_none_or(|base| session.facts().limits.so_far(base).is_none()) {
             return;
         }
         ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
@@ -227,11 +208,6 @@ fn with_part(base: &Scene, scene: &Scene, axis: &LoadAxis, factor: f64) -> Scene
         Analysis::Dynamic => placed.dynamics.time_step = factor * axis.full,
     }
     placed
-}
-
-/// Returns the bar of the fraction of the limits that is known.
-fn progress_bar(done: f32) -> ProgressBar {
-    ProgressBar::new(done).show_percentage()
 }
 
 fn color(rating: Rating) -> Color32 {
@@ -410,10 +386,10 @@ impl<'a> StripChart<'a> {
         let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
         let text = match strip.done < 1.0 {
-            true => fill!("%{name}: %{done} of the loads are solved", name = name.as_str(), done = done.as_str()),
+            true => fill!("%{name}: %{done} of the loads are solved", name, done),
             false if strip.integrator.is_some() => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
-                name = name.as_str(),
+                name,
                 good,
                 usable,
                 finishes = converges,
@@ -421,7 +397,7 @@ impl<'a> StripChart<'a> {
             ),
             false => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}",
-                name = name.as_str(),
+                name,
                 good,
                 usable,
                 converges,

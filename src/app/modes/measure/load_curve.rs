@@ -1,15 +1,16 @@
 //! Load curve. For a cantilever it shows linear theory, the exact beam, the result of every method, and the loads at
 //! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
-use egui::{Align2, Ui, UiBuilder};
+use egui::{Align2, Ui};
 use nalgebra::Vector2;
 
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
-use crate::app::modes::figure::{self, Parts};
+use crate::app::modes::figure;
 use crate::app::session::Session;
 use crate::app::session::facts::Curve;
 use crate::app::view_options::CurvePlot;
+use crate::app::widgets::buttons::options;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair_among, three_digits};
 use crate::scene::{MethodKind, Scene};
@@ -30,7 +31,6 @@ pub(crate) fn show(
 ) {
     let (scene, fact) = (session.scene(), &session.facts().curve);
     let looked_for = !fact.is_pending(scene);
-    let whole = ui.available_rect_before_wrap();
     let Some(curve) = fact.latest() else {
         ui.centered_and_justified(|ui| {
             ui.weak(match fact.failure(scene) {
@@ -47,18 +47,20 @@ pub(crate) fn show(
     if let Some(body) = body.filter(|_| looked_for) {
         move_scene(&mut drawn, body);
     }
-    let parts = Parts::of(whole);
-    ui.scope_builder(UiBuilder::new().max_rect(parts.plot), |ui| figure::plot(ui, "load curve", &drawn));
-    ui.scope_builder(UiBuilder::new().max_rect(parts.table), |ui| {
-        figure::controls(ui, &drawn, offered, shown, actions);
+    let show_table = |ui: &mut Ui| {
+        ui.horizontal_wrapped(|ui| {
+            let texts = offered.iter().map(|&plot| (plot, plot.text().0.to_owned(), plot.text().1));
+            actions.extend(options(ui, texts, Some(shown)).map(Action::Plot));
+            figure::export_menu(ui, &drawn, actions);
+        });
         figure::table(ui, &drawn);
-    });
-    ui.advance_cursor_after_rect(whole);
+    };
+    let area = figure::beside(ui, |ui| figure::plot(ui, "load curve", &drawn), show_table);
     if !looked_for {
         let text = "Curve before the last change; the new one is computed after the solve.";
-        let at = parts.plot.center_top() + egui::vec2(0.0, 10.0);
+        let at = area.center_top() + egui::vec2(0.0, 10.0);
         let color = ui.visuals().weak_text_color();
-        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, parts.plot.width());
+        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, area.width());
     }
 }
 
@@ -89,29 +91,6 @@ impl Curve {
             Self::Beam(of) => beam(&of.0, &of.1.0, shown),
             Self::Path(of) => path(&of.0, &of.1.0, shown),
         }
-    }
-}
-
-/// Returns the load and both components of the displacement of the first probe.
-fn quantities(load: FigureQuantity, scene: &Scene) -> Vec<FigureQuantity> {
-    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
-    let x = said(&sentence!("u_x of %{probe}", probe));
-    let y = said(&sentence!("u_y of %{probe}", probe));
-    vec![load, FigureQuantity::new(x, "m"), FigureQuantity::new(y, "m")]
-}
-
-/// Returns the heading of a column of displacements.
-fn displacement_text(scene: &Scene) -> String {
-    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
-    fill!("(u_x, u_y) of %{probe}", probe = tr(probe))
-}
-
-/// Returns the axes of a plot, as indices of load, u_x and u_y.
-fn axes(shown: CurvePlot) -> [usize; 2] {
-    match shown {
-        CurvePlot::Path => [1, 2],
-        CurvePlot::X => [0, 1],
-        CurvePlot::Y | CurvePlot::Reaction => [0, 2],
     }
 }
 
@@ -185,12 +164,23 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     };
     all.iter_mut().for_each(|series| series.value = Some(value(series).unwrap_or_default()));
     let load = engineering(three_digits(full), unit);
+    let probe = scene.probes.first().map_or("probe", |probe| probe.name.as_str());
+    let [x, y] = [sentence!("u_x of %{probe}", probe), sentence!("u_y of %{probe}", probe)].map(|name| said(&name));
     Figure {
         title: curve_title(scene),
-        axes: axes(shown),
+        // As indices of load, u_x and u_y.
+        axes: match shown {
+            CurvePlot::Path => [1, 2],
+            CurvePlot::X => [0, 1],
+            CurvePlot::Y | CurvePlot::Reaction => [0, 2],
+        },
         series: all,
-        head: [fill!("at %{load}", load), displacement_text(scene)],
-        quantities: quantities(FigureQuantity::new(said(&name), unit), scene),
+        head: [fill!("at %{load}", load), fill!("(u_x, u_y) of %{probe}", probe = tr(probe))],
+        quantities: vec![
+            FigureQuantity::new(said(&name), unit),
+            FigureQuantity::new(x, "m"),
+            FigureQuantity::new(y, "m"),
+        ],
     }
 }
 
