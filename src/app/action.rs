@@ -11,14 +11,12 @@ use crate::study::figure::Figure;
 /// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// Open a built-in scene.
-    Open(&'static str),
+    /// Open a built-in scene, or a scene file.
+    Open(PathBuf),
     /// Start a scene of one's own from this one.
     New(Box<Scene>),
     /// Ask for a scene file and open it.
     OpenFile,
-    /// Open a file that was dropped on the window.
-    Drop(PathBuf),
     /// Open the scene's file again.
     Reload,
     /// Save the scene to its file; if it has none, show the file dialog.

@@ -56,31 +56,16 @@ impl MeasureTab {
     }
 }
 
-/// Entry of a mode in the toolbar.
-pub(crate) struct ModeEntry {
-    pub mode: Mode,
-    pub name: &'static str,
-    pub about: &'static str,
-}
-
-/// All modes, in the order of the toolbar.
-pub(crate) const MODES: &[ModeEntry] = &[
-    ModeEntry { mode: Mode::Explore, name: "Explore", about: "The body, its load, and the error of the solution" },
-    ModeEntry {
-        mode: Mode::Learn,
-        name: "Learn",
-        about: "The article's method, walked through on cards; your own scene comes back at the end",
-    },
-    ModeEntry {
-        mode: Mode::Compare,
-        name: "Compare",
-        about: "Methods, integrators, elements and meshes side by side under one load (K)",
-    },
-    ModeEntry {
-        mode: Mode::Measure,
-        name: "Measure",
-        about: "How far each method holds and how fast it is, measured on this machine, and the load curve",
-    },
+/// All modes with their names and descriptions, in the order of the toolbar.
+pub(crate) const MODES: [(Mode, &str, &str); 4] = [
+    (Mode::Explore, "Explore", "The body, its load, and the error of the solution"),
+    (Mode::Learn, "Learn", "The article's method, walked through on cards; your own scene comes back at the end"),
+    (Mode::Compare, "Compare", "Methods, integrators, elements and meshes side by side under one load (K)"),
+    (
+        Mode::Measure,
+        "Measure",
+        "How far each method holds and how fast it is, measured on this machine, and the load curve",
+    ),
 ];
 
 /// Plot of a motion.

@@ -152,16 +152,12 @@ fn coordinates(
             let wide = widened.as_mut().map(|width| (tr("width"), width, limits::WIDTH, WIDTH));
             for (name, value, limit, tip) in fields.into_iter().chain(wide) {
                 let label = ui.label(name);
-                let mut typed = *value;
-                let field = DragValue::new(&mut typed)
+                let field = DragValue::new(value)
                     .speed(0.0)
                     .update_while_editing(false)
                     .custom_formatter(|v, _| editable(v, "m"))
                     .custom_parser(|text| read(text, limit).map_err(|reason| refused.replace(Some(reason))).ok());
-                let response = ui.add(field).labelled_by(label.id).on_hover_text(tr(tip));
-                if response.changed() {
-                    *value = typed;
-                }
+                ui.add(field).labelled_by(label.id).on_hover_text(tr(tip));
             }
         });
     });
@@ -238,7 +234,13 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
                 move_by_hand(system, to, place, at_point, width);
             }
             (Some(EdgeChange::Widen(to)), support) => (support.at_point, support.width) = (true, to),
-            (None, support) => *support = refixed(support, &fix),
+            // The prescribed displacements of directions that stay fixed are kept.
+            (None, Support { displacement, turn, fix: own, .. }) => {
+                for (axis, displacement) in [Axis::X, Axis::Y].into_iter().zip(displacement) {
+                    *displacement = if fix.contains(&axis) { *displacement } else { 0.0 };
+                }
+                (*own, *turn) = (fix, 0.0);
+            }
         });
     }
     for (i, probe) in scene.probes.iter().enumerate() {
@@ -276,18 +278,6 @@ fn directions(ui: &mut Ui, fix: &mut Vec<Axis>) {
             }
         }
     }
-}
-
-/// Returns the support with other fixed directions; the prescribed displacements of directions that stay fixed are
-/// kept.
-fn refixed(before: &Support, fix: &[Axis]) -> Support {
-    let mut support = Support { displacement: [0.0; 2], turn: 0.0, fix: fix.to_vec(), ..before.clone() };
-    for (i, axis) in [Axis::X, Axis::Y].into_iter().enumerate() {
-        if fix.contains(&axis) {
-            support.displacement[i] = before.displacement[i];
-        }
-    }
-    support
 }
 
 /// Button that adds a load, support or probe: its name, its tooltip, and the function that extends the scene.

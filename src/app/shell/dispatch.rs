@@ -58,16 +58,11 @@ impl Lab {
     }
 
     /// Performs an action.
-    pub(super) fn act(&mut self, ctx: &egui::Context, action: Action, requests: &mut Vec<Request>) {
+    pub(super) fn act(&mut self, ctx: &egui::Context, action: Action) {
         match action {
-            Action::Open(id) => {
-                self.depart(ctx, UnsavedDeparture::Open(Source { name: id.into(), assignments: Vec::new() }));
-            }
+            Action::Open(name) => self.depart(ctx, UnsavedDeparture::Open(Source { name, assignments: Vec::new() })),
             Action::New(scene) => self.depart(ctx, UnsavedDeparture::New(scene)),
             Action::OpenFile => self.depart(ctx, UnsavedDeparture::AskForFile),
-            Action::Drop(path) => {
-                self.depart(ctx, UnsavedDeparture::Open(Source { name: path, assignments: Vec::new() }))
-            }
             Action::Reload => self.open(ctx, self.source().clone()),
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(ctx),
@@ -177,9 +172,9 @@ impl Lab {
                 self.say(ctx, text);
                 ctx.request_repaint();
             }
-            Action::Screenshot => requests.push(Request::Screenshot),
-            Action::Copy => self.copy(ctx),
-            Action::CopyLink => self.copy_link(ctx),
+            Action::Screenshot => self.requests.push(Request::Screenshot),
+            Action::Copy => self.copy(ctx, false),
+            Action::CopyLink => self.copy(ctx, true),
             Action::Measure(true) => {
                 if self.desk.session.is_motion() {
                     // A motion that runs beside would take the time that is measured.
@@ -240,12 +235,8 @@ impl Lab {
     }
 
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.
-    pub(super) fn edit_loads(&mut self, ctx: &egui::Context, interaction: &Interaction, requests: &mut Vec<Request>) {
-        let mut edit = |lab: &mut Self, label, scene| {
-            lab.act(ctx, Action::Edit(label, Box::new(scene)), requests);
-            ctx.request_repaint();
-        };
-        if let Some((load, pull)) = interaction.load {
+    pub(super) fn edit_loads(&mut self, ctx: &egui::Context, interaction: &Interaction) {
+        let dragged = interaction.load.and_then(|(load, pull)| {
             self.desk.panel.force = Some(load);
             let mut scene = self.scene().clone();
             let (label, set) = match pull {
@@ -256,15 +247,17 @@ impl Lab {
                 Pull::Moment(moment) => ("Moment", scene.set_moment(LoadId::nth(load), moment)),
             };
             // An arrow always belongs to an existing load.
-            if set.is_ok() && scene != *self.scene() {
-                edit(self, label, scene);
-            }
-        }
-        if let Some(load) = interaction.restore
-            && let Some(restored) = self.desk.session.with_original_load(load)
-        {
+            (set.is_ok() && scene != *self.scene()).then_some((label, scene))
+        });
+        let session = &self.desk.session;
+        let restored = interaction.restore.and_then(|load| {
+            let restored = session.with_original_load(load)?;
             let label = if restored.loads.get(load).is_some_and(Load::is_moment) { "Moment" } else { "Force" };
-            edit(self, label, restored);
+            Some((label, restored))
+        });
+        for (label, scene) in dragged.into_iter().chain(restored) {
+            self.act(ctx, Action::Edit(label, Box::new(scene)));
+            ctx.request_repaint();
         }
     }
 }

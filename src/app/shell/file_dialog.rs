@@ -31,8 +31,8 @@ pub(crate) struct FileDialog {
     pub purpose: Purpose,
     folder: PathBuf,
     text: String,
-    folders: Vec<String>,
-    files: Vec<String>,
+    /// Folders and scene files in the folder, each with `true` for a file.
+    entries: Vec<(bool, String)>,
     message: Option<String>,
     /// Existing file that is replaced if the user confirms.
     replaced: Option<PathBuf>,
@@ -48,8 +48,7 @@ impl FileDialog {
             purpose,
             folder: PathBuf::new(),
             text: name.to_owned(),
-            folders: Vec::new(),
-            files: Vec::new(),
+            entries: Vec::new(),
             message: None,
             replaced: None,
             is_new: true,
@@ -60,25 +59,17 @@ impl FileDialog {
 
     /// Lists the files of a folder.
     fn enter(&mut self, folder: PathBuf) {
-        (self.folders, self.files) = (Vec::new(), Vec::new());
+        self.entries.clear();
         match std::fs::read_dir(&folder) {
             Ok(entries) => {
-                for entry in entries.flatten() {
-                    let Ok(name) = entry.file_name().into_string() else { continue };
-                    let path = entry.path();
-                    if name.starts_with('.') {
-                        continue;
-                    }
-                    if path.is_dir() {
-                        self.folders.push(name);
-                    } else if path.extension().is_some_and(|e| e == "toml") {
-                        self.files.push(name);
-                    }
-                }
-                self.folders.sort();
-                self.files.sort();
-                self.message = None;
-                self.folder = folder;
+                self.entries.extend(entries.flatten().filter_map(|entry| {
+                    let name = entry.file_name().into_string().ok().filter(|name| !name.starts_with('.'))?;
+                    let is_file = !entry.path().is_dir();
+                    let is_listed = !is_file || entry.path().extension().is_some_and(|e| e == "toml");
+                    is_listed.then_some((is_file, name))
+                }));
+                self.entries.sort();
+                (self.message, self.folder) = (None, folder);
             }
             Err(error) => self.message = Some(format!("{}: {error}", folder.display())),
         }
@@ -157,12 +148,13 @@ impl FileDialog {
                 {
                     entered = Some(above.to_owned());
                 }
-                for name in &self.folders {
-                    if ui.selectable_label(false, format!("{name}/")).clicked() {
-                        entered = Some(self.folder.join(name));
+                for (is_file, name) in &self.entries {
+                    if !is_file {
+                        if ui.selectable_label(false, format!("{name}/")).clicked() {
+                            entered = Some(self.folder.join(name));
+                        }
+                        continue;
                     }
-                }
-                for name in &self.files {
                     let row = ui.selectable_label(*name == self.text, name);
                     if row.clicked() {
                         self.text.clone_from(name);

@@ -8,7 +8,6 @@ use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::Edit;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
-use crate::app::shell::messages::banner;
 use crate::scene::{Source, registry};
 use crate::sentence::Sentence;
 
@@ -120,7 +119,7 @@ impl Lab {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
             (dropped.or_else(files::arrived), i.events.contains(&egui::Event::WindowFocused(true)))
         });
-        actions.extend(dropped.map(Action::Drop));
+        actions.extend(dropped.map(Action::Open));
         if is_back {
             self.desk.session.check_file();
         }
@@ -132,7 +131,7 @@ impl Lab {
         if !session.is_outdated() {
             return;
         }
-        banner(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
             let file = session.document().source.name.display();
             ui.label(fill!("%{file} has changed on disk.", file));
             if ui.button(tr("Reload")).clicked() {
@@ -144,29 +143,22 @@ impl Lab {
         });
     }
 
-    /// Copies the scene as TOML.
-    pub(super) fn copy(&mut self, ctx: &egui::Context) {
-        match self.scene().to_toml() {
+    /// Copies the scene as TOML, or the address of the web page with the scene in it.
+    pub(super) fn copy(&mut self, ctx: &egui::Context, as_link: bool) {
+        let scene = self.scene();
+        let has_file = scene.mesh.as_ref().is_some_and(|mesh| registry::mesh(&mesh.file).is_none());
+        let message = match scene.to_toml() {
+            _ if as_link && has_file => tr("A link has no room for a mesh file; save the scene instead").to_owned(),
+            Err(error) => fill!("The scene could not be written as TOML: %{error}", error),
+            Ok(toml) if as_link => {
+                ctx.copy_text(page::link(&toml));
+                tr("Link copied").to_owned()
+            }
             Ok(toml) => {
                 ctx.copy_text(format!("# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}"));
-                self.say(ctx, tr("Scene copied as TOML").to_owned());
+                tr("Scene copied as TOML").to_owned()
             }
-            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error)),
-        }
-    }
-
-    /// Copies the address of the web page with the scene in it.
-    pub(super) fn copy_link(&mut self, ctx: &egui::Context) {
-        let scene = self.scene();
-        if scene.mesh.as_ref().is_some_and(|mesh| registry::mesh(&mesh.file).is_none()) {
-            return self.say(ctx, tr("A link has no room for a mesh file; save the scene instead").to_owned());
-        }
-        match scene.to_toml() {
-            Ok(toml) => {
-                ctx.copy_text(page::link(&toml));
-                self.say(ctx, tr("Link copied").to_owned());
-            }
-            Err(error) => self.say(ctx, fill!("The scene could not be written as TOML: %{error}", error)),
-        }
+        };
+        self.say(ctx, message);
     }
 }

@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use egui::text::{LayoutJob, TextWrapping};
+use egui::text::TextWrapping;
 use egui::{
-    Align, ColorImage, ComboBox, Context, FontId, Image, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
-    TextFormat, TextureHandle, TextureOptions, Ui, WidgetInfo, style::ScrollAnimation, vec2,
+    Align, ColorImage, ComboBox, Context, Image, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
+    TextureHandle, TextureOptions, Ui, WidgetInfo, style::ScrollAnimation, vec2,
 };
 
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::readout::Readout;
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::widgets::buttons::described;
+use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::with_keys;
 use crate::scene::{Analysis, Axis, ElementKind, Scene, registry};
 
@@ -23,22 +24,11 @@ const HEIGHT: f32 = 80.0;
 const COLUMNS: usize = 2;
 const WIDEST: f32 = 420.0;
 
-/// Built-in scene in the gallery.
-struct GalleryEntry {
-    id: &'static str,
-    name: String,
-    about: String,
-    analysis: Analysis,
-    /// PNG file of the result.
-    picture: &'static [u8],
-}
+/// Entry of the gallery.
+type GalleryEntry = (&'static registry::BuiltIn, Scene);
 
 static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {
-    let entry = |built_in: &registry::BuiltIn| {
-        let Scene { name, about, analysis, .. } = Scene::from_toml(built_in.toml).ok()?;
-        Some(GalleryEntry { id: built_in.id, name, about, analysis, picture: built_in.picture })
-    };
-    registry::BUILT_IN.iter().filter_map(entry).collect()
+    registry::BUILT_IN.iter().filter_map(|built_in| Some((built_in, Scene::from_toml(built_in.toml).ok()?))).collect()
 });
 
 /// Groups of entries with their headings.
@@ -130,18 +120,18 @@ impl Gallery {
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
             ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
-            let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|entry| entry.analysis == analysis).collect();
+            let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|(_, scene)| scene.analysis == analysis).collect();
             for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {
                     for entry in row {
-                        let is_present = entry.id == input.scene_name;
+                        let is_present = entry.0.id == input.scene_name;
                         let response = self.entry(ui, &palette, entry, width, is_present);
                         if is_present && !self.is_open && by_key {
                             response.scroll_to_me(Some(Align::Center));
                             response.request_focus();
                         }
                         if response.clicked() {
-                            actions.push(Action::Open(entry.id));
+                            actions.push(Action::Open(entry.0.id.into()));
                             // A click closes the gallery by itself, a key does not.
                             ui.close();
                         }
@@ -155,15 +145,15 @@ impl Gallery {
         &mut self,
         ui: &mut Ui,
         palette: &Palette,
-        entry: &GalleryEntry,
+        (built_in, scene): &GalleryEntry,
         width: f32,
         is_present: bool,
     ) -> Response {
         const PADDING: f32 = 6.0;
         const TEXT: f32 = 12.0;
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click());
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_present, entry.id));
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(tr(&entry.about)));
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_present, built_in.id));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(tr(&scene.about)));
         if response.gained_focus() {
             response.scroll_to_me(None);
         }
@@ -179,16 +169,12 @@ impl Gallery {
         ui.painter().rect(rect, 5.0, fill, edge, StrokeKind::Inside);
         let plate = Rect::from_min_size(rect.min + vec2(PADDING, PADDING), PICTURE);
         ui.painter().rect_filled(plate, 4.0, palette.canvas);
-        let texture = self.pictures.entry(entry.id).or_insert_with(|| texture(ui.ctx(), entry));
+        let texture = self.pictures.entry(built_in.id).or_insert_with(|| texture(ui.ctx(), built_in));
         Image::new(&*texture).corner_radius(4).paint_at(ui, plate);
         let left = plate.right() + TEXT;
-        let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
         // On selected or hovered entries only the main text colour has enough contrast.
         let quiet = if fill == palette.control { palette.secondary } else { palette.text };
-        let mut job = LayoutJob::default();
-        job.append(tr(&entry.name), 0.0, format(BODY, palette.text));
-        job.append("\n", 0.0, format(BODY, palette.text));
-        job.append(tr(&entry.about), 0.0, format(SMALL, quiet));
+        let mut job = described(tr(&scene.name), tr(&scene.about), palette.text, quiet);
         job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
         let galley = ui.painter().layout_job(job);
         let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
@@ -198,7 +184,7 @@ impl Gallery {
 }
 
 /// Returns the picture of a scene; empty if it cannot be read.
-fn texture(ctx: &Context, entry: &GalleryEntry) -> TextureHandle {
+fn texture(ctx: &Context, entry: &registry::BuiltIn) -> TextureHandle {
     let image = || {
         let mut reader = png::Decoder::new(std::io::Cursor::new(entry.picture)).read_info().ok()?;
         let mut rgba = vec![0; reader.output_buffer_size()?];

@@ -1,7 +1,5 @@
 //! [`Lab`]: the complete content of a window. Window, screenshots and tests all show it through [`Lab::ui`].
 
-use web_time::Duration;
-
 use crate::app::modes::compare::Compare;
 use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
@@ -106,13 +104,6 @@ pub(super) struct Story {
     pub lesson: Option<Box<Lesson>>,
 }
 
-impl Story {
-    /// Returns the time until the next frame.
-    pub(super) fn delay(&self) -> Duration {
-        Duration::try_from_secs_f64(if self.is_still { self.left } else { 0.0 }).unwrap_or_default()
-    }
-}
-
 /// Action that would lose unsaved edits.
 #[derive(Clone, Debug)]
 pub(super) enum UnsavedDeparture {
@@ -146,8 +137,8 @@ pub struct Lab {
     pub(super) question: Question,
     /// Edits left by a crashed window, while they are offered.
     pub(super) left: Option<Unsaved>,
-    /// `true` if the window is to close.
-    pub(super) closes: bool,
+    /// Requests to the window after this frame.
+    pub(super) requests: Vec<Request>,
     pub(super) settings: Settings,
     /// Message, and the time until which it is shown, s.
     pub(super) toast: Option<(String, f64)>,
@@ -171,7 +162,7 @@ impl Lab {
             dialog: None,
             question: Question::None,
             left: None,
-            closes: false,
+            requests: Vec::new(),
             settings: Settings::default(),
             toast: None,
             warnings: Vec::new(),

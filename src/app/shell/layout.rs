@@ -46,7 +46,7 @@ impl Lab {
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Request> {
         palette::install(ui.ctx());
         language::speak(self.settings.language);
-        let (mut actions, mut requests) = (Vec::new(), Vec::new());
+        let mut actions = Vec::new();
         self.end_story_on_input(ui.ctx());
         self.desk.session.record_press(press(ui.ctx()));
         self.desk.panel.fade_messages(ui.ctx());
@@ -59,7 +59,7 @@ impl Lab {
         let was_typing = ui.ctx().text_edit_focused();
         if self.desk.view.bars {
             self.bars(ui, &mut actions);
-            self.show_banners(ui, &mut actions, &mut requests);
+            self.show_banners(ui, &mut actions);
         }
         if !self.has_dialog() && !was_typing {
             actions.extend(shortcuts::actions(ui.ctx()));
@@ -79,19 +79,19 @@ impl Lab {
             }
         }
         for action in actions {
-            self.act(ui.ctx(), action, &mut requests);
+            self.act(ui.ctx(), action);
         }
         let mut actions = Vec::new();
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
-            Mode::Compare => self.comparison(ui, &mut actions, &mut requests),
-            _ => self.body_view(ui, &mut actions, &mut requests),
+            Mode::Compare => self.comparison(ui, &mut actions),
+            _ => self.body_view(ui, &mut actions),
         });
         let view = &self.desk.view;
         if view.bars && view.narrow && view.sheet {
             self.sheet(ui, &mut actions);
         }
         for action in actions {
-            self.act(ui.ctx(), action, &mut requests);
+            self.act(ui.ctx(), action);
         }
         if self.desk.session.follow_edit() {
             self.is_mixed = true;
@@ -100,15 +100,15 @@ impl Lab {
         help::show(ui.ctx(), &mut self.desk.view.help);
         self.show_question(ui.ctx());
         self.ask_for_file(ui.ctx());
-        requests.extend(std::mem::take(&mut self.closes).then_some(Request::Close));
         if self.desk.session.is_working() {
             ui.ctx().request_repaint_after(POLL);
         } else if let Some(story) = &self.story {
-            ui.ctx().request_repaint_after(story.delay());
+            let seconds = if story.is_still { story.left } else { 0.0 };
+            ui.ctx().request_repaint_after(Duration::try_from_secs_f64(seconds).unwrap_or_default());
         } else if self.iterates() {
             ui.ctx().request_repaint();
         }
-        requests
+        std::mem::take(&mut self.requests)
     }
 
     /// Requests the displayed results of the scene.
@@ -204,7 +204,7 @@ impl Lab {
     }
 
     /// Shows the compared panes in place of the body.
-    fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let rect = ui.available_rect_before_wrap();
         self.desk.viewport.set_rect(rect);
         // The reference solution does not depend on the iteration of the panel's own setting.
@@ -214,7 +214,7 @@ impl Lab {
         }
         let (compare, input) = self.compared();
         let interaction = compare.show(ui, &input);
-        self.edit_loads(ui.ctx(), &interaction, requests);
+        self.edit_loads(ui.ctx(), &interaction);
         if self.desk.comparison().is_moved() {
             fit_button(ui, rect, actions);
         }
@@ -260,7 +260,7 @@ impl Lab {
     }
 
     /// Shows the body with its overlays.
-    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         if self.desk.view.bars {
             self.status_line(ui, actions);
             if self.desk.view.why {
@@ -273,7 +273,7 @@ impl Lab {
         let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
         actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
-        self.edit_loads(ui.ctx(), &interaction, requests);
+        self.edit_loads(ui.ctx(), &interaction);
         let (viewport, content) = self.viewport_and_content();
         viewport.update(ui.visuals(), &content);
         if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
@@ -354,8 +354,14 @@ impl Lab {
         let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                explain_link(ui, actions);
-                actions.extend(remedy.as_ref().and_then(|remedy| remedy_button(ui, remedy)));
+                if ui.link(tr("explain")).clicked() {
+                    actions.push(Action::Toggle(Toggle::Why));
+                }
+                if let Some(remedy) = &remedy
+                    && ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked()
+                {
+                    actions.push(remedy.action.clone());
+                }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                     // The remedy of a failure says what has failed.
                     let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
@@ -403,19 +409,6 @@ fn fit_button(ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
     if ui.put(place, Button::new(tr("Fit"))).on_hover_text(tr("Show the whole body (F)")).clicked() {
         actions.push(Action::Fit);
     }
-}
-
-/// Shows the link beside the status that explains it.
-fn explain_link(ui: &mut Ui, actions: &mut Vec<Action>) {
-    if ui.link(tr("explain")).clicked() {
-        actions.push(Action::Toggle(Toggle::Why));
-    }
-}
-
-/// Shows the button of a remedy; returns its action if it was pressed.
-fn remedy_button(ui: &mut Ui, remedy: &diagnosis::Remedy) -> Option<Action> {
-    let pressed = ui.button(&remedy.offer).on_hover_text(&remedy.text).clicked();
-    pressed.then(|| remedy.action.clone())
 }
 
 /// Returns the state of the pointer in this frame.

@@ -7,7 +7,7 @@ use egui::{Align2, Painter, Panel, Rect, Sense, Ui};
 use crate::app::action::Action;
 use crate::app::language::{fill, said, sentence, tr};
 use crate::app::session::Notice;
-use crate::app::shell::lab::{Lab, Request};
+use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
 use crate::format::engineering;
@@ -42,7 +42,7 @@ impl Lab {
     }
 
     /// Shows warnings and offers in rows under the toolbar, if there are any.
-    pub(super) fn show_banners(&mut self, ui: &mut Ui, actions: &mut Vec<Action>, requests: &mut Vec<Request>) {
+    pub(super) fn show_banners(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let has_warning = self.warnings.len() > self.closed_warnings;
         if !(has_warning || self.offered().is_some() || self.desk.session.is_outdated()) {
             return;
@@ -51,14 +51,13 @@ impl Lab {
         Panel::top("banners").resizable(false).frame(frame).show(ui, |ui| {
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
-                let is_closed = banner(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
                     ui.colored_label(color, message);
-                    ui.button(tr("Close")).clicked()
+                    self.closed_warnings += usize::from(ui.button(tr("Close")).clicked());
                 });
-                self.closed_warnings += usize::from(is_closed);
             }
             self.offer_changed_file(ui, actions);
-            self.offer_unsaved(ui, requests);
+            self.offer_unsaved(ui);
         });
     }
 
@@ -125,9 +124,4 @@ impl Lab {
         said.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, message));
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
-}
-
-/// Shows a message with its answers in a row.
-pub(super) fn banner<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.horizontal_wrapped(contents).inner
 }

@@ -39,6 +39,13 @@ struct BarNumber {
     ratio: Option<f64>,
 }
 
+impl BarNumber {
+    /// Returns a number without remark and bar.
+    fn new(name: &'static str, value: String, tip: impl Into<String>, color: Color32) -> Self {
+        Self { name, value, word: Cow::default(), tip: tip.into(), color, ratio: None }
+    }
+}
+
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
@@ -103,48 +110,44 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
         tr("From rest: the error of a solve from rest. A result that is accepted early depends on the state before it")
     });
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
-    let mut entries = vec![
-        BarNumber {
-            name: ERROR,
-            value: error_text(errors.own, errors.bound, input.live.is_some()),
-            word: match (doubt, errors.source) {
-                // A large error has a source, whatever else is to be doubted.
-                (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
-                    format!("{} · {doubt}", tr(source.word())).into()
-                }
-                (Some(doubt), _) if is_without_reference => format!("{} · {doubt}", tr("no reference")).into(),
-                (Some(doubt), _) if sought.is_none() => doubt.into(),
-                (_, Some(source)) => tr(source.word()).into(),
-                (None, None) if is_without_reference => tr("no reference").into(),
-                (_, None) => sought.map_or(Cow::default(), |done| {
-                    let percent = format!("{:.0}", 100.0 * done);
-                    fill!("computing the reference: %{percent} %", percent).into()
-                }),
-            },
-            tip: [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
+    let error = BarNumber {
+        word: match (doubt, errors.source) {
+            // A large error has a source, whatever else is to be doubted.
+            (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
+                format!("{} · {doubt}", tr(source.word())).into()
+            }
+            (Some(doubt), _) if is_without_reference => format!("{} · {doubt}", tr("no reference")).into(),
+            (Some(doubt), _) if sought.is_none() => doubt.into(),
+            (_, Some(source)) => tr(source.word()).into(),
+            (None, None) if is_without_reference => tr("no reference").into(),
+            (_, None) => sought.map_or(Cow::default(), |done| {
+                let percent = format!("{:.0}", 100.0 * done);
+                fill!("computing the reference: %{percent} %", percent).into()
+            }),
+        },
+        ..BarNumber::new(
+            ERROR,
+            error_text(errors.own, errors.bound, input.live.is_some()),
+            [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
             color,
-            ratio: None,
-        },
-        BarNumber {
-            name: "TIME",
-            value: if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() },
-            word: match solve {
-                Some(solve) if !solve.is_solved => tr("not reached from rest").into(),
-                _ => Cow::default(),
-            },
-            tip: tr(
-                "Computing time of a solve from rest, the median of repeated solves, without the check of stability. Linear \
-                 theory factors its matrix once for all loads: that time is not in it.",
-            )
-            .to_owned(),
-            color: if is_last { palette.secondary } else { palette.text },
-            ratio: None,
-        },
-    ];
+        )
+    };
+    let tip = "Computing time of a solve from rest, the median of repeated solves, without the check of stability. Linear \
+               theory factors its matrix once for all loads: that time is not in it.";
+    let value = if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() };
+    let color = if is_last { palette.secondary } else { palette.text };
+    let is_unsolved = solve.is_some_and(|solve| !solve.is_solved);
+    let word = if is_unsolved { tr("not reached from rest").into() } else { Cow::default() };
+    let mut entries = vec![error, BarNumber { word, ..BarNumber::new("TIME", value, tr(tip), color) }];
     if input.scene.solver.method == MethodKind::Warped {
+        let tip = "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
+                   diverges";
+        let color = match rho {
+            Some(rho) if rho > 1.0 => palette.warning,
+            Some(_) => palette.text,
+            None => palette.secondary,
+        };
         entries.push(BarNumber {
-            name: "ρ",
-            value: rho.map_or_else(|| UNKNOWN.to_owned(), rho_number),
             word: match load_text(input.scene) {
                 _ if rho.is_none() => Cow::default(),
                 _ if simulation.status().is_success() => tr("per iteration").into(),
@@ -152,17 +155,8 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
                 Some(load) => fill!("at %{load}", load).into(),
                 None => tr("at the full load").into(),
             },
-            tip: tr(
-                "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
-                 diverges",
-            )
-            .to_owned(),
-            color: match rho {
-                Some(rho) if rho > 1.0 => palette.warning,
-                Some(_) => palette.text,
-                None => palette.secondary,
-            },
             ratio: rho,
+            ..BarNumber::new("ρ", rho.map_or_else(|| UNKNOWN.to_owned(), rho_number), tr(tip), color)
         });
     }
     entries
@@ -171,38 +165,26 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
 fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
     let cost = input.timings.total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
+    let tip = fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s"));
+    let value = if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() };
+    let color = if cost > step { palette.error } else { palette.text };
+    let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new("STEP", value, tip, color) };
     let clock = &input.playback.clock;
+    let (word, color) = match clock.lags() {
+        true => (tr("slower than asked").into(), palette.error),
+        false => (Cow::default(), palette.text),
+    };
+    let value = match clock.factor() {
+        Some(factor) => format!("× {}", fraction(factor)),
+        None if input.running => UNKNOWN.to_owned(),
+        None => tr("paused").to_owned(),
+    };
+    let tip = "Simulated seconds per second; fewer than requested if the machine cannot keep up";
+    let speed = BarNumber { word, ..BarNumber::new("SPEED", value, tr(tip), color) };
     let drift = drift(input.simulation);
-    [
-        BarNumber {
-            name: "STEP",
-            value: if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() },
-            word: Cow::default(),
-            tip: fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s")),
-            color: if cost > step { palette.error } else { palette.text },
-            ratio: Some(cost / step),
-        },
-        BarNumber {
-            name: "SPEED",
-            value: match clock.factor() {
-                Some(factor) => format!("× {}", fraction(factor)),
-                None if input.running => UNKNOWN.to_owned(),
-                None => tr("paused").to_owned(),
-            },
-            word: if clock.lags() { tr("slower than asked").into() } else { Cow::default() },
-            tip: tr("Simulated seconds per second; fewer than requested if the machine cannot keep up").to_owned(),
-            color: if clock.lags() { palette.error } else { palette.text },
-            ratio: None,
-        },
-        BarNumber {
-            name: "DRIFT",
-            value: drift.map_or_else(|| UNKNOWN.to_owned(), drift_text),
-            word: Cow::default(),
-            tip: tr(DRIFT_TIP).to_owned(),
-            color: if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text },
-            ratio: None,
-        },
-    ]
+    let color = if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text };
+    let value = drift.map_or_else(|| UNKNOWN.to_owned(), drift_text);
+    [cost, speed, BarNumber::new("DRIFT", value, tr(DRIFT_TIP), color)]
 }
 
 /// Space between the parts of an entry, points, and size of its bar.

@@ -29,8 +29,7 @@ pub(crate) fn show(
     let mut of_scene = |ui: &mut Ui, actions: &mut Vec<Action>| {
         ui.spacing_mut().item_spacing.x = 6.0;
         gallery.show(ui, input, actions);
-        run(ui, input, !view.narrow, actions);
-        history(ui, input, actions);
+        tools(ui, input, !view.narrow, actions);
     };
     let of_window = |ui: &mut Ui, actions: &mut Vec<Action>| {
         modes(ui, view, actions);
@@ -43,18 +42,18 @@ pub(crate) fn show(
     } else {
         ui.horizontal_centered(|ui| {
             of_scene(ui, actions);
-            divide(ui);
+            ui.add(egui::Separator::default().vertical().spacing(10.0));
             of_window(ui, actions);
         });
     }
 }
 
 fn modes(ui: &mut Ui, view: &ViewOptions, actions: &mut Vec<Action>) {
-    for entry in MODES {
-        let chosen = view.mode == entry.mode;
-        let button = ui.add(Button::selectable(chosen, tr(entry.name))).on_hover_text(tr(entry.about));
+    for (mode, name, about) in MODES {
+        let chosen = view.mode == mode;
+        let button = ui.add(Button::selectable(chosen, tr(name))).on_hover_text(tr(about));
         if button.clicked() && !chosen {
-            actions.push(Action::Toggle(Toggle::Mode(entry.mode)));
+            actions.push(Action::Toggle(Toggle::Mode(mode)));
         }
     }
 }
@@ -76,48 +75,29 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
     });
 }
 
-fn divide(ui: &mut Ui) {
-    ui.add(egui::Separator::default().vertical().spacing(10.0));
-}
-
-fn run(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
-    let simulation = input.simulation;
-    let moves = simulation.motion().is_some();
-    let ended = input.ended;
-    let mut button = |icon: Icon, name: &str, tip: &str, enabled: bool, action: Action| {
-        let (name, tip) = (tr(name), tr(tip));
-        let word = (wide && icon != Icon::Reset).then_some(name);
-        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, name, word, false));
-        if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() {
-            actions.push(action);
-        }
+/// Shows the buttons that run the solution, and those that undo and redo edits; with words where there is room.
+fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
+    let (moves, ended) = (input.simulation.motion().is_some(), input.ended);
+    let run = match (input.running, ended) {
+        (true, false) => (Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
+        (false, _) => (Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
+        (true, true) => (Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
     };
-    match (input.running, ended) {
-        (true, false) => button(Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
-        (false, _) => button(Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
-        (true, true) => button(Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
-    }
-    let tip = match (moves, ended) {
+    let step = match (moves, ended) {
         (true, _) => "One time step (N)",
         (false, true) => "Start again from rest, one iteration at a time (N)",
         (false, false) => "One iteration (N)",
     };
-    button(Icon::Step, "Step", tip, !(moves && ended), Action::Step);
-    button(
-        Icon::Reset,
-        "Reset",
-        "Solve again from rest, or return to the start of the motion (R)",
-        true,
-        Action::Reset,
-    );
-}
-
-fn history(ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
+    let reset = "Solve again from rest, or return to the start of the motion (R)";
     for (icon, name, tip, enabled, action) in [
+        run,
+        (Icon::Step, "Step", step, !(moves && ended), Action::Step),
+        (Icon::Reset, "Reset", reset, true, Action::Reset),
         (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
         (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
     ] {
-        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), None, false));
+        let word = (wide && matches!(icon, Icon::Play | Icon::Pause | Icon::Step)).then_some(tr(name));
+        let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), word, false));
         let tip = with_keys(ui.ctx(), tr(tip));
         if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
             actions.push(action);

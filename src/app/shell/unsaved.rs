@@ -11,7 +11,6 @@ use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question, Request, UnsavedDeparture};
-use crate::app::shell::messages::banner;
 use crate::app::view_options::Mode;
 use crate::scene::Scene;
 
@@ -41,7 +40,7 @@ impl Lab {
             self.enter_or_leave();
         }
         self.depart(ctx, UnsavedDeparture::Close);
-        std::mem::take(&mut self.closes)
+        self.requests.pop_if(|request| *request == Request::Close).is_some()
     }
 
     /// Returns `true` while a dialog has the keyboard focus.
@@ -71,7 +70,7 @@ impl Lab {
 
     fn go(&mut self, ctx: &Context, departure: UnsavedDeparture) {
         match departure {
-            UnsavedDeparture::Close => self.closes = true,
+            UnsavedDeparture::Close => self.requests.push(Request::Close),
             UnsavedDeparture::Open(source) => self.open(ctx, source),
             UnsavedDeparture::New(scene) => {
                 _ = self.apply(ctx, Edit::Restore(Box::new((Document::unnamed(&scene), *scene))));
@@ -123,11 +122,11 @@ impl Lab {
     }
 
     /// Offers the edits left by a crashed window, until the user answers.
-    pub(super) fn offer_unsaved(&mut self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    pub(super) fn offer_unsaved(&mut self, ui: &mut Ui) {
         let Some(left) = self.offered() else { return };
         let text = fill!("Unsaved changes to “%{scene}” were found.", scene = tr(&left.scene.name));
         let (mut restore, mut discard) = (false, false);
-        banner(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.label(text);
             restore = ui.button(tr("Restore")).clicked();
             discard = ui.button(tr("Discard")).clicked();
@@ -140,7 +139,7 @@ impl Lab {
             return;
         }
         self.left = None;
-        requests.push(Request::DiscardCopy);
+        self.requests.push(Request::DiscardCopy);
         ui.ctx().request_repaint();
     }
 }
@@ -159,16 +158,14 @@ fn dialog(ctx: &Context, title: &str, text: &str) -> Option<&'static str> {
             for (i, (label, key)) in ANSWERS.into_iter().enumerate() {
                 let text = RichText::new(tr(label));
                 let button = ui.button(if i == 0 { text.strong() } else { text }).on_hover_text(key.name());
-                if button.clicked() || ui.input(|i| i.events.iter().any(|event| pressed(event, key))) {
+                let is_pressed = |event: &Event| {
+                    matches!(event, Event::Key { key: own, pressed: true, repeat: false, .. } if *own == key)
+                };
+                if button.clicked() || ui.input(|i| i.events.iter().any(is_pressed)) {
                     answer = Some(label);
                 }
             }
         });
     });
     answer.or_else(|| modal.should_close().then_some("Cancel"))
-}
-
-/// Returns `true` if an event is the first press of a key.
-fn pressed(event: &Event, wanted: Key) -> bool {
-    matches!(event, Event::Key { key, pressed: true, repeat: false, .. } if *key == wanted)
 }
