@@ -122,10 +122,6 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
 /// Function that shows a row of the result: name, value, and tooltip.
 type ResultRow<'a> = dyn FnMut(&str, String, &str) + 'a;
 
-fn time(duration: std::time::Duration) -> String {
-    engineering(three_digits(duration.as_secs_f64()), "s")
-}
-
 fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
     /// Largest number of probes that are shown.
     const MAX_PROBES: usize = 8;
@@ -172,7 +168,8 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
 
 fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, (name, what): (&str, &str)) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
-    row(name, joined([time(input.timings.total()), unknowns]), what);
+    let time = engineering(three_digits(input.timings.total().as_secs_f64()), "s");
+    row(name, joined([time, unknowns]), what);
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.

@@ -115,7 +115,8 @@ impl NumberField {
                             if has_escaped || text.trim() == shown {
                                 return Some(value);
                             }
-                            self.read(text).map_err(|reason| refused.replace(Some(reason))).ok()
+                            let number = read(text, self.limit).and_then(|number| self.check(number));
+                            number.map_err(|reason| refused.replace(Some(reason))).ok()
                         });
                     let size = egui::vec2(VALUE_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
@@ -174,7 +175,7 @@ impl NumberField {
                 ui.data_mut(|data| data.insert_temp(refused_id, ()));
                 Err(reason)
             }
-            None => edited.map(|new| self.check(new).map(|()| new)).transpose(),
+            None => edited.map(|new| self.check(new)).transpose(),
         };
         match &entered {
             Err(reason) => _ = messages.insert(self.label, reason.clone()),
@@ -252,17 +253,12 @@ impl NumberField {
         Some(if self.whole { stepped } else { three_digits(stepped) })
     }
 
-    /// Reads a number within the limit.
-    fn read(&self, text: &str) -> Result<f64, Sentence> {
-        let number = read(text, self.limit)?;
-        self.check(number).map(|()| number)
-    }
-
-    fn check(&self, value: f64) -> Result<(), Sentence> {
+    /// Returns the value if it is accepted.
+    fn check(&self, value: f64) -> Result<f64, Sentence> {
         if self.whole && value.fract() != 0.0 {
             return Err(sentence!("expected a whole number, got %{got}", got = number(value)));
         }
-        self.limit.check(value)
+        self.limit.check(value).map(|()| value)
     }
 }
 

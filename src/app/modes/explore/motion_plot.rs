@@ -102,10 +102,13 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
     });
 }
 
+/// Name of a kind of energy, its colour, and the function that returns its value, J.
+type EnergyKind = (&'static str, Color32, fn(&MotionSample) -> f64);
+
 /// Returns the energies of a motion by kind, and their sum. Energies that are always zero have no line.
 fn energies(history: &History, seconds: f64, palette: &Palette) -> Vec<PlotLine> {
     let [kinetic, elastic, potential, dissipated, lost, put_in] = palette.energies();
-    let kinds: [(&str, Color32, fn(&MotionSample) -> f64); 6] = [
+    let kinds: [EnergyKind; 6] = [
         ("kinetic", kinetic, |s| s.ledger.kinetic),
         ("elastic", elastic, |s| s.ledger.elastic),
         ("potential of loads", potential, |s| s.ledger.potential),
