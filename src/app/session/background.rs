@@ -26,6 +26,8 @@ pub(super) struct Background {
     solve: Option<Box<BackgroundSolve>>,
     /// Session before the first edit whose result is incomplete.
     pub before: Option<Box<Before>>,
+    /// Model of a solve that an edit has superseded: the next one continues with it.
+    returned: Option<Box<Model>>,
     /// `true` if the next solve starts from rest.
     from_rest: bool,
     /// Largest number of iterations of the next solve; `None` for no limit.
@@ -49,8 +51,15 @@ pub(super) struct Before {
 
 impl Default for Background {
     fn default() -> Self {
-        let (solve, before, iterations) = (None, None, None);
-        Self { most_unknowns: MAX_UNKNOWNS, is_large: false, solve, before, from_rest: false, iterations }
+        Self {
+            most_unknowns: MAX_UNKNOWNS,
+            is_large: false,
+            solve: None,
+            before: None,
+            returned: None,
+            from_rest: false,
+            iterations: None,
+        }
     }
 }
 
@@ -198,8 +207,8 @@ impl Session {
     fn receive(&mut self, outcome: SolveOutcome) {
         let Some(solve) = self.background.solve.take() else { return };
         match outcome {
-            // A mesh that has been edited meanwhile is not displayed.
-            Ok(model) if has_mesh_of(&self.scene, solve.scene()) => self.display(*model),
+            Ok(model) if *solve.scene() == self.scene => self.display(*model),
+            Ok(model) if has_mesh_of(&self.scene, solve.scene()) => self.background.returned = Some(model),
             Err(error) if *solve.scene() == self.scene => {
                 let label = self.background.before.as_ref().and_then(|before| before.label);
                 self.roll_back();
@@ -230,19 +239,27 @@ impl Session {
         if self.background.solve.is_some() {
             return;
         }
-        let own = &self.model.simulation;
+        let returned = self.background.returned.take();
+        let own = returned.as_ref().map_or(&self.model.simulation, |model| &model.simulation);
         let is_new = !has_mesh_of(&self.scene, own.scene());
-        let is_needed = own.scene() != &self.scene
+        let is_needed = returned.is_some()
+            || own.scene() != &self.scene
             || self.background.from_rest
             || self.background.iterations.is_some()
             || self.running && *own.status() == Status::Running;
-        if !self.is_wanted_in_background() || !is_new && (!is_needed || own.motion().is_some()) {
+        // The time steps of a displayed motion are made between two frames.
+        let is_motion = returned.is_none() && own.motion().is_some();
+        if !self.is_wanted_in_background() || !is_new && (!is_needed || is_motion) {
             self.background.before = None;
             return;
         }
         self.keep_before();
-        // A copy stays on display.
-        let Some(base) = (if is_new { Some(Base::None) } else { self.take_model() }) else { return };
+        let base = match returned {
+            _ if is_new => Some(Base::None),
+            Some(model) => Some(Base::Model(model)),
+            None => self.take_model(),
+        };
+        let Some(base) = base else { return };
         // Iterations of a body that is not that large are made between two frames.
         let is_made_here = !self.running || self.scene.unknowns() <= self.background.most_unknowns;
         let request = SolveRequest {
