@@ -266,7 +266,7 @@ impl Run {
         } else {
             self.place = Place::here(base, &scene);
         }
-        self.from_rest
+        self.from_rest && self.refused().is_none()
     }
 
     /// Starts a solve in the background.
@@ -465,6 +465,11 @@ mod tests {
         assert_eq!(motion.answer(), Some(tip));
         assert!(motion.turn_to(fall(20.0, IntegratorKind::ImplicitEuler), &[]));
         assert_eq!(motion.answer(), Some(Vector2::zeros()));
+        // One that cannot begin does not begin again at every frame, with all others.
+        let refused = fall(20.0, IntegratorKind::TrBdf2).clamp("nowhere");
+        assert!(!motion.turn_to(refused.clone(), &[]) && motion.refused().is_some());
+        motion.reset();
+        assert!(!motion.turn_to(refused, &[]));
     }
 
     /// Neither another integrator nor another damping makes the mesh again; a large motion is set up in the background.

@@ -420,7 +420,11 @@ impl Compare {
             ui.ctx().request_repaint();
             match change {
                 Some(setting) => {
-                    self.panes.get_mut(number).into_iter().for_each(|pane| pane.change_setting(setting));
+                    if let Some(pane) = self.panes.get_mut(number) {
+                        pane.setting = setting;
+                        pane.run.restart(setting.iterations);
+                    }
+                    // All motions are at the same time.
                     if self.in_motion {
                         self.reset();
                     }

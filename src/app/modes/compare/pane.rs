@@ -187,12 +187,6 @@ impl Pane {
         }
     }
 
-    /// Changes the setting, and restarts.
-    pub(super) fn change_setting(&mut self, setting: PaneSetting) {
-        self.setting = setting;
-        self.run.restart(setting.iterations);
-    }
-
     pub(super) fn condition(&self) -> Condition {
         if self.run.is_outdated() {
             Condition::Outdated
