@@ -29,9 +29,11 @@ pub enum Variant {
     File(&'static str),
 }
 
-/// Initial states other than rest: identifiers in tables, and the initial position of a node with this index and rest
-/// position, for a beam of height 1 m.
-pub const STARTS: [(&str, fn(usize, Vector2<f64>) -> Vector2<f64>); 4] = [
+/// Returns the initial position of a node with this index and rest position, for a beam of height 1 m.
+type StartPosition = fn(usize, Vector2<f64>) -> Vector2<f64>;
+
+/// Initial states other than rest, with their identifiers in tables.
+pub const STARTS: [(&str, StartPosition); 4] = [
     // Every node on the axis: all elements without area.
     ("flat", |_, x| Vector2::new(x.x, 0.0)),
     // Mirrored at the axis: all elements inverted.
