@@ -1,7 +1,7 @@
 //! Controls of the panes: pickers, layout and the key.
 
 use egui::emath::GuiRounding;
-use egui::{Align, Align2, ComboBox, FontId, Layout, Rect, RichText, Role, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Align2, ComboBox, FontId, Layout, Rect, RichText, Role, Ui, Vec2, WidgetInfo, pos2, vec2};
 use nalgebra::Vector2;
 
 use crate::app::language::{fill, tr};
@@ -120,23 +120,13 @@ fn first_row(panes: usize, width: f32) -> usize {
     if one_row { panes } else { panes.div_ceil(2) }
 }
 
-/// Returns the areas of `panes` panes, side by side or in two rows.
+/// Returns the areas of `panes` panes in equal columns, side by side or in two rows.
 fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
-    let first = first_row(panes, rect.width());
-    let rows = [first, panes - first];
-    let count = if rows[1] > 0 { 2.0 } else { 1.0 };
-    let height = ((rect.height() - GAP * (count - 1.0)) / count).floor();
-    let mut cells = Vec::with_capacity(panes);
-    let mut top = rect.top();
-    for row in rows {
-        let width = ((rect.width() - GAP * (row.max(1) - 1) as f32) / row.max(1) as f32).floor();
-        for column in 0..row {
-            let corner = pos2(rect.left() + (width + GAP) * column as f32, top);
-            cells.push(Rect::from_min_size(corner, vec2(width, height.max(0.0))));
-        }
-        top += height + GAP;
-    }
-    cells
+    let columns = first_row(panes, rect.width()).max(1);
+    let part = |length: f32, count: usize| ((length - GAP * (count - 1) as f32) / count as f32).floor().max(0.0);
+    let size = vec2(part(rect.width(), columns), part(rect.height(), panes.div_ceil(columns).max(1)));
+    let place = |i: usize| vec2((i % columns) as f32, (i / columns) as f32) * (size + Vec2::splat(GAP));
+    (0..panes).map(|i| Rect::from_min_size(rect.min + place(i), size)).collect()
 }
 
 /// Shows a picker of a pane: a value of its own, or that of the panel.
