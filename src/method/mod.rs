@@ -54,11 +54,12 @@ pub enum MotionMethod {
     Adaptive,
 }
 
-/// All methods; to add one, write a file in this folder, and a line here and in [`MethodKind::entry`].
+/// All methods; to add one, write a file in this folder, and a line here and in `MethodKind::entry`.
 pub const METHODS: &[MethodEntry] = &[linear::ENTRY, warped::ENTRY, newton::ENTRY, auto::ENTRY];
 
 impl MethodKind {
     /// Returns the registry entry.
+    #[doc(hidden)]
     #[must_use]
     pub fn entry(self) -> MethodEntry {
         match self {
