@@ -163,9 +163,11 @@ pub(crate) fn coarse_text(own: f64, reference: &ProbeReference) -> Option<String
 /// Formats the error of a result, percent: about, while the reference follows the load; its bound, where the error of the
 /// reference hides it.
 pub(crate) fn error_text(own: Option<f64>, bound: Option<f64>, is_live: bool) -> String {
+    /// Smallest ratio of the bound to an error that says nothing, and smallest bound, percent, that matters.
+    const HIDDEN: [f64; 2] = [5.0, 0.01];
     let Some(own) = own else { return UNKNOWN.to_owned() };
     match bound {
-        Some(bound) if bound > 2.0 * own => format!("≤ {}", format::bound_percent(bound)),
+        Some(bound) if bound > HIDDEN[0] * own && bound > HIDDEN[1] => format!("≤ {}", format::bound_percent(bound)),
         _ if is_live => format!("≈ {}", percent(own)),
         _ => percent(own),
     }
