@@ -3,9 +3,8 @@
 use crate::common::{cantilever, cantilever_table, largest_distance, scene, scene_with, solved};
 use nalgebra::Vector2;
 use warpbeam::assembly::{Forces, Kinematics};
-use warpbeam::method::{Decision, Reason};
 use warpbeam::study::rho_text;
-use warpbeam::{Axis, ElementKind, Equilibrium, Load, Mesh, MethodKind, Scene, Simulation, Status};
+use warpbeam::{Axis, Decision, ElementKind, Equilibrium, Load, Mesh, MethodKind, Reason, Scene, Simulation, Status};
 
 /// Returns the load factor and the number of load steps of a search.
 fn load_stepping(simulation: &Simulation) -> (f64, u32) {

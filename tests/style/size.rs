@@ -10,10 +10,10 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 25_582),
+    ("app", &["src/app"], 25_574),
     ("study", &["src/study"], 7_030),
     ("model", &["src/model", "src/scene"], 3_236),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_295),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
     ("simulation", &["src/simulation"], 2_664),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_499),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_441),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_245;
+const SRC: usize = 61_238;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
