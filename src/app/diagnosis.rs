@@ -246,6 +246,9 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
         _ => {}
     }
     if *simulation.status() == Status::Running && simulation.iterations() > 0 {
+        if let Some(part) = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0) {
+            add(fill!("at %{part} of the load", part = percent(100.0 * part)));
+        }
         add(fill!("residual %{residual}", residual = format!("{:.1e}", simulation.residual())));
     }
     if runs_away(input) {
@@ -529,7 +532,9 @@ pub(crate) fn error_tip(reference: Option<&Reference>, failure: Option<&Sentence
     }
     let folds = reference.is_some_and(|reference| reference.folds).then(|| format!("\n{}", sentence(tr(FOLDS))));
     let reference = reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said);
-    let tip =
-        fill!("Relative error of the first probe's displacement, compared with %{reference}", reference = reference);
+    let tip = fill!(
+        "Distance of the first probe, in x and y, from %{reference}; relative to its displacement",
+        reference = reference
+    );
     tip + &folds.unwrap_or_default()
 }

@@ -32,9 +32,22 @@ pub(crate) struct Live {
 }
 
 impl Live {
+    /// Returns `true` if the reference is that of a scene under any loads.
+    pub(crate) fn is_of_body(&self, scene: &Scene) -> bool {
+        Scene { loads: self.key.loads.clone(), ..without_settings(scene) } == self.key
+    }
+
     /// Returns `true` if the reference is that of a scene, and not of the load before.
     pub(crate) fn is_of(&self, scene: &Scene) -> bool {
         self.key == without_settings(scene)
+    }
+
+    /// Returns `true` if a body has moved far since its reference was asked for, which then says nothing about it.
+    pub(crate) fn is_late(&self, body: &Simulation) -> bool {
+        /// Distance relative to the size of the body.
+        const FAR: f64 = 0.05;
+        let moved = self.compared.own.zip(first_probe(body)).map(|(asked, now)| (now - asked).norm());
+        moved.is_some_and(|moved| moved > FAR * body.system().size())
     }
 }
 
@@ -92,5 +105,22 @@ impl Follower {
         };
         self.running = Task::start("follow", work).ok();
         self.running.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reference_is_that_of_a_body_under_any_load() {
+        let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
+        let (reference, compared) = (Reference::of(&scene).unwrap(), Compared::default());
+        let live = Live { key: without_settings(&scene), reference, compared };
+        let (mut heavier, mut longer) = (scene.clone(), scene);
+        heavier.scale_loads(2.0);
+        assert!(live.is_of_body(&heavier) && !live.is_of(&heavier));
+        longer.beam.as_mut().unwrap().length = 20.0;
+        assert!(!live.is_of_body(&longer));
     }
 }

@@ -235,7 +235,7 @@ impl Session {
     pub(crate) fn live(&self) -> Option<&Live> {
         let has_error = |reference: &Reference| reference.first().is_some();
         let is_wanted = self.reference().is_none() && self.facts.reference.latest().is_some_and(has_error);
-        self.live.known().filter(|live| is_wanted && live.reference.first().is_some())
+        self.live.known().filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.scene))
     }
 
     /// Returns time and result of a solve from rest; `None` if they are not known for the present load.

@@ -101,7 +101,9 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let is_without_reference = is_without_reference(input);
     // The error from rest is in the colour, and is no doubt if it is small.
     let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }).is_some();
+    let is_late = input.live.is_some_and(|live| live.is_late(input.shown));
     let color = match error_color(palette, errors.worst()) {
+        _ if is_late => palette.secondary,
         color if is_doubtful && color == palette.good => palette.warning,
         color => color,
     };

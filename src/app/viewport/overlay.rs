@@ -160,11 +160,10 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     if !overlay.apart {
         draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
     }
-    let exact = if overlay.live == Some(true) { palette.exact.gamma_multiply(0.4) } else { palette.exact };
-    for line in overlay.exact {
+    for line in overlay.exact.iter().filter(|_| overlay.live != Some(true)) {
         // A background stroke keeps the line visible over the body.
         dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
-        dashed(painter, &projection, line, Stroke::new(1.7, exact));
+        dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
     }
     if overlay.options.trail {
         trails(painter, &projection, overlay, palette);
@@ -597,6 +596,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         return None;
     }
     let values = |word: &str, [error, bound]: [Option<f64>; 2], area: Option<f64>| {
+        let error = error.filter(|_| overlay.live != Some(true));
         let error = error.map(|error| format!("  {}", error_text(Some(error), bound, overlay.live.is_some())));
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
         [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()

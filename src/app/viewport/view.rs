@@ -6,7 +6,6 @@ use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
 use nalgebra::Vector2;
 
 use crate::app::diagnosis::Errors;
-use crate::app::session::live::first_probe;
 use crate::app::session::{Session, has_mesh_of};
 use crate::app::view_options::{Magnification, ViewOptions};
 use crate::app::viewport::arrow::ForceArrows;
@@ -590,8 +589,6 @@ impl BodyView {
         errors: Errors,
         note: Option<(&str, Color32)>,
     ) {
-        /// Distance relative to the size of the body beyond which a reference that follows the load is faint.
-        const FAR: f64 = 0.05;
         let session = content.session;
         let simulation = session.simulation();
         let (shown, fallback) = (content.drawn(), session.fallback());
@@ -602,10 +599,7 @@ impl BodyView {
         }
         let sections = sections(shown);
         let (ghost, exact) = (self.ghost(content), self.exact(content));
-        let live = session.live().map(|live| {
-            let moved = live.compared.own.zip(first_probe(shown)).map(|(asked, now)| (now - asked).norm());
-            moved.is_some_and(|moved| moved > FAR * shown.system().size())
-        });
+        let live = session.live().map(|live| live.is_late(shown));
         let overlay = Overlay {
             scene: shown.scene(),
             wanted: fallback.map(|_| simulation.scene()),

@@ -108,7 +108,9 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     } else {
         let bound = judged.map(|(error, first)| first.error_bound(error));
         let number = error_text(error, bound, input.live.is_some());
-        let color = error_color(&palette, bound);
+        // Until the pane has a result, the error is that of an earlier load.
+        let is_current = pane.condition() == Condition::Result;
+        let color = if is_current { error_color(&palette, bound) } else { palette.secondary };
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         semibold(painter, at.min, &galley, color);
