@@ -27,7 +27,7 @@ const SAME_SHAPE: f64 = 0.1;
 ///
 /// The residual force at u₁ would be a poor estimate: on a slender beam its cubic part is large, and cancels against
 /// that of u₂.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Expansion {
     /// Factor of K.
     factor: Option<Factor>,
@@ -35,30 +35,24 @@ pub(super) struct Expansion {
     terms: [Vec<Vector2<f64>>; 3],
     /// A linear solution up to which the body was found stable.
     checked: Option<Vec<Vector2<f64>>>,
-    scratch: Option<ExpansionScratch>,
-}
-
-/// Work vectors, allocated once.
-#[derive(Debug)]
-struct ExpansionScratch {
     rest: State,
     probe: State,
     forces: Forces,
     sum: Vec<Vector2<f64>>,
 }
 
-impl ExpansionScratch {
-    fn new(problem: &Problem) -> Self {
-        let rest = problem.system().at_rest();
-        let forces = Forces::new(rest.displacement.len());
-        Self { sum: rest.displacement.to_vec(), probe: rest.clone(), forces, rest }
-    }
-}
-
 impl Expansion {
-    /// Returns the workspace without results for another stiffness.
+    /// Allocates the memory of a problem's expansion.
+    pub(super) fn new(problem: &Problem) -> Self {
+        let rest = problem.system().at_rest();
+        let sum = rest.displacement.to_vec();
+        let (terms, forces, probe) = ([(); 3].map(|()| sum.clone()), Forces::new(sum.len()), rest.clone());
+        Self { factor: None, terms, checked: None, rest, probe, forces, sum }
+    }
+
+    /// Returns the expansion without results for another stiffness.
     pub(super) fn without_factor(self) -> Self {
-        Self { scratch: self.scratch, ..Self::default() }
+        Self { factor: None, checked: None, ..self }
     }
 
     /// Returns the linear solution u₁ of the last [`Self::solve`], m.
@@ -70,12 +64,7 @@ impl Expansion {
     pub(super) fn solve(&mut self, it: &mut Iteration<'_>, report: &mut AutoReport) -> Result<f64, IterationError> {
         let problem = it.problem;
         let system = problem.system();
-        let Self { factor, terms: [first, second, third], scratch, .. } = self;
-        let ExpansionScratch { rest, probe, forces, sum } =
-            scratch.get_or_insert_with(|| ExpansionScratch::new(problem));
-        for vector in [&mut *first, second, third] {
-            vector.resize(sum.len(), Vector2::zeros());
-        }
+        let Self { factor, terms: [first, second, third], rest, probe, forces, sum, .. } = self;
         let factor = match factor {
             Some(factor) => factor,
             None => {
@@ -124,12 +113,11 @@ impl Expansion {
 
     /// Returns `true` if the body is stable under its linear solution; checked once per shape of the solution.
     pub(super) fn is_stable(&mut self, it: &mut Iteration<'_>, report: &mut AutoReport) -> bool {
-        let Self { terms: [first, ..], checked, scratch, .. } = self;
+        let Self { terms: [first, ..], checked, probe, forces, .. } = self;
         let covered = checked.as_ref().and_then(|checked| same_shape(first, checked, SAME_SHAPE));
         if covered.is_some_and(|scale| (0.0..=1.0).contains(&scale)) {
             return true;
         }
-        let ExpansionScratch { probe, forces, .. } = scratch.get_or_insert_with(|| ExpansionScratch::new(it.problem));
         for ahead in [CHECK_AHEAD, 1.0] {
             probe.displacement.overwrite().iter_mut().zip(first.iter()).for_each(|(p, u)| *p = u * ahead);
             report.factorizations += 1;

@@ -68,7 +68,7 @@ struct OldTangent {
 /// State of the method `auto`.
 #[derive(Debug, Default)]
 pub struct Auto {
-    expansion: Expansion,
+    expansion: Option<Expansion>,
     tangent: Option<OldTangent>,
     /// Largest rotation of the state for which linear theory was last rejected, rad.
     refused: Option<f64>,
@@ -110,9 +110,10 @@ impl Auto {
         if !tries {
             return Ok(false);
         }
-        let error = self.expansion.solve(it, &mut self.report)?;
+        let expansion = self.expansion.get_or_insert_with(|| Expansion::new(it.problem));
+        let error = expansion.solve(it, &mut self.report)?;
         let from_rest = self.linear || largest(&it.state.displacement) == 0.0;
-        self.linear = error <= USABLE * criteria.error && self.expansion.is_stable(it, &mut self.report);
+        self.linear = error <= USABLE * criteria.error && expansion.is_stable(it, &mut self.report);
         if self.linear {
             self.report.decision = Decision::Linear;
             self.report.estimated_error = error;
@@ -123,7 +124,7 @@ impl Auto {
             self.refused = (turned > 0.0).then_some(turned);
         }
         if self.linear || from_rest {
-            let linear = self.expansion.linear();
+            let linear = expansion.linear();
             it.state.displacement.overwrite().copy_from_slice(linear);
             it.workspace.tangent = None;
             self.lengths.stepped(linear.iter().map(|u| u.norm_squared()).sum::<f64>().sqrt());
@@ -236,7 +237,7 @@ impl Method for Auto {
         *self = match why {
             Restart::NewUnknowns => Self { linear: old.linear, ..Self::default() },
             Restart::NewStiffness => {
-                Self { linear: old.linear, expansion: old.expansion.without_factor(), ..Self::default() }
+                Self { linear: old.linear, expansion: old.expansion.map(Expansion::without_factor), ..Self::default() }
             }
             Restart::AtRest => Self { expansion: old.expansion, ..Self::default() },
             Restart::NewLoads => Self {
