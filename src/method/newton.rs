@@ -19,7 +19,7 @@
 use nalgebra::Vector2;
 
 use super::iteration::ROUNDING;
-use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
+use super::path::{Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
@@ -78,6 +78,8 @@ struct LoadSteps {
     /// The path, and `true` if it goes on where the load steps fail.
     path: Box<PathFollower>,
     goes_on: bool,
+    /// Critical points of a path that has ended at a limit point, once the state beyond is known.
+    events: Option<PathEvents>,
 }
 
 /// Factor by which load steps grow after a success.
@@ -141,10 +143,15 @@ impl Newton {
             return Verdict::Changed;
         }
         let ContinuationPoint { state: end, factor, .. } = &steps.path.last;
-        self.load_factor = Some(*factor);
-        if !steps.goes_on {
+        // A load step may end a little above a limit point, at its tolerance.
+        let is_beyond = steps.path.limit.is_none() && steps.reached >= *factor;
+        let reached = if is_beyond { steps.reached } else { *factor };
+        if !is_beyond {
             state.copy_from(end);
-            return Verdict::Stop(Reason::NoEquilibrium(*factor));
+        }
+        self.load_factor = Some(reached);
+        if !steps.goes_on {
+            return Verdict::Stop(Reason::NoEquilibrium(reached));
         }
         self.load_steps_failed = true;
         self.phase = NewtonPhase::Path(Some(steps.path.clone()));
@@ -205,25 +212,24 @@ impl Newton {
         };
         state.copy_from(&shown.state);
         self.load_factor = Some(shown.factor);
-        // Nothing but the path leads to its end where supports move, or beyond a limit point.
-        let may_leave = follower.limit.is_none() && !problem.supports().move_the_body() && !self.load_steps_failed;
-        let is_long = follower.linearizations() > MAX_PATH_SOLVES;
+        // Nothing but the path leads to its end where supports move.
+        let is_too_long = !problem.supports().move_the_body() && follower.linearizations() > MAX_PATH_SOLVES;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
-            PathProgress::Continue if !(may_leave && is_long) => {}
+            PathProgress::Continue if !is_too_long || self.load_steps_failed => {}
             PathProgress::Reached => {
                 self.phase = NewtonPhase::Finish(follower.take_events());
                 (self.load_factor, self.steps) = (None, 0);
             }
-            // The path is long, or rounding errors keep the follower from any step.
-            PathProgress::Continue | PathProgress::Ended(_) if may_leave => {
+            // The path is too long, rounding errors keep the follower from any step, or the descent is too slow.
+            PathProgress::Continue | PathProgress::Ended(_) => {
                 state.reset();
-                let (base, goes_on) = (state.clone(), matches!(progress, PathProgress::Continue));
-                let steps = LoadSteps { base, reached: 0.0, step: SHRINK, path: follower.clone(), goes_on };
+                let (base, path) = (state.clone(), follower.clone());
+                let goes_on = matches!(progress, PathProgress::Continue) && path.limit.is_none();
+                let steps = LoadSteps { base, reached: 0.0, step: SHRINK, path, goes_on, events: None };
                 self.phase = NewtonPhase::LoadSteps(Box::new(steps));
                 self.begin_load_step();
             }
-            _ => self.end = Some(Reason::NoEquilibrium(shown.factor)),
         }
     }
 }
@@ -289,7 +295,8 @@ impl Method for Newton {
         match &self.phase {
             NewtonPhase::Direct if self.from_rest => Some(PathEvents::default()),
             NewtonPhase::Finish(events) => Some(events.clone()),
-            NewtonPhase::Direct | NewtonPhase::Path(_) | NewtonPhase::LoadSteps(_) => None,
+            NewtonPhase::LoadSteps(steps) => steps.events.clone(),
+            NewtonPhase::Direct | NewtonPhase::Path(_) => None,
         }
     }
 
@@ -347,6 +354,10 @@ impl Method for Newton {
             if !grows && (is_known || it.factorize().is_ok()) {
                 let NewtonPhase::LoadSteps(steps) = &mut self.phase else { return Verdict::Converged(floor) };
                 if !is_partial {
+                    steps.events = steps.path.limit.clone().map(|limit| {
+                        let jump = Some(Jump::from(&limit, Some(it.state), false, it.problem));
+                        PathEvents { jump, ..steps.path.take_events() }
+                    });
                     return Verdict::Converged(floor);
                 }
                 steps.base.copy_from(it.state);
