@@ -436,10 +436,9 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let (simulation, scene) = (input.simulation, input.scene);
     let has_stopped = matches!(simulation.status(), Status::Stopped(_));
     if has_stopped && scene.dynamics.integrator.entry().is_explicit() {
-        let mut scene = Box::new(scene.clone());
-        scene.dynamics.integrator = IntegratorKind::TrBdf2;
+        let action = Action::edit("Integrator", scene, |scene| scene.dynamics.integrator = IntegratorKind::TrBdf2);
         let offer = fill!("Use %{integrator}", integrator = IntegratorKind::TrBdf2.id());
-        return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action: Action::Edit("Integrator", scene) });
+        return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action });
     }
     let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
     if is_free && input.quality.is_inside_out(simulation) {
@@ -450,9 +449,8 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         return None;
     }
     let with_newton = |text: String| {
-        let mut scene = Box::new(scene.clone());
-        scene.solver.method = MethodKind::Newton;
-        Remedy { text, offer: tr("Use newton").to_owned(), action: Action::Edit("Method", scene) }
+        let action = Action::edit("Method", scene, |scene| scene.solver.method = MethodKind::Newton);
+        Remedy { text, offer: tr("Use newton").to_owned(), action }
     };
     if !simulation.status().is_success() {
         let text = rho(input).filter(|&rho| rho > 1.0).map_or_else(
@@ -471,20 +469,18 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let from_rest = errors.from_rest.filter(|&error| is_large(error) && own.is_none_or(|own| error > own));
     let off = percent(from_rest.or(own)?);
     if from_rest.is_some() || errors.source == Some(ErrorSource::MeshOrIteration) {
-        let mut scene = Box::new(scene.clone());
-        scene.solver.accept_after = 0;
         let text = match from_rest {
             Some(_) => fill!("%{error} error from rest: the iteration is stopped early.", error = off),
             None => fill!("%{error} error: the iteration is stopped early.", error = off),
         };
-        let (offer, label) = match runs_away(input) {
-            true => {
-                scene.solver.method = MethodKind::Newton;
-                (tr("Use newton"), "Method")
-            }
-            false => (tr("Iterate to the tolerance"), "Accept after"),
+        let (offer, label, method) = match runs_away(input) {
+            true => (tr("Use newton"), "Method", MethodKind::Newton),
+            false => (tr("Iterate to the tolerance"), "Accept after", scene.solver.method),
         };
-        return Some(Remedy { text, offer: offer.to_owned(), action: Action::Edit(label, scene) });
+        let action = Action::edit(label, scene, |scene| {
+            (scene.solver.accept_after, scene.solver.method) = (0, method);
+        });
+        return Some(Remedy { text, offer: offer.to_owned(), action });
     }
     if errors.source == Some(ErrorSource::Theory) {
         return Some(with_newton(fill!("%{error} error of linear theory.", error = off)));
