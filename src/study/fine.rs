@@ -66,7 +66,7 @@ const NARROWEST: f64 = 1e-4;
 /// Iteration limit of Newton's method per mesh.
 const MAX_ITERATIONS: u32 = 1000;
 /// Number of solves on a mesh for which there must be work left.
-const FEW: f64 = 4.0;
+const MIN_SOLVES_LEFT: f64 = 4.0;
 /// Part of the work that a solve towards a fold may add.
 const FOLD_SHARE: f64 = 1.5;
 /// Distance of the folds on still finer meshes, relative to that of the first: a fold has no limit, and grows with them.
@@ -203,7 +203,7 @@ fn on_fine_meshes(
         }
         let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
         let next = 4 * unknowns;
-        let next_fits = next <= effort.most_unknowns() && work + FEW * next as f64 <= effort.most_work();
+        let next_fits = next <= effort.most_unknowns() && work + MIN_SOLVES_LEFT * next as f64 <= effort.most_work();
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {
             finest = Some(simulation);

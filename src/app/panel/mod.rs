@@ -168,7 +168,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     });
 }
 
-/// What the panel shows in a frame, its state, and the actions that it requests.
+/// Input of the panel in a frame, its state, and the actions that it requests.
 struct Panel<'a> {
     input: &'a Readout<'a>,
     scene: &'a Scene,

@@ -7,7 +7,7 @@ use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::solve::{
-    BackgroundSolve, Base, MAX_PANE_UNKNOWNS, MAX_UNKNOWNS, Model, Phase, SolveOutcome, SolveRequest, SolveUpdate,
+    BackgroundSolve, MAX_PANE_UNKNOWNS, MAX_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
 };
 use crate::scene::{Analysis, Scene};
 use crate::simulation::Status;
@@ -255,8 +255,8 @@ impl Session {
         }
         self.keep_before();
         let base = match returned {
-            _ if is_new => Some(Base::None),
-            Some(model) => Some(Base::Model(model)),
+            _ if is_new => Some(ModelBase::None),
+            Some(model) => Some(ModelBase::Model(model)),
             None => self.take_model(),
         };
         let Some(base) = base else { return };
@@ -280,9 +280,9 @@ impl Session {
     }
 
     /// Takes the displayed model for a solve; a copy stays on display.
-    fn take_model(&mut self) -> Option<Base> {
+    fn take_model(&mut self) -> Option<ModelBase> {
         let copy = self.model.snapshot()?;
-        Some(Base::Model(Box::new(std::mem::replace(&mut self.model, copy))))
+        Some(ModelBase::Model(Box::new(std::mem::replace(&mut self.model, copy))))
     }
 
     /// Cancels the background solve, and restores the session before the edit.

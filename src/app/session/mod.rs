@@ -350,8 +350,8 @@ impl Session {
     /// changes when its first snapshot arrives.
     ///
     /// # Errors
-    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background are reported later as a
-    /// [`Notice`].
+    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background
+    /// are reported later as a [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
         let refused = |error: SimulationError| Sentence::from(&error);
         let before = self.version();

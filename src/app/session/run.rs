@@ -7,7 +7,7 @@ use web_time::Instant;
 use crate::app::session::has_mesh_of;
 use crate::app::session::live::first_probe;
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{BackgroundSolve, Base, Equations, MAX_PANE_UNKNOWNS, Model, Phase, SolveRequest};
+use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveRequest};
 use crate::scene::{Analysis, Scene};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{ProbeResult, Simulation, Status, probe_results};
@@ -23,7 +23,7 @@ pub(crate) struct Run {
     given: Option<Scene>,
     /// `true` if `given` is too large to be solved between two frames.
     is_large: bool,
-    place: Place,
+    place: RunPlace,
     /// `true` if the solve started from rest, so that its cost does not depend on earlier states.
     from_rest: bool,
     /// `true` while a solve from rest only measures the cost; the equilibrium found before stays on display.
@@ -49,7 +49,7 @@ pub struct PaneEnd {
 
 /// Place where a model is solved.
 #[derive(Debug, Default)]
-enum Place {
+enum RunPlace {
     /// No model yet.
     #[default]
     None,
@@ -59,9 +59,9 @@ enum Place {
     Refused(Sentence),
 }
 
-impl Place {
+impl RunPlace {
     /// Sets up a model on the current thread.
-    fn here(base: Base, scene: &Scene) -> Self {
+    fn here(base: ModelBase, scene: &Scene) -> Self {
         base.set_up(scene).map_or_else(|error| Self::Refused((&error).into()), Self::Here)
     }
 }
@@ -110,7 +110,7 @@ impl Run {
 
     /// Returns the model; `None` while it is set up or solved in the background.
     pub(crate) fn model(&self) -> Option<&Model> {
-        if let Place::Here(model) = &self.place { Some(model) } else { None }
+        if let RunPlace::Here(model) = &self.place { Some(model) } else { None }
     }
 
     /// Returns the model whose state is to be displayed; `None` if the last displayed one stays.
@@ -121,18 +121,18 @@ impl Run {
     /// Returns the number of iterations that have been made.
     pub(crate) fn iterations(&self) -> u32 {
         match &self.place {
-            Place::Here(model) => model.simulation.iterations(),
-            Place::Away(solve) => match solve.phase() {
+            RunPlace::Here(model) => model.simulation.iterations(),
+            RunPlace::Away(solve) => match solve.phase() {
                 Phase::Iterating(iterations) => iterations,
                 _ => 0,
             },
-            Place::None | Place::Refused(_) => 0,
+            RunPlace::None | RunPlace::Refused(_) => 0,
         }
     }
 
     /// Returns the error of the scene, if there is no model.
     pub(crate) fn refused(&self) -> Option<&Sentence> {
-        if let Place::Refused(reason) = &self.place { Some(reason) } else { None }
+        if let RunPlace::Refused(reason) = &self.place { Some(reason) } else { None }
     }
 
     /// Returns `true` if no work is left of a solve.
@@ -142,7 +142,7 @@ impl Run {
 
     /// Returns `true` if the model is set up or solved in the background.
     pub(crate) fn is_away(&self) -> bool {
-        matches!(self.place, Place::Away(_))
+        matches!(self.place, RunPlace::Away(_))
     }
 
     /// Returns `true` if a body moves.
@@ -186,7 +186,7 @@ impl Run {
     pub(crate) fn restart(&mut self, most_iterations: Option<u32>) {
         self.most_iterations = most_iterations;
         if self.is_away() {
-            (self.place, self.given) = (Place::None, None);
+            (self.place, self.given) = (RunPlace::None, None);
         }
         self.reset();
     }
@@ -194,19 +194,19 @@ impl Run {
     /// Restarts from rest, or from the start of the motion.
     pub(crate) fn reset(&mut self) {
         match &mut self.place {
-            Place::Here(model) => {
+            RunPlace::Here(model) => {
                 model.simulation.reset();
                 (self.from_rest, self.measures, self.end) = (true, false, None);
             }
-            Place::Away(_) => {}
-            Place::None | Place::Refused(_) => self.given = None,
+            RunPlace::Away(_) => {}
+            RunPlace::None | RunPlace::Refused(_) => self.given = None,
         }
     }
 
     /// Makes one iteration or time step.
     pub(crate) fn step(&mut self) {
         let most = self.most_iterations;
-        if let Place::Here(model) = &mut self.place
+        if let RunPlace::Here(model) = &mut self.place
             && !has_ended(&model.simulation, most)
         {
             model.simulation.step();
@@ -237,12 +237,12 @@ impl Run {
 
     /// Takes back a model that was solved in the background; returns `false` while it is still being solved.
     fn take_solved(&mut self) -> bool {
-        let Place::Away(solve) = &mut self.place else { return true };
+        let RunPlace::Away(solve) = &mut self.place else { return true };
         if self.given != self.wanted {
             solve.cancel();
         }
         let Some(ended) = solve.poll_end() else { return false };
-        self.place = ended.map_or_else(Place::Refused, Place::Here);
+        self.place = ended.map_or_else(RunPlace::Refused, RunPlace::Here);
         if self.given == self.wanted {
             self.conclude();
         }
@@ -255,32 +255,34 @@ impl Run {
         self.given = Some(scene.clone());
         self.measures = false;
         let base = match std::mem::take(&mut self.place) {
-            Place::Here(model) if continues(model.simulation.scene(), &scene) => Base::Model(model),
-            _ => Base::among(known, &scene),
+            RunPlace::Here(model) if continues(model.simulation.scene(), &scene) => ModelBase::Model(model),
+            _ => ModelBase::among(known, &scene),
         };
-        self.from_rest = !matches!(base, Base::Model(_));
+        self.from_rest = !matches!(base, ModelBase::Model(_));
         self.is_large = scene.unknowns() > MAX_PANE_UNKNOWNS;
         // The time steps of a large motion are made between two frames.
         if self.is_large && (self.from_rest || scene.analysis == Analysis::Static) {
             self.send(scene, base, false);
         } else {
-            self.place = Place::here(base, &scene);
+            self.place = RunPlace::here(base, &scene);
         }
         self.from_rest && self.refused().is_none()
     }
 
     /// Starts a solve in the background.
-    fn send(&mut self, scene: Scene, base: Base, from_rest: bool) {
+    fn send(&mut self, scene: Scene, base: ModelBase, from_rest: bool) {
         // A search that continues has made a part of its iterations.
         let made = match &base {
-            Base::Model(model) if !from_rest && *model.simulation.scene() == scene => model.simulation.iterations(),
+            ModelBase::Model(model) if !from_rest && *model.simulation.scene() == scene => {
+                model.simulation.iterations()
+            }
             _ => 0,
         };
         let iterations = self.most_iterations.map(|most| most.saturating_sub(made));
         let request = SolveRequest { scene, base, from_rest, iterations, is_displayed: false };
         self.place = match BackgroundSolve::start(request) {
-            Ok(solve) => Place::Away(Box::new(solve)),
-            Err(error) => Place::Refused(sentence!(
+            Ok(solve) => RunPlace::Away(Box::new(solve)),
+            Err(error) => RunPlace::Refused(sentence!(
                 "the system starts no thread for the solve: %{error}",
                 error = error.to_string()
             )),
@@ -289,7 +291,7 @@ impl Run {
 
     fn iterate(&mut self, frame: FrameConditions) {
         let most = self.most_iterations;
-        let Place::Here(model) = &mut self.place else { return };
+        let RunPlace::Here(model) = &mut self.place else { return };
         let simulation = &mut model.simulation;
         if self.end.is_some() || !frame.runs {
             return;
@@ -314,14 +316,14 @@ impl Run {
         if !self.is_large {
             return simulation.reset();
         }
-        if let (Place::Here(model), Some(scene)) = (std::mem::take(&mut self.place), self.given.clone()) {
-            self.send(scene, Base::Model(model), ended);
+        if let (RunPlace::Here(model), Some(scene)) = (std::mem::take(&mut self.place), self.given.clone()) {
+            self.send(scene, ModelBase::Model(model), ended);
         }
     }
 
     /// Records the result of a solve from rest.
     fn conclude(&mut self) {
-        let Place::Here(model) = &self.place else { return };
+        let RunPlace::Here(model) = &self.place else { return };
         let simulation = &model.simulation;
         if !self.from_rest || !has_ended(simulation, self.most_iterations) {
             return;
@@ -338,7 +340,7 @@ impl Run {
 
     /// Solves a scene to the end, and waits for it.
     pub(crate) fn solve_to_end(&mut self, wanted: Scene, known: &[Equations]) {
-        self.place = Place::here(Base::among(known, &wanted), &wanted);
+        self.place = RunPlace::here(ModelBase::among(known, &wanted), &wanted);
         (self.wanted, self.given) = (Some(wanted.clone()), Some(wanted));
         (self.from_rest, self.end) = (true, None);
         while self.model().is_some_and(|model| !has_ended(&model.simulation, self.most_iterations)) {

@@ -74,14 +74,14 @@ impl Model {
 
 /// Part of a model that exists before a solve.
 #[derive(Debug)]
-pub(crate) enum Base {
+pub(crate) enum ModelBase {
     Model(Box<Model>),
     Equations(Equations),
     /// Nothing: a mesh is made first.
     None,
 }
 
-impl Base {
+impl ModelBase {
     /// Returns the equations for a scene's mesh, if they are among `known`.
     pub(crate) fn among(known: &[Equations], scene: &Scene) -> Self {
         let own = known.iter().find(|own| own.beam == scene.beam && own.mesh == scene.mesh);
@@ -115,7 +115,7 @@ impl Base {
 #[derive(Debug)]
 pub(crate) struct SolveRequest {
     pub scene: Scene,
-    pub base: Base,
+    pub base: ModelBase,
     /// `true` if the solve starts from rest, not from the state of its base.
     pub from_rest: bool,
     /// Largest number of iterations; `None` for no limit.
@@ -174,7 +174,7 @@ impl BackgroundSolve {
     /// # Errors
     /// The system cannot start another thread.
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
-        let phase = if matches!(request.base, Base::None) { Phase::Meshing } else { Phase::Iterating(0) };
+        let phase = if matches!(request.base, ModelBase::None) { Phase::Meshing } else { Phase::Iterating(0) };
         let scene = request.scene.clone();
         let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
         Ok(Self { task: Task::start("solve", work)?, scene, phase })
@@ -283,7 +283,7 @@ pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
 /// [`SimulationError`].
 fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
     let SolveRequest { scene, base, from_rest, iterations, is_displayed } = request;
-    let is_new = matches!(base, Base::None);
+    let is_new = matches!(base, ModelBase::None);
     let mut model = base.set_up(&scene)?;
     if is_new {
         // Smooth fields need the nodal recovery; computing it here avoids a delay between two frames.
@@ -336,7 +336,7 @@ mod tests {
         let scene = Scene::beam(20.0, 1.0).with_cells(600, 9).clamp("left").force("right", [0.0, -100.0]);
         let request = || SolveRequest {
             scene: scene.clone(),
-            base: Base::None,
+            base: ModelBase::None,
             from_rest: true,
             iterations: None,
             is_displayed: true,

@@ -166,7 +166,7 @@ impl LimitPoint {
 
 /// Loads in a row that have a property.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Run {
+struct LoadRange {
     /// First and last load.
     range: [f64; 2],
     /// Load before the first one; `None` if there is none.
@@ -225,15 +225,15 @@ impl Strip {
     }
 
     /// Returns the rows of loads that have a property, from small to large.
-    fn runs(&self, property: Property) -> Vec<Run> {
-        let mut runs: Vec<Run> = Vec::new();
+    fn runs(&self, property: Property) -> Vec<LoadRange> {
+        let mut runs: Vec<LoadRange> = Vec::new();
         let mut last: Option<(f64, Ternary)> = None;
         for (factor, answer) in self.answers(property) {
             let follows = last.is_some_and(|(_, last)| last == Ternary::Yes);
             match (answer, runs.last_mut().filter(|_| follows)) {
                 (Ternary::Yes, Some(run)) => run.range[1] = factor,
                 (Ternary::Yes, None) => {
-                    runs.push(Run { range: [factor; 2], before: last.map(|(before, _)| before), ends: false });
+                    runs.push(LoadRange { range: [factor; 2], before: last.map(|(before, _)| before), ends: false });
                 }
                 (Ternary::No, Some(run)) => run.ends = factor <= FINE * run.range[1],
                 _ => {}
@@ -245,11 +245,11 @@ impl Strip {
 
     /// Returns the first row of loads that have a property, and `true` if other loads beyond have it too; `None` if there is
     /// none, or only an accident: errors are small where results that grow too fast cross those of the reference.
-    fn first_run(&self, property: Property) -> Option<(Run, bool)> {
+    fn first_run(&self, property: Property) -> Option<(LoadRange, bool)> {
         /// Ratio of the ends of a range that is more than a crossing.
         const WIDE: f64 = 1.5;
         let mut runs = self.runs(property);
-        let is_wide = |run: &Run| run.before.is_none() || run.range[1] > WIDE * run.range[0];
+        let is_wide = |run: &LoadRange| run.before.is_none() || run.range[1] > WIDE * run.range[0];
         runs.retain(|run| !matches!(property, Property::Within(_)) || is_wide(run));
         Some((*runs.first()?, runs.len() > 1))
     }
@@ -348,7 +348,7 @@ impl Strip {
         let load = |factor: f64| load_text(axis, factor);
         let first = self.points.first()?;
         let found = [GOOD, USABLE].map(|percent| Some((percent, self.first_run(Property::Within(percent))?.0)));
-        let is_far = |(_, run): &(f64, Run)| run.before.is_none() && run.range[1] > NEAR * range[0];
+        let is_far = |(_, run): &(f64, LoadRange)| run.before.is_none() && run.range[1] > NEAR * range[0];
         let best = found.iter().copied().flatten().find(is_far).or(found[1]);
         let own = || first.reference_percent;
         Some(match (best, self.runs(Property::Converges).first()) {
@@ -368,7 +368,7 @@ impl Strip {
             {
                 sentence!("reference \u{b1} %{own}", own = percent(own))
             }
-            (None, Some(Run { range: [_, to], before: None, ends: true })) => match self.integrator {
+            (None, Some(LoadRange { range: [_, to], before: None, ends: true })) => match self.integrator {
                 Some(_) => sentence!("finishes to %{load}", load = load(*to)),
                 None => sentence!("converges to %{load}", load = load(*to)),
             },

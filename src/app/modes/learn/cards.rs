@@ -16,12 +16,12 @@ pub(crate) struct Card {
     /// Task for the reader.
     pub task: &'static str,
     pub setup: Setup,
-    pub content: CardContent,
+    pub content: CardDisplay,
 }
 
-/// What a card shows next to its text and over the body.
+/// Display of a card next to its text and over the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CardContent {
+pub(crate) enum CardDisplay {
     /// Growth of the area.
     Area,
     /// Frame of every triangle.
@@ -106,7 +106,7 @@ pub(crate) const CARDS: &[Card] = &[
             reach: Some(area::LARGEST_FORCE),
             ..SETUP
         },
-        content: CardContent::Area,
+        content: CardDisplay::Area,
     },
     Card {
         title: "Every triangle rotates",
@@ -118,7 +118,7 @@ pub(crate) const CARDS: &[Card] = &[
                   2\u{d7}2.",
         task: "Click a triangle to see its numbers.",
         setup: Setup { field: Field::RotationAngle, ..SETUP },
-        content: CardContent::Frames,
+        content: CardDisplay::Frames,
     },
     Card {
         title: "Rotate back",
@@ -129,7 +129,7 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "\u{3b5}: strain, a symmetric 2\u{d7}2 matrix (Biot strain).",
         task: "Move the slider between the bent beam and the triangles rotated back.",
         setup: Setup { field: Field::LargestStrain, rest: false, ..SETUP },
-        content: CardContent::Exploded,
+        content: CardDisplay::Exploded,
     },
     Card {
         title: "Rotate the stiffness instead",
@@ -142,7 +142,7 @@ pub(crate) const CARDS: &[Card] = &[
                   diagonal. \u{3a3}: sum over all triangles.",
         task: "Click triangles, and point at entries for their values.",
         setup: Setup { field: Field::RotationAngle, ..SETUP },
-        content: CardContent::Matrices,
+        content: CardDisplay::Matrices,
     },
     Card {
         title: "The method in ten lines",
@@ -155,7 +155,7 @@ pub(crate) const CARDS: &[Card] = &[
                   forces that is out of balance; \u{3a3} | f | adds the absolute values of each component at every node.",
         task: "Press \u{201c}Next line\u{201d} (N) and follow the numbers.",
         setup: Setup { field: Field::RotationAngle, waits: true, ..SETUP },
-        content: CardContent::Code,
+        content: CardDisplay::Code,
     },
     Card {
         title: "Iterate",
@@ -167,7 +167,7 @@ pub(crate) const CARDS: &[Card] = &[
                   iteration converges from a start that is near enough.",
         task: "Press \u{201c}Step once\u{201d} (N) again and again: after a few steps the points fall along the line.",
         setup: Setup { waits: true, ..SETUP },
-        content: CardContent::Steps,
+        content: CardDisplay::Steps,
     },
     Card {
         title: "Beyond \u{3c1} = 1 it does not converge",
@@ -179,7 +179,7 @@ pub(crate) const CARDS: &[Card] = &[
                   positions (m). Far from the equilibrium the residual leaves the line and levels off.",
         task: "Switch to newton, and back.",
         setup: Setup { force: FAR, ..SETUP },
-        content: CardContent::Methods,
+        content: CardDisplay::Methods,
     },
     Card {
         title: "Shear locking",
@@ -190,7 +190,7 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
         task: "Try t6 and q4.",
         setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
-        content: CardContent::Elements,
+        content: CardDisplay::Elements,
     },
     Card {
         title: "The trade-off",
@@ -201,6 +201,6 @@ pub(crate) const CARDS: &[Card] = &[
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
         task: "Open Measure, and press \u{201c}Measure on this machine\u{201d}.",
         setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
-        content: CardContent::ToMeasure,
+        content: CardDisplay::ToMeasure,
     },
 ];

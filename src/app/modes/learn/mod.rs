@@ -30,7 +30,7 @@ mod matrices;
 mod residuals;
 mod triangle;
 
-use cards::CardContent;
+use cards::CardDisplay;
 pub(crate) use cards::{CARDS, Card};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
@@ -141,17 +141,17 @@ impl Learn {
 
     /// Returns `true` if the elements are drawn apart from each other.
     pub(crate) fn is_apart(&self) -> bool {
-        self.card().content == CardContent::Exploded && self.rotation_part > 0.0
+        self.card().content == CardDisplay::Exploded && self.rotation_part > 0.0
     }
 
     /// Returns the line of the pseudocode that a step goes to; `None` on other cards.
     pub(crate) fn next_line(&self, simulation: &Simulation, ended: bool) -> Option<usize> {
-        (self.card().content == CardContent::Code && code::describes(simulation)).then(|| code::after(self.line, ended))
+        (self.card().content == CardDisplay::Code && code::describes(simulation)).then(|| code::after(self.line, ended))
     }
 
     /// Returns `true` if the card shows ρ at the equilibrium.
     pub(crate) fn shows_rho(&self) -> bool {
-        matches!(self.card().content, CardContent::Steps | CardContent::Methods)
+        matches!(self.card().content, CardDisplay::Steps | CardDisplay::Methods)
     }
 
     fn errors(&self, scene: &Scene) -> Option<&[ElementError]> {
@@ -160,19 +160,19 @@ impl Learn {
 
     /// Returns `true` while a result of a scene that the card shows is being computed.
     pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
-        self.card().content == CardContent::Elements && self.errors.is_pending(scene)
+        self.card().content == CardDisplay::Elements && self.errors.is_pending(scene)
     }
 
     /// Requests the results that the card shows.
     fn request(&mut self, scene: &Scene, ctx: &Context) {
-        if self.card().content == CardContent::Elements && self.errors.request(scene) {
+        if self.card().content == CardDisplay::Elements && self.errors.request(scene) {
             ctx.request_repaint_after(POLL);
         }
     }
 
     /// Computes the results that the card shows, and waits for them.
     pub(crate) fn wait(&mut self, scene: &Scene) {
-        if self.card().content == CardContent::Elements {
+        if self.card().content == CardDisplay::Elements {
             self.errors.wait(scene);
         }
     }
@@ -203,8 +203,8 @@ impl Learn {
     /// Paints over the body.
     pub(crate) fn paint(&self, painter: &Painter, view: &CardView<'_>) {
         match self.card().content {
-            CardContent::Frames | CardContent::Matrices | CardContent::Code => frames::paint(painter, view, self),
-            CardContent::Exploded => exploded::paint(painter, view, self),
+            CardDisplay::Frames | CardDisplay::Matrices | CardDisplay::Code => frames::paint(painter, view, self),
+            CardDisplay::Exploded => exploded::paint(painter, view, self),
             _ => {}
         }
     }
@@ -212,15 +212,15 @@ impl Learn {
     /// Shows numbers and controls next to the text.
     fn show_content(&mut self, ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
         match self.card().content {
-            CardContent::Area => area::show(ui, shown, self, actions),
-            CardContent::Frames => frames::show(ui, shown, self, actions),
-            CardContent::Exploded => exploded::show(ui, shown, self, actions),
-            CardContent::Matrices => matrices::show(ui, shown, self, actions),
-            CardContent::Code => code::show(ui, shown, self, actions),
-            CardContent::Steps => residuals::steps(ui, shown, actions),
-            CardContent::Methods => residuals::methods(ui, shown, actions),
-            CardContent::Elements => locking::show(ui, shown, self, actions),
-            CardContent::ToMeasure => {
+            CardDisplay::Area => area::show(ui, shown, self, actions),
+            CardDisplay::Frames => frames::show(ui, shown, self, actions),
+            CardDisplay::Exploded => exploded::show(ui, shown, self, actions),
+            CardDisplay::Matrices => matrices::show(ui, shown, self, actions),
+            CardDisplay::Code => code::show(ui, shown, self, actions),
+            CardDisplay::Steps => residuals::steps(ui, shown, actions),
+            CardDisplay::Methods => residuals::methods(ui, shown, actions),
+            CardDisplay::Elements => locking::show(ui, shown, self, actions),
+            CardDisplay::ToMeasure => {
                 let tip = "Leave the cards, and measure your own scene (B)";
                 if ui.button(tr("Open Measure")).on_hover_text(tr(tip)).clicked() {
                     actions.push(Action::Toggle(Toggle::Tab(MeasureTab::HowFast)));

@@ -168,7 +168,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let [x, y] = [sentence!("u_x of %{probe}", probe), sentence!("u_y of %{probe}", probe)].map(|name| said(&name));
     Figure {
         title: curve_title(scene),
-        // As indices of load, u_x and u_y.
+        // The quantities are load, u_x and u_y.
         axes: match shown {
             CurvePlot::Path => [1, 2],
             CurvePlot::X => [0, 1],
