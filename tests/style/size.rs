@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
     ("the rest of src", &["src"], 5_152),
-    ("tests", &["tests"], 21_441),
+    ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 61_269;
