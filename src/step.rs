@@ -218,7 +218,7 @@ impl Problem {
 }
 
 /// Returns the function of a quadrature point with H = F − I, in four elements at once. From its result the loop over
-/// the elements (`Isoparametric::sweep`) adds Σ R T ∇N, which is Σ R Ke (Rᵀ x − X), and Σ R Ke Rᵀ (`ElementMatrix::add`).
+/// the elements (`sweep` of their type) adds Σ R T ∇N, which is Σ R Ke (Rᵀ x − X), and Σ R Ke Rᵀ (`ElementMatrix::add`).
 #[inline(always)]
 pub(crate) fn warped_stress(
     lame: Lame,
