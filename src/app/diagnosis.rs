@@ -205,7 +205,7 @@ pub(crate) fn status_text(input: &Readout<'_>) -> (String, bool) {
         Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
         Status::Converged => (tr("Converged").to_owned(), false),
         Status::Accepted => (tr("Accepted").to_owned(), false),
-        Status::NotConverged(reason) => (fill!("Not converged: %{reason}.", reason = said(reason)), true),
+        Status::NotConverged(reason) => (fill!("Does not converge: %{reason}.", reason = said(reason)), true),
         Status::Diverged(reason) => (fill!("Diverged: %{reason}.", reason = said(reason)), true),
         Status::Stopped(reason) => {
             (fill!("Stopped: %{reason}. Showing the last finite state.", reason = said(reason)), true)
@@ -455,7 +455,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     if !simulation.status().is_success() {
         let text = rho(input).filter(|&rho| rho > 1.0).map_or_else(
             || fill!("The %{method} iteration does not converge.", method = tr(scene.solver.method.id())),
-            |rho| fill!("Cannot converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
+            |rho| fill!("Does not converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
         );
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }

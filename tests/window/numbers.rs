@@ -232,7 +232,7 @@ fn rows_of_the_load_curve_have_the_numbers_of_solve() {
             let json = solve(&scene.clone().with_method(method));
             let probe = &json["probes"][0];
             let is_solved = json["status"] == "converged";
-            let value = if is_solved { pair(&probe["u"]) } else { "not converged".to_owned() };
+            let value = if is_solved { pair(&probe["u"]) } else { "does not converge".to_owned() };
             let name = format!("{} {}", scene.element().id(), method.id());
             assert!(shown.has(&format!("{name}: {value}")), "{id} {name}: {value}, {:?}", shown.0);
             if is_solved {

@@ -326,7 +326,7 @@ fn remedies_are_one_click_away() {
     let mut ui = open("cantilever");
     ui.type_into("Force", "9000");
     assert!(matches!(ui.simulation().status(), Status::Diverged(_)));
-    ui.wait_until("the reason", |ui| ui.says("Cannot converge: \u{3c1} = 4.5 > 1"));
+    ui.wait_until("the reason", |ui| ui.says("Does not converge: \u{3c1} = 4.5 > 1"));
     assert!(!ui.says("Diverged"), "one message has the remedy");
     ui.click("explain");
     ui.expect(&["Diverged: the residual has not fallen", "not reached"]);

@@ -8,6 +8,7 @@ use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::number_field::NumberField;
 use crate::format::engineering;
+use crate::scene::limits::Limit;
 use crate::scene::{Load, LoadId, Place, Scene, limits};
 use crate::sentence::sentence;
 
@@ -61,11 +62,14 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(panel.state.force_direction());
     let [usual, largest] = force_range(input.opening, &scene.material, input.simulation.system());
-    let field = NumberField::new("Force", limits::FORCE, 0.0..=largest)
+    // A negative force can be typed for one in the opposite direction.
+    let limit = Limit { min: -limits::FORCE.max, ..limits::FORCE };
+    let field = NumberField::new("Force", limit, 0.0..=largest)
         .around(usual)
-        .tip("Magnitude of the force, N. Larger or smaller values can be typed, such as 12 kN.");
+        .tip("Magnitude of the force, N. Other values can be typed, such as 12 kN; a negative one reverses the force.");
     if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
-        set_force(panel, "Force", chosen, (new, direction));
+        let reversed = if direction > 0.0 { direction - 180.0 } else { direction + 180.0 };
+        set_force(panel, "Force", chosen, (new.abs(), if new < 0.0 { reversed } else { direction }));
     }
     let original = original_direction.map(shown_degrees);
     if let Some(new) = panel.number(ui, &DIRECTION, shown_degrees(direction), original) {
@@ -75,7 +79,7 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
 
 /// 270° can be typed for −90°.
 const DIRECTION: NumberField =
-    NumberField::new("Direction", limits::Limit { min: -360.0, max: 360.0, ..limits::DIRECTION }, -180.0..=180.0)
+    NumberField::new("Direction", Limit { min: -360.0, max: 360.0, ..limits::DIRECTION }, -180.0..=180.0)
         .tip("Direction of the force: 0° right, 90° up, −90° down.");
 
 /// Sets a force by its magnitude, N, and its direction, degrees.

@@ -7,6 +7,7 @@ use crate::app::language::{fill, said, tr};
 use crate::app::panel::supports::TURNS;
 use crate::app::panel::{Action, Panel};
 use crate::app::view_options::{Drawer, Toggle};
+use crate::app::viewport::menu::with_middle_section;
 use crate::app::widgets::number_field::NumberField;
 use crate::scene::{Analysis, SectionLine, limits};
 use crate::study::section_chart;
@@ -72,6 +73,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         }
         if ui.button(tr("Remove")).clicked() {
             panel.edit("Sections", |scene| _ = scene.sections.remove(chosen));
+        }
+        if ui.button(tr("Add a section")).clicked() {
+            panel.edit("Sections", |scene| *scene = with_middle_section(scene, input.simulation.system()));
         }
     });
 }

@@ -72,7 +72,13 @@ impl Lab {
         let document = self.desk.session.document();
         let name = document.path().and_then(Path::file_name).and_then(|name| name.to_str());
         let name = name.map_or_else(|| format!("{}.toml", document.source.name.display()), str::to_owned);
-        let name = if name == "-.toml" { "scene.toml".to_owned() } else { name };
+        let own = self.scene().name.to_lowercase();
+        let words: Vec<&str> = own.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let name = match name == "-.toml" {
+            true if words.is_empty() => "scene.toml".to_owned(),
+            true => format!("{}.toml", words.join("-")),
+            false => name,
+        };
         if IS_PAGE {
             return self.save_there(ctx, Path::new(&name));
         }

@@ -292,6 +292,8 @@ impl Lab {
     pub(super) fn readout(&self) -> Readout<'_> {
         let Desk { session, viewport, view, .. } = &self.desk;
         let (facts, reference) = (session.facts(), session.reference());
+        // The solve from rest is without the pull of a grab.
+        let is_free = session.simulation().mouse_spring().is_none();
         Readout {
             reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
             live: session.live(),
@@ -324,8 +326,8 @@ impl Lab {
             playback: session.playback(),
             frequency: facts.frequency.latest().copied(),
             timings: session.timings(),
-            from_rest: session.timed_from_rest(),
-            last_from_rest: session.last_from_rest(),
+            from_rest: session.timed_from_rest().filter(|_| is_free),
+            last_from_rest: session.last_from_rest().filter(|_| is_free),
             residuals: session.residuals(),
             can_undo: session.can_undo(),
             can_redo: session.can_redo(),

@@ -367,7 +367,8 @@ fn pull(
     } else {
         painter.line_segment([from, to], stroke);
     }
-    let label = engineering(three_digits(force.norm()), "N");
+    let label =
+        format!("{}, {:.0}°", engineering(three_digits(force.norm()), "N"), force.y.atan2(force.x).to_degrees());
     labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring, 200.0);
 }
 

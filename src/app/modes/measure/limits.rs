@@ -386,7 +386,7 @@ impl<'a> StripChart<'a> {
         let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
         let text = match strip.done < 1.0 {
-            true => fill!("%{name}: %{done} of the loads are solved", name, done),
+            true => fill!("%{name}: %{done} of the loads are solved", name, done = done.clone()),
             false if strip.integrator.is_some() => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
                 name,
@@ -417,19 +417,22 @@ impl<'a> StripChart<'a> {
         if strip.done < 1.0 {
             ui.painter().rect_filled(bar(strips.left(), strips.right()), 0.0, palette.line);
         }
+        // The colours of a strip that is not complete may still change.
+        let strength = if strip.done < 1.0 { 0.35 } else { 1.0 };
         for piece in strip.pieces(self.limits.range) {
             let [from, to] = piece.range.map(|factor| self.x(factor));
             let bar = bar(from, to);
-            ui.painter().rect_filled(bar, 0.0, color(piece.rating));
+            ui.painter().rect_filled(bar, 0.0, color(piece.rating).gamma_multiply(strength));
             if piece.is_beyond_law {
                 hatch(ui, bar, Color32::from_black_alpha(200));
             }
         }
-        let end =
-            if strip.done < 1.0 { Some(done) } else { strip.end(self.axis, self.limits.range).map(|end| said(&end)) };
+        let (end, ink) = match strip.done < 1.0 {
+            true => (Some(fill!("%{done} solved", done)), palette.secondary),
+            false => (strip.end(self.axis, self.limits.range).map(|end| said(&end)), palette.text),
+        };
         if let Some(end) = end {
-            let at = pos2(strips.right() + 10.0, rect.center().y);
-            self.text(ui, at, Align2::LEFT_CENTER, &end, palette.text);
+            self.text(ui, pos2(strips.right() + 10.0, rect.center().y), Align2::LEFT_CENTER, &end, ink);
         }
         let tip = if is_used { text } else { format!("{text}\n{}", tr("Click to use it")) };
         if response.on_hover_text(tip).clicked() && !is_used {

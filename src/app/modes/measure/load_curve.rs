@@ -144,7 +144,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     for point in &curve.methods {
         let converged = point.status == Status::Converged;
         let mark = if converged { Mark::Disc } else { Mark::Cross };
-        let state = if converged { "" } else { tr("not converged") }.to_owned();
+        let state = if converged { "" } else { tr("does not converge") }.to_owned();
         let may_leave = !converged || point.method == MethodKind::Linear;
         let at = FigurePoint { state, is_present: true, ..figure::point(full, point.tip) };
         // Linear theory of the elements differs from that of beams.
@@ -157,7 +157,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
     let in_column = |u| pair(u, &column);
     let value = |series: &FigureSeries| match series.mark {
         Mark::Ring => departs.as_ref().map(|(_, loads)| loads.clone()),
-        Mark::Cross => Some(tr("not converged").to_owned()),
+        Mark::Cross => Some(tr("does not converge").to_owned()),
         Mark::Line => at_load.map(|s| in_column(s.exact)),
         Mark::Dashes => at_load.map(|s| in_column(s.linear)),
         _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| in_column(p.tip)),
