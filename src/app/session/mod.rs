@@ -756,12 +756,14 @@ impl Session {
     /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
     /// when a drag begins. Returns `true` while it is pending.
     fn follow_reference(&mut self) -> bool {
-        let is_compared = self.model.simulation.status().is_success() && self.model.simulation.mouse_spring().is_none();
-        if !is_compared || self.model.simulation.system().dofs() > MAX_CERTIFIED_HERE {
+        let simulation = &self.model.simulation;
+        let is_found = simulation.status().is_success();
+        let is_wanted = (is_found || is_lost(simulation)) && simulation.mouse_spring().is_none();
+        if !is_wanted || simulation.system().dofs() > MAX_CERTIFIED_HERE {
             return self.live.poll();
         }
         let linear = self.model.linear.as_ref().and_then(first_probe);
-        let compared = Compared { own: first_probe(&self.model.simulation), linear };
+        let compared = Compared { own: first_probe(simulation).filter(|_| is_found), linear };
         self.live.request(&self.scene, compared)
     }
 

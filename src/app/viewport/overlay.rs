@@ -8,7 +8,7 @@ use crate::app::widgets::text::Labels;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
 use nalgebra::Vector2;
 
-use crate::app::diagnosis::{Errors, error_text};
+use crate::app::diagnosis::{Errors, error_text, load_text};
 use crate::app::language::{area_text, fill, tr};
 use crate::app::session::history::MotionSample;
 use crate::app::session::playback::Playback;
@@ -624,7 +624,10 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
-        lines.push((palette.exact, Some(LegendMark::Dashes), tr("reference").to_owned()));
+        // The drawn body has another load.
+        let load = overlay.wanted.and_then(load_text);
+        let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
+        lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }
     if overlay.options.rest_outline {
         lines.push((palette.rest, Some(LegendMark::Outline), tr("rest").to_owned()));

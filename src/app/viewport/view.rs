@@ -76,12 +76,13 @@ impl<'a> Content<'a> {
         self.session.drawn()
     }
 
-    /// Returns the reference solution if it is known for the drawn state; one that follows a load may be of the load before.
+    /// Returns the reference solution of the scene if it is known; one that follows a load may be of the load before.
     fn reference(&self) -> Option<&'a Reference> {
         let session = self.session;
-        let is_at_rest = !session.is_motion() && !session.iterates() && session.simulation().mouse_spring().is_none();
+        let is_ended = !session.iterates() || session.fallback().is_some();
+        let is_at_rest = !session.is_motion() && is_ended && session.simulation().mouse_spring().is_none();
         let reference = session.reference().and_then(Result::ok).or(session.live().map(|live| &live.reference));
-        reference.filter(|_| is_at_rest && session.fallback().is_none())
+        reference.filter(|_| is_at_rest)
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -263,7 +264,8 @@ impl BodyView {
             self.swept = None;
         }
         self.magnification = self.magnification_of(simulation, content);
-        let shown = (content.options, content.reference().filter(|_| content.session.live().is_none()));
+        let is_of_drawn = content.session.live().is_none() && content.session.fallback().is_none();
+        let shown = (content.options, content.reference().filter(|_| is_of_drawn));
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
         self.body.color(visuals, content.options.field);
     }
@@ -294,7 +296,7 @@ impl BodyView {
         self.body.displace(place);
     }
 
-    /// Returns the drawn outline of the reference solution, m; empty while the drawn body has another load.
+    /// Returns the drawn outline of the reference solution under the load that was asked for, m.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
         let reference = content.reference().filter(|_| content.options.exact);
         reference.map(|reference| overlay::magnified_outline(reference, self.magnification)).unwrap_or_default()
