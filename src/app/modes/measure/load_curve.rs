@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::{fill, said, tr};
 use crate::app::modes::figure;
+use crate::app::modes::measure::first_probe;
 use crate::app::session::Session;
 use crate::app::session::facts::Curve;
 use crate::app::view_options::CurvePlot;
@@ -46,6 +47,16 @@ pub(crate) fn show(
     let mut drawn = curve.figure(shown);
     if let Some(body) = body.filter(|_| looked_for) {
         move_scene(&mut drawn, body);
+    }
+    // The curve of a cantilever has linear theory of beams.
+    if let (Curve::Path(of), Some(linear)) = (curve, session.linear().and_then(first_probe))
+        && of.0.driven.is_none()
+        && looked_for
+    {
+        let points = vec![figure::point(0.0, Vector2::zeros()), figure::point(LoadAxis::of(scene).full, linear)];
+        let ink = Ink::Method(MethodKind::Linear);
+        let series = FigureSeries::new(tr(MethodKind::Linear.id()).to_owned(), ink, Mark::Dashes, points);
+        drawn.series.push(FigureSeries { may_leave: true, ..series });
     }
     let show_table = |ui: &mut Ui| {
         ui.horizontal_wrapped(|ui| {

@@ -64,6 +64,6 @@ impl Measure {
 }
 
 /// Returns the displacement of the first probe, m, at an equilibrium.
-fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
+pub(super) fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
     live::first_probe(shown).filter(|_| shown.status().is_success())
 }
