@@ -8,7 +8,8 @@ use super::CliError;
 #[cfg(feature = "app")]
 use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
 use super::shared_args::{OutputArgs, RequiredSceneArgs, SceneArgs, within};
-use crate::scene::limits::{BUDGET_MS, COORDINATE, MAX_ERROR_PERCENT, ROTATION};
+use crate::scene::keys::range;
+use crate::scene::limits::{BUDGET_MS, COORDINATE, ROTATION};
 use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
@@ -237,7 +238,7 @@ pub(super) struct TuneArgs {
     #[command(flatten)]
     pub scene: RequiredSceneArgs,
     /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
-    #[arg(long, value_name = "PERCENT", value_parser = within(MAX_ERROR_PERCENT))]
+    #[arg(long, value_name = "PERCENT", value_parser = within(range("solver.max_error_percent")))]
     pub error: Option<f64>,
     /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or a number of milliseconds.
     #[arg(long, value_name = "TIME", value_parser = within(BUDGET_MS))]
@@ -253,7 +254,7 @@ mod tests {
 
     #[test]
     fn errors_and_times_are_read_with_their_units() {
-        let [parse_percent, parse_milliseconds] = [MAX_ERROR_PERCENT, BUDGET_MS].map(within);
+        let [parse_percent, parse_milliseconds] = [range("solver.max_error_percent"), BUDGET_MS].map(within);
         for (text, percent) in [("1%", 1.0), ("0.5 %", 0.5), ("2", 2.0)] {
             assert_eq!(parse_percent(text).ok(), Some(percent), "{text}");
         }

@@ -9,7 +9,8 @@ use super::shared_args::{RequiredSceneArgs, SetArgs, within};
 use crate::app;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
-use crate::scene::limits::{DURATION, PLAYBACK_SPEED};
+use crate::scene::keys::range;
+use crate::scene::limits::PLAYBACK_SPEED;
 use crate::simulation::Field;
 
 /// Default image file if there is no display.
@@ -112,7 +113,7 @@ pub(super) struct RecordArgs {
     #[arg(short, long, value_name = "OUT.gif|FOLDER")]
     pub output: PathBuf,
     /// Duration to record: 2, 2s or 500ms. Default: the scene's dynamics.duration.
-    #[arg(long, value_name = "TIME", value_parser = within(DURATION))]
+    #[arg(long, value_name = "TIME", value_parser = within(range("dynamics.duration")))]
     pub seconds: Option<f64>,
     /// Playback speed, simulated seconds per second: 0.1 is slow motion.
     #[arg(long, value_name = "FACTOR", value_parser = within(PLAYBACK_SPEED))]

@@ -90,11 +90,11 @@ pub const KEYS: &[Key] = keys! {
 
     "beam": Table, Optional("Either [beam] or [mesh] is required"), "",
         "Meshed rectangle [0, length] × [−height/2, height/2], with the edges left, right, bottom and top.";
-    "beam.length": Number(limits::LENGTH), Required(""), "10.0",
+    "beam.length": Number(Limit::new("m", 1e-6, 1e6)), Required(""), "10.0",
         "Length.";
-    "beam.height": Number(limits::HEIGHT), Required(""), r#""50 cm""#,
+    "beam.height": Number(Limit::new("m", 1e-6, 1e6)), Required(""), r#""50 cm""#,
         "Height.";
-    "beam.cells": IntegerPair(limits::CELLS), Required("the cells along and across, as in [20, 2]"), "[20, 2]",
+    "beam.cells": IntegerPair(Limit::new("", 1.0, 100_000.0)), Required("the cells along and across, as in [20, 2]"), "[20, 2]",
         "Cells along and across: at most 250,000 in all, and at most 100,000 times as long as high or as high as long.";
     "beam.element": Choice(ELEMENTS), Default(r#""t3""#), r#""q4""#,
         "Element of every cell. A cell is one quadrilateral (q4), or is cut into two triangles (t3, t6).";
@@ -114,13 +114,13 @@ pub const KEYS: &[Key] = keys! {
 
     "material": Table, Required("the table [material]"), "",
         "Linear elastic, isotropic material.";
-    "material.young": Number(limits::YOUNG), Required(""), r#""210 GPa""#,
+    "material.young": Number(Limit::new("Pa", 1e-6, 1e15)), Required(""), r#""210 GPa""#,
         "Young's modulus E.";
-    "material.poisson": Number(limits::POISSON_STRESS), Required(""), "0.3",
+    "material.poisson": Number(Limit::new("", -0.99, 0.5)), Required(""), "0.3",
         "Poisson's ratio ν. In plane strain at most 0.4999.";
-    "material.density": Number(limits::DENSITY), Default("1000.0"), r#""7.8 g/cm³""#,
+    "material.density": Number(Limit::new("kg/m³", 0.0, 1e6)), Default("1000.0"), r#""7.8 g/cm³""#,
         "Density ρ, for gravity and motion. A dynamic scene needs more than 0.";
-    "material.thickness": Number(limits::THICKNESS), Default("1.0"), r#""3 mm""#,
+    "material.thickness": Number(Limit::new("m", 1e-6, 1e6)), Default("1.0"), r#""3 mm""#,
         "Thickness t out of the plane. Forces and masses are those of the whole thickness.";
     "material.plane": Choice(&["stress", "strain"]), Default(r#""stress""#), r#""strain""#,
         "Plane stress, as in a thin plate, or plane strain, as in a slice of a long body.";
@@ -154,11 +154,11 @@ pub const KEYS: &[Key] = keys! {
         "Of a force with at: node puts it on the node nearest to the point; point puts it on the nodes of the element there, in proportion to their shape functions.";
     "load.width": Number(limits::WIDTH), Default("0.0"), r#""10 cm""#,
         "Of a force with at: spreads it evenly over this length of the body's outline, or of the horizontal line through an inner point.";
-    "load.force": Vector(limits::FORCE), Optional("required for a force"), r#"[0.0, "-12 kN"]"#,
+    "load.force": Vector(Limit::new("N", 0.0, 1e15)), Optional("required for a force"), r#"[0.0, "-12 kN"]"#,
         "Total force; on an edge a uniform traction.";
-    "load.acceleration": Vector(limits::ACCELERATION), Optional("required for gravity"), "[0.0, -9.81]",
+    "load.acceleration": Vector(Limit::new("m/s²", 0.0, 1e6)), Optional("required for gravity"), "[0.0, -9.81]",
         "Acceleration of gravity.";
-    "load.moment": Number(limits::MOMENT), Optional("required for a moment"), r#""2 kN m""#,
+    "load.moment": Number(Limit::new("N m", -1e15, 1e15)), Optional("required for a moment"), r#""2 kN m""#,
         "Moment, counter-clockwise.";
     "load.pulse": Table, Optional("a constant load"), "{ start = 0.2, duration = 0.1 }",
         "Makes the load act for a time: times sin²(π (t − start)/duration) during the pulse, and 0 otherwise. The load is the peak; its impulse is half of load times duration. Dynamic scenes only.";
@@ -191,26 +191,26 @@ pub const KEYS: &[Key] = keys! {
         "Unbalanced force, relative to the sum of all forces of elements, below which a solve has converged.";
     "solver.max_iterations": Integer(Limit::new("", 1.0, 100_000.0)), Default("1000"), "50",
         "Linear solves after which a solve has failed.";
-    "solver.accept_after": Integer(limits::ACCEPT_AFTER), Default("0"), "3",
+    "solver.accept_after": Integer(Limit::new("", 0.0, 100_000.0)), Default("0"), "3",
         "Iterations after which the result is accepted without convergence (status accepted, exit code 0); 0: never. Static scenes only.";
-    "solver.max_error_percent": Number(limits::MAX_ERROR_PERCENT), Default("1.0"), "0.5",
+    "solver.max_error_percent": Number(Limit::new("%", 1e-6, 100.0)), Default("1.0"), "0.5",
         "Largest error that method auto allows itself, percent of the displacement that the scene's mesh has at equilibrium.";
 
     "dynamics": Table, Optional("Optional"), "",
         "Settings of a motion. Dynamic scenes only.";
     "dynamics.integrator": Choice(&["implicit-euler", "tr-bdf2", "energy-momentum", "symplectic-euler"]), Default(r#""tr-bdf2""#), r#""energy-momentum""#,
         "Time integration method.";
-    "dynamics.time_step": Number(limits::TIME_STEP), Default("0.016666666666666666"), r#""5 ms""#,
+    "dynamics.time_step": Number(Limit::new("s", 1e-9, 1e3)), Default("0.016666666666666666"), r#""5 ms""#,
         "Time step h. For a pulse at most a twentieth of its duration, for a vibration at most a twentieth of its period.";
-    "dynamics.duration": Number(limits::DURATION), Default("10.0"), "2.0",
+    "dynamics.duration": Number(Limit::new("s", 1e-9, 1e6)), Default("10.0"), "2.0",
         "Time after which a run without a window ends.";
     "dynamics.iterations": Integer(Limit::new("", 0.0, 100.0)), Default("1"), "0",
         "Solves per stage of a time step; 0: until solver.tolerance is met.";
     "dynamics.damping": Table, Optional("no damping"), "{ mass = 0.1, stiffness = 0.001 }",
         "Rayleigh damping. Rigid rotation is not damped by stiffness.";
-    "dynamics.damping.mass": Number(limits::MASS_DAMPING), Default("0.0"), "0.1",
+    "dynamics.damping.mass": Number(Limit::new("1/s", 0.0, 1e6)), Default("0.0"), "0.1",
         "Mass-proportional factor α: a mode of angular frequency ω decays at the rate α/2.";
-    "dynamics.damping.stiffness": Number(limits::STIFFNESS_DAMPING), Default("0.0"), "0.001",
+    "dynamics.damping.stiffness": Number(Limit::new("s", 0.0, 1e6)), Default("0.0"), "0.001",
         "Stiffness-proportional factor β: a mode decays at the rate β ω²/2.";
 
     "start": Table, Optional("Optional"), "",
@@ -220,3 +220,27 @@ pub const KEYS: &[Key] = keys! {
     "start.spin": Number(Limit::new("rad/s", -1e6, 1e6)), Default("0.0"), r#""90 °/s""#,
         "Angular velocity about the centre of mass, counter-clockwise.";
 };
+
+/// Returns the range of the numbers of a key. In a constant, a path without numbers does not compile.
+pub const fn range(path: &str) -> Limit {
+    let mut i = 0;
+    loop {
+        match KEYS[i].kind {
+            Number(limit) | Pair(limit) | Vector(limit) | Integer(limit) | IntegerPair(limit)
+                if are_equal(KEYS[i].path.as_bytes(), path.as_bytes()) =>
+            {
+                return limit;
+            }
+            _ => i += 1,
+        }
+    }
+}
+
+/// Compares texts, as `==` does outside of constants.
+const fn are_equal(a: &[u8], b: &[u8]) -> bool {
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}

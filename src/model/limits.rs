@@ -1,4 +1,4 @@
-//! Ranges of numbers: those that the window, the commands and the list of keys share.
+//! Ranges of numbers. Those of single keys are in the list of keys: [`range`](super::keys::range).
 
 use crate::format::number;
 use crate::sentence::{Sentence, sentence};
@@ -41,51 +41,15 @@ impl Limit {
     }
 }
 
-/// Beam length.
-pub const LENGTH: Limit = Limit::new("m", 1e-6, 1e6);
-/// Beam height.
-pub const HEIGHT: Limit = Limit::new("m", 1e-6, 1e6);
-/// Cells along one direction.
-pub const CELLS: Limit = Limit::new("", 1.0, 100_000.0);
 /// Total number of cells; limited by the memory of the factorization (about a million unknowns).
 pub const TOTAL_CELLS: Limit = Limit::new("", 1.0, 250_000.0);
-/// Young's modulus.
-pub const YOUNG: Limit = Limit::new("Pa", 1e-6, 1e15);
-/// Poisson ratio, plane stress.
-pub const POISSON_STRESS: Limit = Limit::new("", -0.99, 0.5);
-/// Poisson ratio, plane strain, where ½ is incompressible and λ infinite.
-pub const POISSON_STRAIN: Limit = Limit::new("", -0.99, 0.4999);
-/// Density.
-pub const DENSITY: Limit = Limit::new("kg/m³", 0.0, 1e6);
-/// Thickness out of the plane.
-pub const THICKNESS: Limit = Limit::new("m", 1e-6, 1e6);
-/// Magnitude of a force.
-pub const FORCE: Limit = Limit::new("N", 0.0, 1e15);
-/// A moment.
-pub const MOMENT: Limit = Limit::new("N m", -1e15, 1e15);
-/// Direction of a force or of gravity, from the x axis, counter-clockwise.
-pub const DIRECTION: Limit = Limit::new("°", -180.0, 180.0);
-/// Magnitude of gravity.
-pub const ACCELERATION: Limit = Limit::new("m/s²", 0.0, 1e6);
 /// A coordinate.
 pub const COORDINATE: Limit = Limit::new("m", -1e6, 1e6);
 /// Width of a support or force.
 pub const WIDTH: Limit = Limit::new("m", 0.0, 1e6);
 /// Prescribed rotation of a support.
 pub const ROTATION: Limit = Limit::new("rad", -100.0, 100.0);
-/// Iterations after which a result is accepted without convergence; 0 for never.
-pub const ACCEPT_AFTER: Limit = Limit::new("", 0.0, 100_000.0);
-/// Requested largest error.
-pub const MAX_ERROR_PERCENT: Limit = Limit::new("%", 1e-6, 100.0);
 /// Time limit of a solve.
 pub const BUDGET_MS: Limit = Limit::new("ms", 1e-6, 1e6);
 /// Playback speed of a motion, simulated seconds per second.
 pub const PLAYBACK_SPEED: Limit = Limit::new("", 1e-6, 1e6);
-/// Time step of a dynamic scene.
-pub const TIME_STEP: Limit = Limit::new("s", 1e-9, 1e3);
-/// Duration of a headless run.
-pub const DURATION: Limit = Limit::new("s", 1e-9, 1e6);
-/// Mass-proportional factor α of Rayleigh damping.
-pub const MASS_DAMPING: Limit = Limit::new("1/s", 0.0, 1e6);
-/// Stiffness-proportional factor β of Rayleigh damping.
-pub const STIFFNESS_DAMPING: Limit = Limit::new("s", 0.0, 1e6);

@@ -381,13 +381,13 @@ impl Beam {
 }
 
 impl Plane {
-    /// Returns the range of Poisson ratios for this plane assumption.
+    /// Returns the range of Poisson ratios for this plane assumption. In plane strain ½ is incompressible, and λ infinite.
     #[doc(hidden)]
     #[must_use]
     pub fn poisson_limit(self) -> limits::Limit {
         match self {
-            Self::Stress => limits::POISSON_STRESS,
-            Self::Strain => limits::POISSON_STRAIN,
+            Self::Stress => keys::range("material.poisson"),
+            Self::Strain => limits::Limit { max: 0.4999, ..keys::range("material.poisson") },
         }
     }
 }

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use super::{Language, said, speak};
 use crate::dynamics::{StepError, StopReason};
 use crate::method::{Decision, IterationError, Reason};
-use crate::scene::limits::{CELLS, FORCE};
+use crate::scene::keys::range;
 use crate::scene::{self, Scene, SceneError, Source, units};
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
@@ -50,8 +50,8 @@ fn the_sentences_of_the_library_are_translated() {
         both(&Elsewhere { distance: 0.1, buckling: None }),
         both(&crate::stress::strain_warning(0.5).unwrap()),
         both(&crate::stress::inversion_warning(3, 10).unwrap()),
-        both(&FORCE.check(-1.0).unwrap_err()),
-        both(&CELLS.expected("\u{201c}0\u{201d}")),
+        both(&range("load.force").check(-1.0).unwrap_err()),
+        both(&range("beam.cells").expected("\u{201c}0\u{201d}")),
         both(&cells.validate().unwrap_err()),
     ];
     let missing = [

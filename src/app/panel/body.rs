@@ -9,7 +9,7 @@ use crate::app::readout::Readout;
 use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, NumberRow, show_message};
 use crate::format::{engineering, number, three_digits};
-use crate::scene::{Beam, Material, Plane, Scene, limits};
+use crate::scene::{Beam, Material, Plane, Scene, keys};
 
 /// Named material.
 struct MaterialPreset {
@@ -32,7 +32,7 @@ const PRESETS: [MaterialPreset; 4] = [
 /// Returns the rows of the material. The limit of Poisson's ratio differs between plane stress and plane strain.
 fn material_rows(plane: Plane) -> [NumberRow; 4] {
     [
-        NumberField::new("Young E", limits::YOUNG, 1e3..=1e12)
+        NumberField::new("Young E", keys::range("material.young"), 1e3..=1e12)
             .logarithmic(1e3)
             .tip("Young's modulus, Pa: stiffness of the material. Rubber 1e6, wood 1e10, steel 2e11.")
             .row(|s| s.material.young, |s, v| s.material.young = v),
@@ -42,11 +42,11 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
                  than 0.5.",
             )
             .row(|s| s.material.poisson, |s, v| s.material.poisson = v),
-        NumberField::new("Density", limits::DENSITY, 0.0..=20_000.0)
+        NumberField::new("Density", keys::range("material.density"), 0.0..=20_000.0)
             .logarithmic(1.0)
             .tip("Density, kg/m³: sets the weight, and the inertia in motion.")
             .row(|s| s.material.density, |s, v| s.material.density = v),
-        NumberField::new("Thickness t", limits::THICKNESS, 1e-3..=10.0)
+        NumberField::new("Thickness t", keys::range("material.thickness"), 1e-3..=10.0)
             .logarithmic(1e-3)
             .tip("Thickness out of the plane, m: stiffness and weight are proportional to it.")
             .row(|s| s.material.thickness, |s, v| s.material.thickness = v),
@@ -87,7 +87,8 @@ impl CellsThatFollow {
             if now < SMALLER * size {
                 return cells;
             }
-            (f64::from(cells) * now / size).round().clamp(limits::CELLS.min, limits::CELLS.max) as u32
+            (f64::from(cells) * now / size).round().clamp(keys::range("beam.cells").min, keys::range("beam.cells").max)
+                as u32
         };
         let from = reference.filter(|&from| at(from, old) == cells).unwrap_or((old, cells));
         *reference = Some(from);
@@ -101,13 +102,13 @@ pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
     let Some(original) = &panel.input.original.beam else { return };
     let sides = [
         (
-            NumberField::new("Length", limits::LENGTH, original.length / SPAN..=original.length * SPAN)
+            NumberField::new("Length", keys::range("beam.length"), original.length / SPAN..=original.length * SPAN)
                 .logarithmic(original.length / SPAN)
                 .tip("Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it."),
             [beam.length, original.length],
         ),
         (
-            NumberField::new("Height", limits::HEIGHT, original.height / SPAN..=original.height * SPAN)
+            NumberField::new("Height", keys::range("beam.height"), original.height / SPAN..=original.height * SPAN)
                 .logarithmic(original.height / SPAN)
                 .tip("Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it."),
             [beam.height, original.height],
@@ -175,7 +176,7 @@ pub(super) fn mesh(ui: &mut Ui, panel: &mut Panel<'_>) {
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles or a quadrilateral.", 40.0),
     ] {
-        let field = NumberField::new(label, limits::CELLS, 1.0..=most).logarithmic(1.0).whole().tip(tip);
+        let field = NumberField::new(label, keys::range("beam.cells"), 1.0..=most).logarithmic(1.0).whole().tip(tip);
         let original = panel.input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
         if let Some(new) = panel.number(ui, &field, f64::from(beam.cells[axis]), original) {
             panel.edit(label, |scene| scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = new as u32));

@@ -9,7 +9,7 @@ use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::number_field::NumberField;
 use crate::format::engineering;
 use crate::scene::limits::Limit;
-use crate::scene::{Load, LoadId, Place, Scene, limits};
+use crate::scene::{Load, LoadId, Place, Scene, keys};
 use crate::sentence::sentence;
 
 /// Gravitational acceleration on earth, m/s².
@@ -63,8 +63,8 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let direction = direction.unwrap_or(panel.state.force_direction());
     let [usual, largest] = force_range(input.opening, &scene.material, input.simulation.system());
     // A negative force can be typed for one in the opposite direction.
-    let limit = Limit { min: -limits::FORCE.max, ..limits::FORCE };
-    let field = NumberField::new("Force", limit, 0.0..=largest)
+    let limit = keys::range("load.force");
+    let field = NumberField::new("Force", Limit { min: -limit.max, ..limit }, 0.0..=largest)
         .around(usual)
         .tip("Magnitude of the force, N. Other values can be typed, such as 12 kN; a negative one reverses the force.");
     if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
@@ -79,7 +79,7 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
 
 /// 270° can be typed for −90°.
 const DIRECTION: NumberField =
-    NumberField::new("Direction", Limit { min: -360.0, max: 360.0, ..limits::DIRECTION }, -180.0..=180.0)
+    NumberField::new("Direction", Limit { unit: "°", min: -360.0, max: 360.0 }, -180.0..=180.0)
         .tip("Direction of the force: 0° right, 90° up, −90° down.");
 
 /// Sets a force by its magnitude, N, and its direction, degrees.
@@ -94,7 +94,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(panel.state.gravity_direction).unwrap_or(DOWN);
     let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
-    let field = NumberField::new("Gravity", limits::ACCELERATION, 0.0..=1000.0)
+    let field = NumberField::new("Gravity", keys::range("load.acceleration"), 0.0..=1000.0)
         .around(if original > 0.0 { original } else { EARTH })
         .tip("Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.");
     if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
@@ -106,7 +106,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
         });
     }
     let [usual, largest] = moment_range(input.opening, &scene.material, input.simulation.system());
-    let field = NumberField::new("Moment", limits::MOMENT, -largest..=largest)
+    let field = NumberField::new("Moment", keys::range("load.moment"), -largest..=largest)
         .around(usual)
         .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");
     let [current, original] = [scene, input.original].map(|scene| moment_of(scene).unwrap_or(0.0));

@@ -15,7 +15,7 @@ use crate::app::widgets::buttons::choice;
 use crate::app::widgets::number_field::{Messages, NumberField, NumberRow, show_message};
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::method::METHODS;
-use crate::scene::{Analysis, Scene, limits};
+use crate::scene::{Analysis, Scene, keys};
 
 mod body;
 pub(crate) mod edges;
@@ -248,7 +248,7 @@ fn solver(ui: &mut Ui, panel: &mut Panel<'_>) {
     }
 }
 
-const ACCEPT_AFTER: NumberRow = NumberField::new("Accept after", limits::ACCEPT_AFTER, 0.0..=20.0)
+const ACCEPT_AFTER: NumberRow = NumberField::new("Accept after", keys::range("solver.accept_after"), 0.0..=20.0)
     .whole()
     .tip("Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.")
     .row(|s| f64::from(s.solver.accept_after), |s, v| s.solver.accept_after = v as u32);

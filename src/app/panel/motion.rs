@@ -10,14 +10,14 @@ use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::number_field::{NumberField, NumberRow};
 use crate::dynamics::INTEGRATORS;
 use crate::format::{engineering, three_digits};
-use crate::scene::{Scene, limits};
+use crate::scene::{Scene, keys, limits};
 
 /// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
 
 /// Rows of time step, solves per step and damping.
 const TIME: [NumberRow; 4] = [
-    NumberField::new("Time step", limits::TIME_STEP, 1e-4..=0.1)
+    NumberField::new("Time step", keys::range("dynamics.time_step"), 1e-4..=0.1)
         .logarithmic(1e-4)
         .tip(
             "Length of a time step, s. Half the step takes twice the work and, at second order, has a quarter of the \
@@ -28,14 +28,14 @@ const TIME: [NumberRow; 4] = [
         .whole()
         .tip("Linear solves per stage of a time step; 0: as many as the tolerance needs.")
         .row(|s| f64::from(s.dynamics.iterations), |s, v| s.dynamics.iterations = v as u32),
-    NumberField::new("Mass damping α", limits::MASS_DAMPING, 0.0..=10.0)
+    NumberField::new("Mass damping α", keys::range("dynamics.damping.mass"), 0.0..=10.0)
         .logarithmic(1e-3)
         .tip(
             "Mass-proportional (Rayleigh) damping α, 1/s: damps every motion, also of a rigid body. Amplitudes of \
              vibrations fall by a factor e in 2/α seconds.",
         )
         .row(|s| s.dynamics.damping.mass, |s, v| s.dynamics.damping.mass = v),
-    NumberField::new("Stiffness damping β", limits::STIFFNESS_DAMPING, 0.0..=1.0)
+    NumberField::new("Stiffness damping β", keys::range("dynamics.damping.stiffness"), 0.0..=1.0)
         .logarithmic(1e-5)
         .tip(
             "Stiffness-proportional (Rayleigh) damping β, s: damps vibrations, high frequencies most; a rigid rotation \

@@ -20,7 +20,7 @@ use crate::element::ELEMENTS;
 use crate::format::{engineering, number, two_digits};
 use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
-use crate::scene::{Analysis, Scene, limits};
+use crate::scene::{Analysis, Scene, keys, limits};
 use crate::sentence::Sentence;
 use crate::study::{Demand, Measurement, Setting, Study, StudyReference};
 
@@ -247,7 +247,7 @@ fn settings(
     let time = NumberField::new("Time ≤", limits::BUDGET_MS, 1e-3..=1e3).logarithmic(1e-3).tip(
         "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame lasts 16.7 ms).",
     );
-    let error = NumberField::new("Error ≤", limits::MAX_ERROR_PERCENT, 1e-3..=100.0)
+    let error = NumberField::new("Error ≤", keys::range("solver.max_error_percent"), 1e-3..=100.0)
         .logarithmic(1e-3)
         .tip("Largest error, percent of the reference displacement.");
     ui.columns_const(|[left, right]| {
