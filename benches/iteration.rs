@@ -86,14 +86,14 @@ fn edits(c: &mut Criterion) {
         c.bench_function(&format!("edit a force/{dofs}"), |b| {
             b.iter(|| {
                 force = -2001.0 - force;
-                simulation.set_force(LoadId::nth(0), [0.0, force]).unwrap();
+                simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, force])).unwrap();
             });
         });
         let mut material = scene.material;
         c.bench_function(&format!("edit the material/{dofs}"), |b| {
             b.iter(|| {
                 material.young = 2.1e6 - material.young;
-                simulation.set_material(material).unwrap();
+                simulation.change_scene(&simulation.scene().clone().with_material(material)).unwrap();
             });
         });
     }

@@ -166,7 +166,7 @@ fn rho() -> Result<Figure, Box<dyn Error>> {
     let mut points = Vec::new();
     for i in 1..=20 {
         let alpha = 0.5 * f64::from(i);
-        beam.set_force(LoadId::nth(0), [0.0, -alpha * unit])?;
+        beam.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -alpha * unit]))?;
         if *beam.solve() != Status::Converged {
             return Err(format!("α = {alpha}: {:?}", beam.status()).into());
         }

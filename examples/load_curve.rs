@@ -34,7 +34,7 @@ pub fn curve() -> Result<String, Box<dyn Error>> {
         let alpha = 0.5 * f64::from(i);
         let mut deflections = Vec::new();
         for beam in [&mut linear, &mut newton] {
-            beam.set_force(LoadId::nth(0), [0.0, -alpha * unit])?;
+            beam.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -alpha * unit]))?;
             if *beam.solve() != Status::Converged {
                 return Err(format!("α = {alpha}: {:?}", beam.status()).into());
             }

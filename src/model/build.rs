@@ -352,7 +352,7 @@ impl Scene {
     /// let mut scene = Scene::beam(10.0, 1.0).clamp("left");
     /// let force = scene.add_load(Load::force("right", [0.0, -500.0]));
     /// let mut beam = Simulation::new(&scene)?;
-    /// beam.set_force(force, [0.0, -800.0])?;
+    /// beam.edit(|scene| scene.set_force(force, [0.0, -800.0]))?;
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
     pub fn add_load(&mut self, load: Load) -> LoadId {
@@ -369,7 +369,7 @@ impl Scene {
     /// let right: SupportId = scene.add_support(Support::new("right", &[Axis::X, Axis::Y]));
     /// assert_eq!(right, SupportId::nth(1)); // `support.1` of a scene file
     /// let mut beam = Simulation::new(&scene)?;
-    /// beam.move_support(right, [0.1, 0.0], 0.0)?;
+    /// beam.edit(|scene| scene.move_support(right, [0.1, 0.0], 0.0))?;
     /// beam.solve();
     /// // A strain of 1 % needs the force E A ε = 1e6 Pa · 1 m² · 0.01.
     /// assert!((beam.support_reactions()[1].force.x - 10_000.0).abs() < 1e-3);

@@ -17,7 +17,7 @@ use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::rotation::{Rotation, polar};
-use crate::scene::{Analysis, Invalid, LoadId, Material, Scene, SupportId};
+use crate::scene::{Analysis, Invalid, Scene};
 use crate::section::Wrench;
 use crate::sentence::Sentence;
 use crate::solver::SolverError;
@@ -131,7 +131,7 @@ pub struct Solution {
 /// let mut beam = Simulation::new(&scene)?;
 /// assert_eq!(*beam.solve(), Status::Converged);
 /// let force = beam.scene().load_on("right").ok_or("no load")?;
-/// beam.set_force(force, [0.0, -1000.0])?; // the next solve continues from here
+/// beam.edit(|scene| scene.set_force(force, [0.0, -1000.0]))?; // the next solve continues from here
 /// assert_eq!(*beam.solve(), Status::Converged);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -325,57 +325,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Sets the components of a force, N.
+    /// Applies a change to the scene, such as [`Scene::set_force`] or [`Scene::move_support`], as [`Self::change_scene`]
+    /// does.
     ///
     /// # Errors
-    /// If there is no such force, or its size is out of range. Nothing is changed then.
-    pub fn set_force(&mut self, load: LoadId, force: impl Into<Vector2<f64>>) -> Result<(), SimulationError> {
-        self.edit(|scene| scene.set_force(load, force))
-    }
-
-    /// Sets a moment, N m.
-    ///
-    /// # Errors
-    /// If there is no such moment, or its size is out of range. Nothing is changed then.
-    pub fn set_moment(&mut self, load: LoadId, moment: f64) -> Result<(), SimulationError> {
-        self.edit(|scene| scene.set_moment(load, moment))
-    }
-
-    /// Sets the acceleration of a weight, m/s².
-    ///
-    /// # Errors
-    /// If there is no such gravity, or its size is out of range. Nothing is changed then.
-    pub fn set_gravity(&mut self, load: LoadId, acceleration: impl Into<Vector2<f64>>) -> Result<(), SimulationError> {
-        self.edit(|scene| scene.set_gravity(load, acceleration))
-    }
-
-    /// Sets the prescribed displacement, m, and rotation about its middle, rad, of a support.
-    ///
-    /// # Errors
-    /// If there is no such support, it does not fix the direction of the motion, or a number is out of range. Nothing
-    /// is changed then.
-    pub fn move_support(
-        &mut self,
-        support: SupportId,
-        displacement: impl Into<Vector2<f64>>,
-        rotation: f64,
-    ) -> Result<(), SimulationError> {
-        self.edit(|scene| scene.move_support(support, displacement, rotation))
-    }
-
-    /// Sets the material.
-    ///
-    /// # Errors
-    /// If a number is out of range. Nothing is changed then.
-    pub fn set_material(&mut self, material: Material) -> Result<(), SimulationError> {
-        self.edit(|scene| {
-            scene.material = material;
-            Ok(())
-        })
-    }
-
-    /// Applies a change to the scene.
-    fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
+    /// That of the change, or those of [`Self::change_scene`], for example of a number out of range. The simulation is
+    /// then unchanged.
+    pub fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
         let mut scene = self.body.scene.clone();
         change(&mut scene)?;
         self.change_scene(&scene)

@@ -459,7 +459,7 @@ fn auto_follows_a_grab_and_edits() {
                 }
                 if step == 80 {
                     body.release();
-                    body.set_material(Material::new(2e6, 0.35)).unwrap();
+                    body.change_scene(&body.scene().clone().with_material(Material::new(2e6, 0.35))).unwrap();
                 }
                 body.step();
             }

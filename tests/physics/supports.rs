@@ -125,7 +125,7 @@ fn a_full_rotation_of_one_end_is_not_rest() {
     let mut angle = TAU;
     while angle > 0.0 {
         angle = f64::max(angle - 0.4, 0.0);
-        simulation.move_support(SupportId::nth(1), [-8.0 * angle / TAU, 0.0], angle).unwrap();
+        simulation.edit(|scene| scene.move_support(SupportId::nth(1), [-8.0 * angle / TAU, 0.0], angle)).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged, "{angle}");
     }
     assert!(simulation.solution().energy.elastic < 1e-9);
@@ -246,12 +246,12 @@ fn dragged_supports_end_where_they_would_from_rest() {
         };
         let mut dragged = solved(&scene(0.0));
         for y in [0.1, 0.4, 0.9, 0.3] {
-            dragged.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
+            dragged.edit(|scene| scene.move_support(SupportId::nth(1), [0.0, y], 0.0)).unwrap();
             assert_eq!(*dragged.solve(), Status::Converged, "{} {y}", method.id);
             let [a, b] = [&dragged, &solved(&scene(y))].map(|s| s.probe("middle").unwrap());
             assert!((a - b).norm() < 1e-6, "{} {y}: {a} {b}", method.id);
         }
-        dragged.move_support(SupportId::nth(1), [0.0, 0.0], 0.0).unwrap();
+        dragged.edit(|scene| scene.move_support(SupportId::nth(1), [0.0, 0.0], 0.0)).unwrap();
         assert_eq!(*dragged.solve(), Status::Converged, "{}", method.id);
         assert!(dragged.displacement().iter().all(|u| u.norm() < 1e-7), "{}", method.id);
     }
@@ -262,7 +262,7 @@ fn dragged_supports_end_where_they_would_from_rest() {
 fn other_starts_and_stiffnesses_end_in_the_same_place() {
     let mut simulation = solved(&wrenched(0.5));
     let expected = simulation.probe("middle").unwrap();
-    simulation.set_material(Material::new(3e6, 0.3)).unwrap();
+    simulation.change_scene(&simulation.scene().clone().with_material(Material::new(3e6, 0.3))).unwrap();
     assert_eq!(*simulation.solve(), Status::Converged);
     assert!((simulation.probe("middle").unwrap() - expected).norm() < 1e-6);
     let near: Vec<_> = simulation.displacement().iter().map(|u| u * 0.9).collect();

@@ -92,7 +92,7 @@ fn the_ledger_closes(kind: IntegratorKind) {
         }
         if step == steps / 2 {
             simulation.release();
-            simulation.set_material(Material::new(1.5e6, 0.35)).unwrap();
+            simulation.change_scene(&simulation.scene().clone().with_material(Material::new(1.5e6, 0.35))).unwrap();
         }
         simulation.step();
     }

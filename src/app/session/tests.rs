@@ -455,7 +455,7 @@ fn a_large_result_is_certified_in_the_background() {
         session.iterate();
         session.request_facts(ShownFacts::default(), false);
     }
-    own.set_force(LoadId::nth(0), [0.0, -1200.0]).unwrap();
+    own.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -1200.0])).unwrap();
     own.solve();
     assert!((tip(&session) - own.probe("tip").unwrap().y).abs() < 1e-6);
     assert_eq!(certificate(&session).unwrap().stable, Some(true));
