@@ -183,7 +183,7 @@ pub use sentence::Sentence;
 pub use simulation::{Deformation, Energy, Field, PointState, PointValues, ProbeResult, SupportReaction};
 pub use stress::{NodalStress, PlaneTensor};
 // Move in time.
-pub use dynamics::{Counts, Ledger, Momentum, MotionReport, StepError, StopReason};
+pub use dynamics::{Counts, Ledger, Momentum, StepError, StopReason};
 pub use simulation::{Moment, Motion};
 // Measure errors and time.
 pub use progress::{Observer, Progress};

@@ -106,8 +106,15 @@ fn add_motion(object: &mut Value, simulation: &Simulation, motion: Motion<'_>) {
     object["critical_step"] = json!(motion.critical_step());
     object["energy_drift"] = json!(ledger.drift());
     object["energy_drift_of_input"] = json!(ledger.drift_of_input());
-    if let Some(auto) = motion.auto_report() {
-        object["auto"] = json!(auto);
+    if let Some(decision) = motion.decision() {
+        object["auto"] = json!({
+            "decision": decision,
+            "solves": counts.solves,
+            "factorizations": counts.factorizations,
+            "linear_steps": counts.linear_steps,
+            "old_factor_steps": counts.old_factor_steps,
+            "new_factor_steps": counts.new_factor_steps,
+        });
     }
     object["momentum"] = json!(motion.momentum());
     let energy = &mut object["energy"];

@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use super::CliError;
 use super::contexts::Contexts;
 use super::solved::SolvedScene;
+use crate::dynamics::Counts;
 use crate::export::{columns, csv_field};
 use crate::format::{count, engineering, engineering_pair, prefix, three_digits};
 #[cfg(feature = "app")]
@@ -99,10 +100,9 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         let (solves, made) = (count(auto.solves, "back substitution"), count(auto.factorizations, "factorization"));
         let _ = writeln!(text, "{}: {error}, {solves}, {made}", auto.decision);
     }
-    if let Some(auto) = motion.and_then(Motion::auto_report) {
-        let [linear, old, new] =
-            [count(auto.linear_steps, "step"), auto.old_factor_steps.to_string(), auto.new_factor_steps.to_string()];
-        let made = count(auto.factorizations, "factorization");
+    if let Some(counts) = motion.filter(|motion| motion.decision().is_some()).map(Motion::counts) {
+        let Counts { old_factor_steps: old, new_factor_steps: new, .. } = counts;
+        let (linear, made) = (count(counts.linear_steps, "step"), count(counts.factorizations, "factorization"));
         let _ = writeln!(
             text,
             "auto: {linear} under linear theory, {old} with an old factor, {new} with a new one; {made}"

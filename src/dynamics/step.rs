@@ -135,6 +135,12 @@ pub struct Counts {
     pub factorizations: u64,
     /// Failed steps that were halved.
     pub halvings: u64,
+    /// Time steps with linear theory.
+    pub linear_steps: u64,
+    /// Corotated time steps without a factorization.
+    pub old_factor_steps: u64,
+    /// Corotated time steps with a factorization.
+    pub new_factor_steps: u64,
 }
 
 /// Entries of a step in the ledger, J.

@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, MotionReport, Solves, StageSolver, Step,
-    StepEnergy, StepError, StopReason, critical_step,
+    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Solves, StageSolver, Step, StepEnergy, StepError,
+    StopReason, critical_step,
 };
 use crate::element::StrainRate;
 use crate::method::{Decision, MotionMethod};
@@ -44,7 +44,8 @@ pub(super) struct TimeStepping {
     pub(super) counts: Counts,
     method: MotionMethod,
     linear: LinearTheory,
-    pub(super) report: MotionReport,
+    /// Kind of the last step.
+    pub(super) decision: Decision,
     pub(super) ledger: Ledger,
     keeps_ledger: bool,
     /// `true` if steps are checked for spurious energy. A mouse spring exerts larger forces on few nodes than loads do,
@@ -61,24 +62,23 @@ pub struct Moment {
     state: State,
     ledger: Ledger,
     counts: Counts,
-    report: MotionReport,
+    decision: Decision,
     is_linear: bool,
     method: MethodKind,
 }
 
 impl Moment {
     pub(super) fn of(motion: &TimeStepping, Body { state, scene, .. }: &Body) -> Self {
-        let TimeStepping { ledger, counts, report, linear, .. } = motion;
-        let (ledger, counts, report) = (*ledger, *counts, *report);
+        let TimeStepping { ledger, counts, decision, ref linear, .. } = *motion;
         let (is_linear, method) = (linear.is_in_use(), scene.solver.method);
-        Self { state: state.clone(), ledger, counts, report, is_linear, method }
+        Self { state: state.clone(), ledger, counts, decision, is_linear, method }
     }
 
     /// Copies another moment of the same body without allocating.
     pub(super) fn copy_from(&mut self, motion: &TimeStepping, Body { state, scene, .. }: &Body) {
         self.state.copy_from(state);
         self.method = scene.solver.method;
-        (self.ledger, self.counts, self.report) = (motion.ledger, motion.counts, motion.report);
+        (self.ledger, self.counts, self.decision) = (motion.ledger, motion.counts, motion.decision);
         self.is_linear = motion.linear.is_in_use();
     }
 
@@ -114,7 +114,7 @@ impl TimeStepping {
             counts: Counts::default(),
             method,
             linear: LinearTheory::default(),
-            report: MotionReport::default(),
+            decision: Decision::default(),
             ledger: Ledger::default(),
             keeps_ledger: true,
             is_guarded: false,
@@ -132,15 +132,14 @@ impl TimeStepping {
         body.problem.system().update_rotations(&mut body.state, self.kinematics());
         self.begin_steps(body);
         let Body { scene, problem, state, .. } = body;
-        self.counts = Counts::default();
-        self.report = MotionReport::default();
+        (self.counts, self.decision) = Default::default();
         self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
         self.find_critical_step(scene, problem);
     }
 
     /// Returns to a moment, with its energies and counts. The next step is as after [`Self::begin`].
     pub(super) fn return_to(&mut self, body: &mut Body, moment: &Moment) {
-        let Moment { state, ledger, counts, report, is_linear, method } = moment;
+        let Moment { state, ledger, counts, decision, is_linear, method } = moment;
         body.state.copy_from(state);
         self.linear.invalidate();
         self.linear.set_in_use(*is_linear);
@@ -150,7 +149,7 @@ impl TimeStepping {
             body.problem.system().update_rotations(&mut body.state, self.kinematics());
         }
         self.begin_steps(body);
-        (self.ledger, self.counts, self.report) = (*ledger, *counts, *report);
+        (self.ledger, self.counts, self.decision) = (*ledger, *counts, *decision);
     }
 
     /// Discards all data of previous steps.
@@ -251,11 +250,13 @@ impl TimeStepping {
             self.counts.steps += 1;
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
-            self.report.note(match self.counts.factorizations > factorizations {
-                _ if self.linear.is_in_use() => Decision::Linear,
-                true => Decision::NewFactor,
-                false => Decision::OldFactor,
-            });
+            let (decision, steps) = match self.counts.factorizations > factorizations {
+                _ if self.linear.is_in_use() => (Decision::Linear, &mut self.counts.linear_steps),
+                true => (Decision::NewFactor, &mut self.counts.new_factor_steps),
+                false => (Decision::OldFactor, &mut self.counts.old_factor_steps),
+            };
+            self.decision = decision;
+            *steps += 1;
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
                 body.status = Status::Stopped(self.reason_to_run_away(whole));
             }

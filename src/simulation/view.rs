@@ -3,8 +3,8 @@
 use super::motion::{Moment, TimeStepping, inertia};
 use super::search::Search;
 use super::{Body, Process, Simulation, Status};
-use crate::dynamics::{Counts, Ledger, Momentum, MotionReport};
-use crate::method::{AutoReport, Certificate, PathEvents};
+use crate::dynamics::{Counts, Ledger, Momentum};
+use crate::method::{AutoReport, Certificate, Decision, PathEvents};
 
 /// Results of a search for an equilibrium; returned by [`Simulation::equilibrium`].
 ///
@@ -128,10 +128,11 @@ impl<'a> Motion<'a> {
         Momentum::of(problem, &self.steps.mass, inertia(scene), state)
     }
 
-    /// Returns the decisions of `auto` since the start; `None` for other methods and for explicit integrators.
+    /// Returns the decision of `auto` for the last step; `None` for other methods and for explicit integrators.
+    /// [`Self::counts`] has the numbers of steps by decision.
     ///
     /// ```
-    /// use warpbeam::{Decision, IntegratorKind, MethodKind, MotionReport, Scene, Simulation};
+    /// use warpbeam::{Decision, IntegratorKind, MethodKind, Scene, Simulation};
     ///
     /// let scene = Scene::beam(1.0, 0.1).clamp("left").gravity([0.0, -9.81]).with_method(MethodKind::Auto);
     /// let mut swing = Simulation::new(&scene.moving(IntegratorKind::TrBdf2, 1.0 / 60.0))?;
@@ -140,16 +141,14 @@ impl<'a> Motion<'a> {
     /// }
     /// assert!((swing.state().time() - 0.5).abs() < 1e-9);
     /// let motion = swing.motion().ok_or("a dynamic scene has a motion")?;
-    /// let report: MotionReport = motion.auto_report().ok_or("the method is `auto`")?;
-    /// assert_ne!(report.decision, Decision::Undecided);
-    /// assert_eq!(report.linear_steps + report.old_factor_steps + report.new_factor_steps, 30);
+    /// assert!(motion.decision().is_some_and(|decision| decision != Decision::Undecided));
+    /// let counts = motion.counts();
+    /// assert_eq!(counts.linear_steps + counts.old_factor_steps + counts.new_factor_steps, 30);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn auto_report(self) -> Option<MotionReport> {
-        let Counts { solves, factorizations, .. } = self.steps.counts;
-        let report = MotionReport { solves, factorizations, ..self.steps.report };
-        self.steps.decides(&self.body.scene).then_some(report)
+    pub fn decision(self) -> Option<Decision> {
+        self.steps.decides(&self.body.scene).then_some(self.steps.decision)
     }
 
     /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.

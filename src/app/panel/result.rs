@@ -190,16 +190,16 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
         joined([counts.steps.to_string(), count(counts.solves, "back substitution")].into_iter().chain(halvings)),
         "Time steps since the start; a step that does not converge is halved",
     );
-    if let Some(auto) = motion.auto_report() {
-        let factors = count(auto.factorizations, "factorization");
-        let linear = count(auto.linear_steps, "step");
+    if let Some(decision) = motion.decision() {
+        let factors = count(counts.factorizations, "factorization");
+        let linear = count(counts.linear_steps, "step");
         let tip = fill!(
             "%{factors} for %{solves}; %{linear} under linear theory",
             factors,
-            solves = count(auto.solves, "back substitution"),
+            solves = count(counts.solves, "back substitution"),
             linear
         );
-        row("Auto", sentence(&said(&auto.decision)), &tip);
+        row("Auto", sentence(&said(&decision)), &tip);
     }
     let ledger = motion.ledger();
     let joules = |value: f64| engineering(value, "J");
