@@ -1,7 +1,9 @@
 //! Magnitudes of the results of `solve` by kind: a result below the rounding error of its kind is 0 in the text.
 
+use nalgebra::Vector2;
+
 use super::solved::SolvedScene;
-use crate::format::Context;
+use crate::format::{Context, engineering};
 use crate::scene::Load;
 use crate::simulation::Motion;
 use crate::stress::PlaneTensor;
@@ -11,27 +13,8 @@ const ROTATION: f64 = 1e-3;
 /// Rounding error of a strain energy relative to that of a strain, whose square it is.
 const ENERGY_OF_STRAIN: f64 = 1e-10;
 
-/// Contexts of the results of a scene.
-pub(super) struct Contexts {
-    /// Strains, pure numbers.
-    pub strain: Context,
-    /// Angles, degrees.
-    pub rotation: Context,
-    /// Stresses, Pa.
-    pub stress: Context,
-    /// Displacements, m.
-    pub displacement: Context,
-    /// Forces, N.
-    pub force: Context,
-    /// Moments, N m.
-    pub moment: Context,
-    /// Energies, J.
-    pub energy: Context,
-    /// Momentum, kg m/s.
-    pub momentum: Context,
-    /// Angular momentum, kg m²/s.
-    pub angular_momentum: Context,
-}
+/// Contexts of the results of a scene by their units.
+pub(super) struct Contexts([(&'static str, Context); 9]);
 
 impl Contexts {
     /// Computes the contexts of a result.
@@ -47,26 +30,18 @@ impl Contexts {
         let largest = stress.largest.map_or(0.0, |largest| largest.von_mises);
         let displacements = solution.probes.iter().map(|probe| probe.u.norm());
         let prescribed = scene.supports.iter().flat_map(|support| support.displacement);
-        let (mut forces, mut moments) = (vec![solution.reaction.force.norm()], vec![solution.reaction.moment]);
-        for support in &solution.supports {
-            forces.push(support.force.norm());
-            moments.push(support.moment);
-        }
-        for section in sections {
-            forces.push(section.force.norm());
-            moments.push(section.forces.moment);
-        }
-        for load in &scene.loads {
-            match load {
-                Load::Force { force, .. } => forces.extend(force),
-                Load::Moment { moment, .. } => moments.push(*moment),
-                Load::Gravity { .. } => {}
-            }
-        }
+        let total = std::iter::once((solution.reaction.force.norm(), solution.reaction.moment));
+        let reactions = solution.supports.iter().map(|support| (support.force.norm(), support.moment));
+        let cuts = sections.iter().map(|section| (section.force.norm(), section.forces.moment));
+        let loads = scene.loads.iter().flat_map(|load| match load {
+            Load::Force { force, .. } => force.map(|force| (force, 0.0)),
+            Load::Moment { moment, .. } => [(0.0, *moment); 2],
+            Load::Gravity { .. } => [(0.0, 0.0); 2],
+        });
+        let wrenches: Vec<(f64, f64)> = total.chain(reactions).chain(cuts).chain(loads).collect();
         // Forces and moments of one size differ by a lever arm of the body's size.
-        let arms = moments.iter().map(|moment| moment / size).collect::<Vec<_>>();
-        moments.extend(forces.iter().map(|force| force * size));
-        forces.extend(arms);
+        let forces = wrenches.iter().flat_map(|(force, moment)| [*force, moment / size]);
+        let moments = wrenches.iter().flat_map(|(force, moment)| [force * size, *moment]);
         // Forces balance to the tolerance of the solver.
         let inexact = scene.solver.tolerance.max(solution.residual).min(Context::MAX_INEXACT);
         let energy = &solution.energy;
@@ -79,16 +54,36 @@ impl Contexts {
         energies.push(scene.material.young * volume * (ROTATION * rotation).powi(2) * ENERGY_OF_STRAIN);
         let momentum = simulation.motion().map(Motion::momentum).unwrap_or_default();
         let (linear, angular) = (momentum.linear.norm(), momentum.angular);
-        Self {
-            strain: Context::of([of_strain]),
-            rotation: Context::of([rotation.max(strain).to_degrees()]),
-            stress: Context::of(stresses.chain([largest, ROTATION * rotation * scene.material.young])),
-            displacement: Context::of(displacements.chain(prescribed).chain([size * strain.max(rotation)])),
-            force: Context::of_inexact(forces, inexact),
-            moment: Context::of_inexact(moments, inexact),
-            energy: Context::of(energies),
-            momentum: Context::of([linear, angular / size]),
-            angular_momentum: Context::of([angular, linear * size]),
-        }
+        Self([
+            ("", Context::of([of_strain])),
+            ("°", Context::of([rotation.max(strain).to_degrees()])),
+            ("Pa", Context::of(stresses.chain([largest, ROTATION * rotation * scene.material.young]))),
+            ("m", Context::of(displacements.chain(prescribed).chain([size * strain.max(rotation)]))),
+            ("N", Context::of_inexact(forces, inexact)),
+            ("N m", Context::of_inexact(moments, inexact)),
+            ("J", Context::of(energies)),
+            ("kg m/s", Context::of([linear, angular / size])),
+            ("kg m²/s", Context::of([angular, linear * size])),
+        ])
+    }
+
+    /// Returns the context of the results with this unit; that of strains is empty.
+    pub(super) fn get(&self, unit: &str) -> Context {
+        self.0.iter().find(|(own, _)| *own == unit).map(|(_, context)| *context).unwrap_or_default()
+    }
+
+    /// Formats a result.
+    pub(super) fn engineering(&self, value: f64, unit: &str) -> String {
+        self.get(unit).engineering(value, unit)
+    }
+
+    /// Formats the components of a vector.
+    pub(super) fn pair(&self, vector: Vector2<f64>, unit: &str) -> String {
+        self.get(unit).pair(vector.into(), unit)
+    }
+
+    /// Formats a strain in percent.
+    pub(super) fn percent(&self, strain: f64) -> String {
+        engineering(100.0 * self.get("").rounded(strain), "%")
     }
 }

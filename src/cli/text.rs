@@ -109,22 +109,21 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         );
     }
     let references = reference.as_ref().map_or(&[][..], Reference::probes);
-    let moved_by = |u: Vector2<f64>| within.displacement.pair(u.into(), "m");
     for (i, probe) in solution.probes.iter().enumerate() {
-        let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), moved_by(probe.u));
+        let _ = writeln!(text, "{}: at {}, moved by {}", probe.name, pair(probe.x, "m"), within.pair(probe.u, "m"));
         if let Some(at_probe) = stress.probes.get(i) {
             let [x, y, _, xy] = at_probe.strain.components();
-            let [x, y, shear] = [x, y, 2.0 * xy].map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
-            let rotation = within.rotation.engineering(at_probe.rotation_deg, "°");
+            let [x, y, shear] = [x, y, 2.0 * xy].map(|strain| within.percent(strain));
+            let rotation = within.engineering(at_probe.rotation_deg, "°");
             let _ = writeln!(text, "  rotation {rotation}, strain {x}, {y}, shear γ {shear}");
             if let Some(cauchy) = &at_probe.cauchy {
-                let [x, y, _, xy] = cauchy.components().map(|v| within.stress.engineering(v, "Pa"));
-                let von_mises = within.stress.engineering(cauchy.von_mises(), "Pa");
+                let [x, y, _, xy] = cauchy.components().map(|v| within.engineering(v, "Pa"));
+                let von_mises = within.engineering(cauchy.von_mises(), "Pa");
                 let _ = writeln!(text, "  stress (Cauchy) {x}, {y}, shear {xy}; von Mises {von_mises}");
             }
         }
         if let Some(reference) = references.get(i).and_then(Option::as_ref) {
-            let (u, own) = (moved_by(reference.displacement), reference.own_error());
+            let (u, own) = (within.pair(reference.displacement, "m"), reference.own_error());
             let distance = engineering((probe.u - reference.displacement).norm(), "m");
             let _ = match reference.error_percent(probe) {
                 Some(error) => writeln!(text, "  {}: {u}, error {error:.3} %, {own}", reference.source),
@@ -136,13 +135,13 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         let _ = writeln!(text, "  {claim}");
     }
     let Deformation { max_rotation_deg, max_strain, area_change, inverted_elements } = solution.deformation;
-    let rotation = within.rotation.engineering(max_rotation_deg, "°");
-    let [strain, area] = [max_strain, area_change].map(|v| engineering(100.0 * within.strain.rounded(v), "%"));
+    let rotation = within.engineering(max_rotation_deg, "°");
+    let [strain, area] = [max_strain, area_change].map(|strain| within.percent(strain));
     let _ = write!(text, "largest rotation {rotation}, largest strain {strain}, change of the area {area}, ");
     let _ = writeln!(text, "inverted elements {inverted_elements}");
     if let Some(largest) = stress.largest {
         let node = simulation.mesh().node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
-        let (value, at) = (within.stress.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
+        let (value, at) = (within.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
         let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
     }
     let _ = match stress.mesh_error_percent {
@@ -151,18 +150,18 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     };
     // If supports move, the sum of their reactions may be only rounding error.
     if !moved(scene) {
-        let force = within.force.pair(solution.reaction.force.into(), "N");
-        let moment = within.moment.engineering(solution.reaction.moment, "N m");
+        let force = within.pair(solution.reaction.force, "N");
+        let moment = within.engineering(solution.reaction.moment, "N m");
         let _ = writeln!(text, "reaction {force}, moment about the origin {moment}");
     }
     text.push_str(&reactions(scene, solution, &within));
     for section in sections {
         let at = pair(section.line.at, "m");
         let angle = engineering(three_digits(section.line.angle.to_degrees()), "°");
-        let forces = section_chart::text(section, &[within.force, within.force, within.moment]);
+        let forces = section_chart::text(section, &["N", "N", "N m"].map(|unit| within.get(unit)));
         let _ = writeln!(text, "section at {at}, normal at {angle}: {forces}");
     }
-    let joules = |energy: f64| within.energy.engineering(energy, "J");
+    let joules = |energy: f64| within.engineering(energy, "J");
     let [elastic, external] = [solution.energy.elastic, solution.energy.external].map(joules);
     let of_supports = match solution.energy.supports {
         _ if !moved(scene) => String::new(),
@@ -209,9 +208,9 @@ fn reactions(scene: &Scene, solution: &Solution, within: &Contexts) -> String {
         if support.turn != 0.0 {
             let _ = write!(text, ", rotated by {}", engineering(part * support.turn.to_degrees(), "°"));
         }
-        let _ = write!(text, ": reaction {}", within.force.pair(reaction.force.into(), "N"));
+        let _ = write!(text, ": reaction {}", within.pair(reaction.force, "N"));
         if matches!(support.place, Place::Edge(_)) {
-            let _ = write!(text, ", moment about its middle {}", within.moment.engineering(reaction.moment, "N m"));
+            let _ = write!(text, ", moment about its middle {}", within.engineering(reaction.moment, "N m"));
         }
         text.push('\n');
     }
@@ -245,13 +244,13 @@ fn solver_text(scene: &Scene) -> String {
 /// Formats energies and momentum of a motion.
 fn energy_text(motion: Motion<'_>, within: &Contexts) -> String {
     let (counts, ledger, momentum) = (motion.counts(), motion.ledger(), motion.momentum());
-    let joules = |energy: f64| within.energy.engineering(energy, "J");
-    let change = if within.energy.rounded(ledger.integrator) < 0.0 { "gained" } else { "lost" };
+    let joules = |energy: f64| within.engineering(energy, "J");
+    let change = if within.get("J").rounded(ledger.integrator) < 0.0 { "gained" } else { "lost" };
     let [kinetic, potential, dissipated, pulses, changed] =
         [ledger.kinetic, ledger.potential, ledger.dissipated, ledger.pulses, ledger.integrator.abs()].map(joules);
     let (drift, of_input) = (ledger.drift(), ledger.drift_of_input());
-    let linear = within.momentum.pair(momentum.linear.into(), "kg m/s");
-    let angular = within.angular_momentum.engineering(momentum.angular, "kg m²/s");
+    let linear = within.pair(momentum.linear, "kg m/s");
+    let angular = within.engineering(momentum.angular, "kg m²/s");
     let mut text = format!(
         "kinetic energy {kinetic}, potential of the loads {potential}, dissipated {dissipated}, put in by pulses {pulses}\n\
          {change} by the integrator {changed}: energy drift {drift:.2e} of the largest kinetic energy, {of_input:.2e} of \
