@@ -43,17 +43,13 @@ impl Simulation {
     /// # Errors
     /// [`SectionError::Missed`], [`SectionError::Several`], [`SectionError::NotFinite`].
     pub fn section(&self, line: SectionLine) -> Result<Section, SectionError> {
-        self.section_with(line, Some(&self.nodal_stress()))
+        self.cutter(Some(&self.nodal_stress()))(line)
     }
 
     /// Computes as [`Self::section`], without the stress along the line.
     #[cfg(feature = "app")]
     pub(crate) fn section_forces(&self, line: SectionLine) -> Result<Section, SectionError> {
-        self.section_with(line, None)
-    }
-
-    fn section_with(&self, line: SectionLine, nodal: Option<&NodalStress>) -> Result<Section, SectionError> {
-        self.sections_of(std::iter::once(line), nodal).next().unwrap_or(Err(SectionError::Missed))
+        self.cutter(None)(line)
     }
 
     /// Computes the sections of the scene, with the stress recovered once for all.
@@ -61,17 +57,13 @@ impl Simulation {
     pub(crate) fn scene_sections(&self) -> Vec<Result<Section, SectionError>> {
         let lines = &self.scene().sections;
         let nodal = if lines.is_empty() { None } else { Some(self.nodal_stress()) };
-        self.sections_of(lines.iter().copied(), nodal.as_ref()).collect()
+        lines.iter().copied().map(self.cutter(nodal.as_ref())).collect()
     }
 
-    /// Computes the sections along these lines.
-    fn sections_of<'a>(
-        &'a self,
-        lines: impl Iterator<Item = SectionLine> + 'a,
-        nodal: Option<&'a NodalStress>,
-    ) -> impl Iterator<Item = Result<Section, SectionError>> + 'a {
+    /// Returns a function that computes the section along a line, with the stress along it if that was recovered.
+    fn cutter(&self, nodal: Option<&NodalStress>) -> impl Fn(SectionLine) -> Result<Section, SectionError> {
         let balance = LazyCell::new(|| self.nodal_balance());
-        lines.map(move |line| Section::of(self.problem(), self.state(), self.kinematics(), &balance, nodal, line))
+        move |line| Section::of(self.problem(), self.state(), self.kinematics(), &balance, nodal, line)
     }
 
     /// Returns the forces and accelerations that sections balance.
@@ -132,6 +124,6 @@ impl Simulation {
         let beam = self.system().beam().ok_or(SectionError::NoAxis)?;
         let nodal = self.nodal_stress();
         let line = |along: f64| SectionLine { at: bent(beam, along, 0.0), angle: axis_angle(beam, along) };
-        self.sections_of(along.map(line), Some(&nodal)).collect()
+        along.map(line).map(self.cutter(Some(&nodal))).collect()
     }
 }

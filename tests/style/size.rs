@@ -14,7 +14,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("study", &["src/study"], 7_030),
     ("model", &["src/model", "src/scene"], 3_224),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
-    ("simulation", &["src/simulation"], 2_620),
+    ("simulation", &["src/simulation"], 2_612),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_502),
     ("dynamics", &["src/dynamics"], 1_969),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_225;
+const SRC: usize = 61_217;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
