@@ -24,7 +24,7 @@ pub(crate) use table::{check, check_required};
 pub(crate) use table::{keys_of, name_of};
 
 use crate::format::number;
-use crate::sentence::sentence;
+use crate::sentence::{Sentence, sentence};
 
 /// Complete description of a simulation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -283,39 +283,24 @@ impl Scene {
 
     /// Checks everything but the kinds and ranges of [`keys::KEYS`].
     fn validate_choices(&self) -> Result<(), Invalid> {
-        if self.name.trim().is_empty() {
-            return Err(Invalid::new("name", "expected a title, got an empty string"));
-        }
+        let dynamic = self.analysis == Analysis::Dynamic;
+        refuse_if(self.name.trim().is_empty(), "name", "expected a title, got an empty string")?;
         let poisson = self.material.plane.poisson_limit().check(self.material.poisson);
         poisson.map_err(|message| Invalid::new("material.poisson", message))?;
-        let dynamic = self.analysis == Analysis::Dynamic;
-        if self.supports.is_empty() && !dynamic {
-            return Err(Invalid::new("support", sentence!("expected at least one support, got none")));
-        }
-        if dynamic && self.material.density == 0.0 {
-            return Err(Invalid::new(
-                "material.density",
-                sentence!("expected a density above 0: without mass nothing moves"),
-            ));
-        }
+        let unsupported = self.supports.is_empty() && !dynamic;
+        refuse_if(unsupported, "support", sentence!("expected at least one support, got none"))?;
+        let massless = sentence!("expected a density above 0: without mass nothing moves");
+        refuse_if(dynamic && self.material.density == 0.0, "material.density", massless)?;
         for (i, support) in self.supports.iter().enumerate() {
             let key = format!("support.{i}");
             support.validate(&key)?;
-            if dynamic && support.moves() {
-                let name = if support.turn == 0.0 { "displacement" } else { "turn" };
-                return Err(Invalid::new(
-                    format!("{key}.{name}"),
-                    "expected analysis = \"static\", or no value: supports of a dynamic scene cannot move",
-                ));
-            }
+            let name = if support.turn == 0.0 { "displacement" } else { "turn" };
+            let message = "expected analysis = \"static\", or no value: supports of a dynamic scene cannot move";
+            refuse_if(dynamic && support.moves(), format!("{key}.{name}"), message)?;
         }
         for (i, load) in self.loads.iter().enumerate() {
-            if load.pulse().is_some() && !dynamic {
-                return Err(Invalid::new(
-                    format!("load.{i}.pulse"),
-                    "expected analysis = \"dynamic\", or no pulse: a pulse acts for a time",
-                ));
-            }
+            let message = "expected analysis = \"dynamic\", or no pulse: a pulse acts for a time";
+            refuse_if(load.pulse().is_some() && !dynamic, format!("load.{i}.pulse"), message)?;
         }
         for (i, probe) in self.probes.iter().enumerate() {
             if let Some(first) = self.probes[..i].iter().position(|other| other.name == probe.name) {
@@ -323,18 +308,18 @@ impl Scene {
                 return Err(Invalid::new(format!("probe.{i}.name"), message));
             }
         }
-        if dynamic && self.solver.accept_after != 0 {
-            let message = "expected analysis = \"static\", or 0: in a dynamic scene, dynamics.iterations limits the solves per \
-                 stage";
-            return Err(Invalid::new("solver.accept_after", message));
-        }
-        let given = |key, is_default: bool| {
-            let message = "expected analysis = \"dynamic\" in a scene with this table";
-            if dynamic || is_default { Ok(()) } else { Err(Invalid::new(key, message)) }
-        };
-        given("dynamics", is_default(&self.dynamics))?;
-        given("start", is_default(&self.start))
+        let message = "expected analysis = \"static\", or 0: in a dynamic scene, dynamics.iterations limits the solves per \
+             stage";
+        refuse_if(dynamic && self.solver.accept_after != 0, "solver.accept_after", message)?;
+        let message = "expected analysis = \"dynamic\" in a scene with this table";
+        refuse_if(!dynamic && !is_default(&self.dynamics), "dynamics", message)?;
+        refuse_if(!dynamic && !is_default(&self.start), "start", message)
     }
+}
+
+/// Returns the error of a key if `refused` is `true`.
+fn refuse_if(refused: bool, key: impl Into<String>, message: impl Into<Sentence>) -> Result<(), Invalid> {
+    if refused { Err(Invalid::new(key, message)) } else { Ok(()) }
 }
 
 /// Largest ratio of the sides of a cell; beyond it rounding errors dominate the element stiffness.

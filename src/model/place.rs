@@ -5,9 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::dynamics::Pulse;
 use super::error::Invalid;
-use super::is_default;
+use super::{is_default, refuse_if};
 use crate::format::{number, six_digits};
-use crate::sentence::Sentence;
 
 /// Whole edge or single point.
 ///
@@ -125,27 +124,17 @@ impl Support {
     }
 
     pub(super) fn validate(&self, key: &str) -> Result<(), Invalid> {
-        if self.fix.is_empty() {
-            return Err(Invalid::new(format!("{key}.fix"), "expected \"x\", \"y\" or both, got none"));
+        refuse_if(self.fix.is_empty(), format!("{key}.fix"), "expected \"x\", \"y\" or both, got none")?;
+        let [x, y] = [Axis::X, Axis::Y].map(|axis| self.fix.contains(&axis));
+        for (word, fixed, value) in [("x", x, self.displacement[0]), ("y", y, self.displacement[1])] {
+            let message = format!("expected 0 along {word}, which this support does not fix, got {}", number(value));
+            refuse_if(value != 0.0 && !fixed, format!("{key}.displacement"), message)?;
         }
-        let refuse = |name: &str, message: Sentence| Err(Invalid::new(format!("{key}.{name}"), message));
-        for (axis, word, value) in [(Axis::X, "x", self.displacement[0]), (Axis::Y, "y", self.displacement[1])] {
-            if value != 0.0 && !self.fix.contains(&axis) {
-                let message =
-                    format!("expected 0 along {word}, which this support does not fix, got {}", number(value));
-                return refuse("displacement", message.into());
-            }
-        }
-        if self.turn != 0.0 && !matches!(self.place, Place::Edge(_)) {
-            return refuse("turn", "expected edge = \"…\" for this support: a single node cannot be rotated".into());
-        }
-        if self.turn != 0.0 && !(self.fix.contains(&Axis::X) && self.fix.contains(&Axis::Y)) {
-            return refuse(
-                "turn",
-                "expected fix = [\"x\", \"y\"] for this support: a rotation moves nodes along both axes".into(),
-            );
-        }
-        Ok(())
+        let (turns, key) = (self.turn != 0.0, format!("{key}.turn"));
+        let message = "expected edge = \"…\" for this support: a single node cannot be rotated";
+        refuse_if(turns && !matches!(self.place, Place::Edge(_)), key.as_str(), message)?;
+        let message = "expected fix = [\"x\", \"y\"] for this support: a rotation moves nodes along both axes";
+        refuse_if(turns && !(x && y), key, message)
     }
 }
 
