@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
 use super::progress::Watch;
-use super::solved::{SolvedScene, Spent};
+use super::solved::SolvedScene;
 use super::{
     CliError, NOT_CONVERGED, about, check_fit, check_suffix, exit_code, json, sections_of, simulate, text, validated,
 };
@@ -24,6 +24,7 @@ use crate::study::{
     Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError,
     Tuning, moved_points, parallel, path_chart,
 };
+use crate::timings::Timings;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
@@ -90,9 +91,21 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     drop(watch);
     let mut solution = simulation.solution();
     solution.energy.supports = solution.energy.supports.or(path.and_then(|path: PathSummary| path.supports_work));
-    let mut stages = *simulation.timings();
-    stages.certify += certify_path;
-    let spent = Spent { wall: began.elapsed(), set_up, stages, stress: stress_time, reference: reference_time };
+    let (stages, wall) = (*simulation.timings(), began.elapsed());
+    let Timings { rotate, linearize, factorize, solve, advance, certify } = stages;
+    let other = wall.saturating_sub(set_up + stages.total() + certify_path + stress_time + reference_time);
+    let parts = [
+        ("rotate", rotate),
+        ("assemble", linearize),
+        ("factorize", factorize),
+        ("solve", solve + advance),
+        ("certify", certify + certify_path),
+        ("set_up", set_up),
+        ("stress", stress_time),
+        ("reference", reference_time),
+        ("other", other),
+    ];
+    let solve = stages.total().saturating_sub(certify);
     let mut warnings = limits_of(&simulation, &solution.deformation, &stress);
     if let Some(Err(error)) = &reference {
         warnings.push(match error {
@@ -113,7 +126,8 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let rho = solution.certificate.and_then(|certificate| certificate.fixed_point_rho);
     let claims = Claim::of_result(&simulation, rho, path.as_ref(), reference.as_ref());
     let simulation = &simulation;
-    let solved = SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent };
+    let solved =
+        SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, wall, solve, parts };
     text::print(&if json { json::solution(&solved) } else { text::solution(&solved) })?;
     // Print the result even if its file could not be written.
     written?;

@@ -16,7 +16,7 @@ pub(super) fn text(object: &Value) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, .. } = solved;
     let (scene, ledger) = (simulation.scene(), simulation.motion().map(Motion::ledger));
     // The last finite state of a diverging iteration has no meaning but its positions.
     let diverged = matches!(solution.status, Status::Diverged(_));
@@ -29,7 +29,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
     let certificate = solution.certificate.unwrap_or_default();
     let deformation = &solution.deformation;
-    let times = [("total", spent.solve()), ("wall", spent.wall)].into_iter().chain(spent.parts());
+    let times = [("total", solved.solve), ("wall", solved.wall)].into_iter().chain(solved.parts);
     let microseconds = times.map(|(name, time)| (name.to_owned(), json!(time.as_secs_f64() * 1e6)));
     let time_us: Map<String, Value> = microseconds.collect();
     // Linear theory follows no path.

@@ -61,7 +61,7 @@ pub(super) fn adapters(adapters: &[AdapterReport]) -> String {
 
 /// Formats a result.
 pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
-    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, spent } = solved;
+    let SolvedScene { simulation, solution, stress, sections, path, reference, claims, warnings, .. } = solved;
     let (scene, motion) = (simulation.scene(), simulation.motion());
     let within = Contexts::of(solved);
     let (element, unknowns, word) =
@@ -175,11 +175,10 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     }
     text.push_str(&notes(warnings));
     let seconds = |time: std::time::Duration| engineering(time.as_secs_f64(), "s");
-    let parts = spent.parts();
-    let shown = parts.iter().filter(|(_, time)| !time.is_zero());
+    let shown = solved.parts.iter().filter(|(_, time)| !time.is_zero());
     let shown: Vec<String> =
         shown.map(|(name, time)| format!("{} {}", name.replace('_', " "), seconds(*time))).collect();
-    let _ = writeln!(text, "time {}: {}", seconds(spent.wall), shown.join(", "));
+    let _ = writeln!(text, "time {}: {}", seconds(solved.wall), shown.join(", "));
     text
 }
 
