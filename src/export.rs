@@ -3,11 +3,12 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::dynamics::Ledger;
@@ -328,17 +329,16 @@ fn csv(simulation: &Simulation) -> String {
 
 /// Writes a `DataArray`, one row per line; writes nothing if `rows` is `None`, because VTK cannot represent missing
 /// values.
-fn data_array<T: std::fmt::Display, const K: usize>(
-    text: &mut String,
-    kind: &str,
-    name: &str,
-    rows: Option<Vec<[T; K]>>,
-) {
-    let Some(rows) = rows else { return };
+fn data_array<T: Display, const K: usize>(text: &mut String, kind: &str, name: &str, rows: Option<Vec<[T; K]>>) {
     let name = xml_attribute(name);
-    let _ = writeln!(text, r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{K}" format="ascii">"#);
+    rows.map(|rows| array(text, format_args!(r#"type="{kind}" Name="{name}" NumberOfComponents="{K}""#), rows));
+}
+
+/// Writes a `DataArray` with these attributes, one row per line.
+fn array<T: Display>(text: &mut String, about: impl Display, rows: impl IntoIterator<Item: AsRef<[T]>>) {
+    let _ = writeln!(text, r#"<DataArray {about} format="ascii">"#);
     for row in rows {
-        let _ = writeln!(text, "{}", row.map(|v| v.to_string()).join(" "));
+        let _ = writeln!(text, "{}", row.as_ref().iter().map(T::to_string).collect::<Vec<_>>().join(" "));
     }
     let _ = writeln!(text, "</DataArray>");
 }
@@ -384,34 +384,18 @@ fn vtu(simulation: &Simulation) -> String {
     let _ = writeln!(text, r#"<?xml version="1.0"?>"#);
     let _ = writeln!(text, r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">"#);
     let _ = writeln!(text, r#"<UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#);
-    let _ = writeln!(text, r#"<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">"#);
-    for x in mesh.nodes() {
-        let _ = writeln!(text, "{} {} 0", x.x, x.y);
-    }
-    let _ = writeln!(text, "</DataArray></Points>\n<Cells>");
-    let _ = writeln!(text, r#"<DataArray type="Int32" Name="connectivity" format="ascii">"#);
-    for nodes in mesh.elements() {
-        let _ = writeln!(text, "{}", nodes.iter().map(u32::to_string).collect::<Vec<_>>().join(" "));
-    }
-    let _ = writeln!(text, "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">");
-    for cell in 1..=cells {
-        let _ = writeln!(text, "{}", cell * entry.nodes.len());
-    }
-    let _ = writeln!(text, "</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">");
-    for _ in 0..cells {
-        let _ = writeln!(text, "{}", entry.vtk_type);
-    }
-    let _ = writeln!(text, "</DataArray>\n</Cells>\n<PointData Vectors=\"displacement\">");
-    let mut vectors = vec![("displacement", simulation.displacement())];
+    let _ = write!(text, "<Points>");
+    let vectors = |of: &[Vector2<f64>]| of.iter().map(|v| [v.x, v.y, 0.0]).collect::<Vec<_>>();
+    array(&mut text, r#"type="Float64" NumberOfComponents="3""#, vectors(mesh.nodes()));
+    text.pop();
+    let _ = writeln!(text, "</Points>\n<Cells>");
+    array(&mut text, r#"type="Int32" Name="connectivity""#, mesh.elements());
+    array(&mut text, r#"type="Int32" Name="offsets""#, (1..=cells).map(|cell| [cell * entry.nodes.len()]));
+    array(&mut text, r#"type="UInt8" Name="types""#, vec![[entry.vtk_type]; cells]);
+    let _ = writeln!(text, "</Cells>\n<PointData Vectors=\"displacement\">");
+    data_array(&mut text, "Float64", "displacement", Some(vectors(simulation.displacement())));
     if simulation.motion().is_some() {
-        vectors.push(("velocity", simulation.state().velocity()));
-    }
-    for (name, nodal) in vectors {
-        let _ = writeln!(text, r#"<DataArray type="Float64" Name="{name}" NumberOfComponents="3" format="ascii">"#);
-        for v in nodal {
-            let _ = writeln!(text, "{} {} 0", v.x, v.y);
-        }
-        let _ = writeln!(text, "</DataArray>");
+        data_array(&mut text, "Float64", "velocity", Some(vectors(simulation.state().velocity())));
     }
     nodal_data(&mut text, simulation);
     let _ = writeln!(text, "</PointData>\n<CellData>");
