@@ -27,8 +27,9 @@ pub use language::Language;
 pub use modes::compare::{Pane, PaneSetting, PaneSettingError, parse_panes};
 #[doc(hidden)]
 pub use modes::learn::card_count;
-pub use offscreen::record::{MovieFormat, RecordError, RecordOptions, Recorded, record};
-pub use offscreen::shot::{Canvas, FrameTimes, MAX_SHOT_SIDE, Shot, ShotOptions, picture, shot};
+pub use offscreen::options::{AdapterArgs, LookArgs, RecordOptions, ShotOptions};
+pub use offscreen::record::{MovieFormat, RecordError, Recorded, record};
+pub use offscreen::shot::{Canvas, FrameTimes, Shot, picture, shot};
 pub use panel::PANEL_WIDTH;
 pub use session::recovery::{RecoveryCopies, Unsaved};
 #[doc(hidden)]

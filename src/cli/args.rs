@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::CliError;
+use super::shared_args::{OutputArgs, RequiredSceneArgs, SceneArgs};
 #[cfg(feature = "app")]
-use super::draw_args::{AdapterArgs, DEFAULT_PICTURE, RECORD_NOTES, RecordArgs, ShotArgs};
-use super::shared_args::{OutputArgs, RequiredSceneArgs, SceneArgs, within};
+use crate::app::{AdapterArgs, RecordOptions, ShotOptions};
 use crate::scene::keys::range;
 use crate::scene::limits::{BUDGET_MS, COORDINATE, ROTATION};
+use crate::scene::units::within;
 use crate::study::Effort;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
@@ -246,6 +247,52 @@ pub(super) struct TuneArgs {
     /// Save the scene with the chosen setting; the rest of its text stays as it is.
     #[arg(long, value_name = "FILE.toml")]
     pub write: Option<PathBuf>,
+}
+
+/// Default image file if there is no display.
+#[cfg(feature = "app")]
+pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
+
+/// Notes about files in `record --help`.
+#[cfg(feature = "app")]
+pub(super) const RECORD_NOTES: &str = "\
+OUT.gif loops forever and has one palette of 256 colours. GIF frame times are hundredths of a second: if --fps does \
+not fit, the nearest rate is used and printed.
+A name without extension is a folder for images in full colour, frame-0001.png, frame-0002.png, ..., ready for
+  ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
+
+Camera and colour range fit the whole motion, which is computed once before it is drawn.
+Ctrl-C ends with a shorter, valid recording and exit code 1.
+";
+
+#[cfg(feature = "app")]
+#[derive(Debug, Args)]
+pub(super) struct ShotArgs {
+    #[command(flatten)]
+    pub scene: RequiredSceneArgs,
+    /// Image file to write.
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub options: ShotOptions,
+}
+
+#[cfg(feature = "app")]
+#[derive(Debug, Args)]
+pub(super) struct RecordArgs {
+    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
+    #[arg(required_unless_present = "story")]
+    pub scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub set: super::shared_args::SetArgs,
+    /// Record the story of the window's first start, 20 s on the default scene, in place of a scene.
+    #[arg(long, conflicts_with_all = ["scene", "assignments", "seconds", "speed"])]
+    pub story: bool,
+    /// File or folder to write.
+    #[arg(short, long, value_name = "OUT.gif|FOLDER")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub options: RecordOptions,
 }
 
 #[cfg(test)]

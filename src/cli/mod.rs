@@ -22,16 +22,12 @@ mod args;
 mod commands;
 mod contexts;
 #[cfg(feature = "app")]
-mod draw_args;
-#[cfg(feature = "app")]
 mod driver;
 #[cfg(feature = "app")]
 mod explorer;
 mod json;
 mod limits;
 mod progress;
-#[cfg(feature = "app")]
-mod record;
 mod section;
 mod shared_args;
 mod solved;
@@ -140,7 +136,7 @@ fn run() -> ExitCode {
         #[cfg(feature = "app")]
         Some(Command::Shot(args)) => window::shot(args),
         #[cfg(feature = "app")]
-        Some(Command::Record(args)) => record::record(args),
+        Some(Command::Record(args)) => window::record(args),
         #[cfg(feature = "app")]
         Some(Command::Gpu(args)) => window::gpu(args.adapter.as_deref()),
     };

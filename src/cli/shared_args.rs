@@ -8,8 +8,6 @@ use super::{CliError, check_suffix};
 use crate::export;
 use crate::plot::Drawing;
 use crate::scene;
-use crate::scene::limits::Limit;
-use crate::scene::units;
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
@@ -45,14 +43,6 @@ impl From<SceneArgs> for scene::Source {
 impl From<RequiredSceneArgs> for scene::Source {
     fn from(args: RequiredSceneArgs) -> Self {
         Self { name: args.scene, assignments: args.set.assignments }
-    }
-}
-
-/// Returns a parser of numbers within the limit, in its unit or with another unit of the same dimension.
-pub(super) fn within(limit: Limit) -> impl Fn(&str) -> Result<f64, CliError> + Clone + Send + Sync {
-    move |text| {
-        let value = units::parse(text, limit.unit)?;
-        Ok(limit.check(value).map(|()| value).map_err(|message| message.to_string())?)
     }
 }
 

@@ -1,42 +1,26 @@
-//! Commands `run`, `shot` and `gpu`.
+//! Commands `run`, `shot`, `record` and `gpu`.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::args::SolveArgs;
-use super::draw_args::{DEFAULT_PICTURE, ShotArgs};
+use super::args::{DEFAULT_PICTURE, RecordArgs, ShotArgs, SolveArgs};
 use super::progress::Watch;
 use super::shared_args::{RequiredSceneArgs, SetArgs};
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
 use crate::app;
+use crate::format::{count, number};
 use crate::render;
 use crate::scene::{self, registry};
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
-    let options = app::ShotOptions {
-        size: args.size,
-        panel: !args.no_panel,
-        field: args.field,
-        magnification: args.magnify.unwrap_or_default(),
-        curve: args.curve,
-        sections: args.sections,
-        study: args.study,
-        limits: args.limits,
-        learn: args.learn.map(usize::from),
-        motion: args.motion,
-        compare: args.compare.unwrap_or_default(),
-        theme: args.look.theme,
-        language: args.look.language,
-        adapter: args.look.adapter.adapter,
-    };
-    let output = args.output;
+    let ShotArgs { scene, output, options } = args;
     check_suffix(&output, ".png")?;
-    let source = scene::Source::from(args.scene);
+    let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
-    fits("--compare", !options.compare.is_empty(), false, "it shows equilibria; for a motion, use --motion")?;
+    fits("--compare", options.compare.is_some(), false, "it shows equilibria; for a motion, use --motion")?;
     fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;
     fits("--sections", options.sections, false, "for a motion, use `warpbeam section`")?;
     fits("--motion", options.motion.is_some(), true, "it shows integrators; for an equilibrium, use --compare")?;
@@ -91,7 +75,8 @@ pub(super) fn run(
             let set = SetArgs { assignments: source.assignments.clone() };
             let scene_args = RequiredSceneArgs { scene: source.name.clone(), set };
             commands::solve(SolveArgs { scene: scene_args, ..SolveArgs::default() })?;
-            let options = app::ShotOptions { adapter, ..Default::default() };
+            let look = app::LookArgs { adapter: app::AdapterArgs { adapter }, ..Default::default() };
+            let options = app::ShotOptions { size: [1280, 800], look, ..Default::default() };
             app::shot(source, scene, simulation, &options, output, &|_| ControlFlow::Continue(()))?;
         }
     }
@@ -107,4 +92,39 @@ pub(super) fn gpu(name: Option<&str>) -> Result<ExitCode, CliError> {
     // The error has the reason for which none is used.
     render::Gpu::headless_on(name).map_err(app::AppError::from)?;
     Ok(ExitCode::SUCCESS)
+}
+
+pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
+    let RecordArgs { scene, set, output, options, .. } = args;
+    let source = scene.map(|name| scene::Source { name, assignments: set.assignments });
+    let opened = source.map(|source| scene::open(&source).map(|scene| (source, scene))).transpose()?;
+    let watch = Watch::new();
+    let recorded = app::record(opened, &options, &output, &|progress| watch.observe(progress));
+    drop(watch);
+    let recorded = recorded?;
+    if recorded.pictures == 0 {
+        eprintln!("warpbeam: interrupted before the first picture: nothing was written");
+        return Ok(ExitCode::from(NOT_CONVERGED));
+    }
+    text::print(&summary(&recorded, options.fps, &output))?;
+    if recorded.interrupted {
+        eprintln!("warpbeam: interrupted: the recording is partial");
+        return Ok(ExitCode::from(NOT_CONVERGED));
+    }
+    if let Some(reason) = recorded.status.failure() {
+        eprintln!("warpbeam: {}: {reason}", recorded.status.word());
+    }
+    Ok(exit_code(&recorded.status))
+}
+
+/// Describes the written file and its frame rate.
+fn summary(recorded: &app::Recorded, asked: Option<u16>, output: &Path) -> String {
+    let app::Recorded { pictures, rate, .. } = recorded;
+    let rounded = number((100.0 * rate).round() / 100.0);
+    let mut text = format!("{}: {}, {rounded} per second", output.display(), count(*pictures, "picture"));
+    if let Some(asked) = asked.filter(|&asked| (f64::from(asked) - rate).abs() > 1e-9) {
+        // Folders have every rate.
+        text += &format!(" (a GIF cannot have {asked})");
+    }
+    text + "\n"
 }

@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::Invalid;
 use super::keys::KEYS;
+use super::limits::Limit;
 use crate::sentence::{Sentence, sentence};
 
 /// Exponents of metre, kilogram, second and radian. The radian is included so that `1/s` is not an angular velocity.
@@ -187,6 +188,14 @@ pub fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     // Positive powers of ten are exact, negative ones are not.
     let tens = typed.tens - target.tens;
     Ok(if tens < 0 { value / 10f64.powi(-tens) } else { value * 10f64.powi(tens) })
+}
+
+/// Returns a parser of numbers within a limit, in its unit or with another unit of the same dimension.
+pub fn within(limit: Limit) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text| {
+        let value = parse(text, limit.unit).map_err(|error| error.to_string())?;
+        limit.check(value).map(|()| value).map_err(|message| message.to_string())
+    }
 }
 
 /// Removes thousands separators (`1,234,567` and `30 000` become `1234567` and `30000`) and replaces a typographic minus;

@@ -10,13 +10,13 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 25_644),
+    ("app", &["src/app"], 25_705),
     ("study", &["src/study"], 7_030),
-    ("model", &["src/model", "src/scene"], 3_198),
+    ("model", &["src/model", "src/scene"], 3_207),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
     ("simulation", &["src/simulation"], 2_612),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_480),
+    ("cli", &["src/cli"], 2_328),
     ("dynamics", &["src/dynamics"], 1_969),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_153;
+const SRC: usize = 61_071;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -5,75 +5,16 @@ use std::path::Path;
 use egui_wgpu::ScreenDescriptor;
 use web_time::{Duration, Instant};
 
-use crate::app::language::Language;
-use crate::app::modes::compare::PaneSetting;
+use crate::app::AppError;
+use crate::app::offscreen::options::ShotOptions;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::shell::lab::Lab;
-use crate::app::view_options::Magnification;
-use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
 use crate::progress::Observer;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
-use crate::scene::{IntegratorKind, Scene, Source};
-use crate::simulation::{Field, Simulation, Status};
+use crate::scene::{Scene, Source};
+use crate::simulation::{Simulation, Status};
 use crate::study::{Extent, Study, StudyError};
-
-/// Largest side of a shot, pixels.
-pub const MAX_SHOT_SIDE: u32 = 8192;
-
-/// Options of a shot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShotOptions {
-    /// Size, pixels.
-    pub size: [u32; 2],
-    /// `true` if the panel is shown.
-    pub panel: bool,
-    /// Field that colours the body.
-    pub field: Field,
-    /// Factor of the drawn displacement.
-    pub magnification: Magnification,
-    /// `true` if the load curve is shown, in the mode Measure.
-    pub curve: bool,
-    /// `true` if the plots of the sections are shown.
-    pub sections: bool,
-    /// `true` if the speed–accuracy study is measured and shown, in place of the load curve.
-    pub study: bool,
-    /// `true` if the limits of every method and element are shown.
-    pub limits: bool,
-    /// Number of the card of Learn that is shown, from 1. It has the article's beam, whatever the scene.
-    pub learn: Option<usize>,
-    /// Integrators that are shown in addition to the scene's; `None` if the plot of a motion's energy is hidden.
-    pub motion: Option<Vec<IntegratorKind>>,
-    /// Settings compared in panes; empty for a single view of the scene.
-    pub compare: Vec<PaneSetting>,
-    /// Light or dark.
-    pub theme: ThemeChoice,
-    /// Language of the texts.
-    pub language: Language,
-    /// Part of the name of the graphics adapter; `None` stands for `WGPU_ADAPTER_NAME`.
-    pub adapter: Option<String>,
-}
-
-impl Default for ShotOptions {
-    fn default() -> Self {
-        Self {
-            size: [1280, 800],
-            panel: true,
-            field: Field::default(),
-            magnification: Magnification::None,
-            curve: false,
-            sections: false,
-            study: false,
-            limits: false,
-            motion: None,
-            compare: Vec::new(),
-            learn: None,
-            theme: ThemeChoice::default(),
-            language: Language::default(),
-            adapter: None,
-        }
-    }
-}
 
 /// Result of [`shot`].
 #[derive(Clone, Debug, PartialEq)]
@@ -97,12 +38,12 @@ pub fn shot(
     output: &Path,
     observe: Observer<'_>,
 ) -> Result<Shot, AppError> {
-    let gpu = Gpu::headless_on(options.adapter.as_deref())?;
+    let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
-    lab.set_panel(options.panel);
-    lab.set_language(options.language);
+    lab.set_panel(!options.no_panel);
+    lab.set_language(options.look.language);
     lab.color_with(options.field);
-    lab.magnify(options.magnification);
+    lab.magnify(options.magnify.unwrap_or_default());
     if options.curve {
         lab.show_curve();
     }
@@ -110,7 +51,7 @@ pub fn shot(
         lab.show_sections();
     }
     if let Some(card) = options.learn {
-        lab.show_card(card);
+        lab.show_card(card.into());
     }
     let mut study_error = None;
     if options.study {
@@ -126,11 +67,11 @@ pub fn shot(
         lab.show_motion_plots();
         integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
     }
-    if !options.compare.is_empty() {
-        lab.show_comparison(&options.compare);
+    if let Some(panes) = &options.compare {
+        lab.show_comparison(panes);
     }
     lab.solve();
-    let picture = picture(&gpu, &mut lab, options.size, 1.0, options.theme.into())?;
+    let picture = picture(&gpu, &mut lab, options.size, 1.0, options.look.theme.into())?;
     picture.write_png(output).map_err(RenderError::from)?;
     Ok(Shot { status: lab.simulation().status().clone(), study_error })
 }

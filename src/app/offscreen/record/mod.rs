@@ -8,12 +8,13 @@ use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
-use crate::app::language::{self, Language, fill};
+use crate::app::AppError;
+use crate::app::language::{self, fill};
+use crate::app::offscreen::options::RecordOptions;
 use crate::app::offscreen::shot::Canvas;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::story;
-use crate::app::{AppError, ThemeChoice};
 use crate::image::Picture;
 use crate::progress::{Observer, Progress};
 use crate::render::interpolated_field::InterpolatedField;
@@ -96,27 +97,6 @@ impl From<&RecordError> for Sentence {
     }
 }
 
-/// Options of a recording.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordOptions {
-    /// Size, pixels.
-    pub size: [u32; 2],
-    /// Recorded duration of a motion, s; `None` means the scene's duration.
-    pub seconds: Option<f64>,
-    /// Playback speed, simulated seconds per second of the recording; `None` means 1.
-    pub speed: Option<f64>,
-    /// Frames per second; `None` means 25 for a motion, and 4 for an iteration.
-    pub fps: Option<u16>,
-    /// `true` if numbered images in the folder are replaced.
-    pub overwrite: bool,
-    /// Light or dark.
-    pub theme: ThemeChoice,
-    /// Language of the texts.
-    pub language: Language,
-    /// Part of the name of the graphics adapter; `None` stands for `WGPU_ADAPTER_NAME`.
-    pub adapter: Option<String>,
-}
-
 /// Result of a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -164,8 +144,8 @@ pub fn record(
     let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
     let simulation = Simulation::new(&scene).map_err(failed)?;
     let again = || Simulation::with_system(&scene, simulation.system().clone()).map_err(failed);
-    let gpu = Gpu::headless_on(options.adapter.as_deref())?;
-    let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.theme.into())?;
+    let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
+    let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.look.theme.into())?;
 
     let rate = match moves {
         true => MOTION_RATE,
@@ -187,7 +167,7 @@ pub fn record(
 
     let new_lab = || -> Result<Lab, AppError> {
         let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-        lab.set_language(options.language);
+        lab.set_language(options.look.language);
         if let Some(preview) = &preview {
             lab.set_panel(false);
             let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));

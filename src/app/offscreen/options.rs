@@ -1,23 +1,25 @@
-//! Command line arguments of the commands that draw.
-
-use std::path::PathBuf;
+//! Options of images and recordings, as the commands `shot` and `record` read them.
 
 use clap::Args;
 
-use super::CliError;
-use super::shared_args::{RequiredSceneArgs, SetArgs, within};
-use crate::app;
+use crate::app::ThemeChoice;
+use crate::app::language::Language;
+use crate::app::modes::compare::{PaneSetting, parse_panes};
+use crate::app::modes::learn::card_count;
+use crate::app::view_options::Magnification;
 use crate::dynamics::INTEGRATORS;
 use crate::scene::IntegratorKind;
 use crate::scene::keys::range;
 use crate::scene::limits::PLAYBACK_SPEED;
+use crate::scene::units::within;
 use crate::simulation::Field;
 
-/// Default image file if there is no display.
-pub(super) const DEFAULT_PICTURE: &str = "warpbeam.png";
+/// Largest side of a shot, pixels.
+const MAX_SHOT_SIDE: u32 = 8192;
 
-#[derive(Debug, Args)]
-pub(super) struct AdapterArgs {
+/// Choice of the graphics adapter.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
+pub struct AdapterArgs {
     /// Graphics adapter: a part of its name, in lower or upper case; `warpbeam gpu` lists the names. Default: the
     /// environment variable WGPU_ADAPTER_NAME, or the best adapter that works. WGPU_BACKEND (vulkan, metal, dx12, gl)
     /// restricts the choice.
@@ -25,25 +27,23 @@ pub(super) struct AdapterArgs {
     pub adapter: Option<String>,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct LookArgs {
+/// Appearance of a picture.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
+pub struct LookArgs {
     /// Colour theme.
-    #[arg(long, value_enum, default_value_t = app::ThemeChoice::Dark)]
-    pub theme: app::ThemeChoice,
+    #[arg(long, value_enum, default_value_t = ThemeChoice::Dark)]
+    pub theme: ThemeChoice,
     /// Language.
-    #[arg(long, value_enum, default_value_t = app::Language::English)]
-    pub language: app::Language,
+    #[arg(long, value_enum, default_value_t = Language::English)]
+    pub language: Language,
+    /// Graphics adapter.
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct ShotArgs {
-    #[command(flatten)]
-    pub scene: RequiredSceneArgs,
-    /// Image file to write.
-    #[arg(short, long, value_name = "OUT.png")]
-    pub output: PathBuf,
+/// Options of a shot.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
+pub struct ShotOptions {
     /// Size in pixels, 64x64 to 8192x8192.
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = parse_size)]
     pub size: [u32; 2],
@@ -56,7 +56,7 @@ pub(super) struct ShotArgs {
     pub field: Field,
     /// Draw the body with a multiple of its displacement: a factor, or `auto` for about a twentieth of the body's size.
     #[arg(long, value_name = "FACTOR", value_parser = parse_magnification, conflicts_with = "learn")]
-    pub magnify: Option<app::Magnification>,
+    pub magnify: Option<Magnification>,
     /// Add the load–deflection curve.
     #[arg(long)]
     pub curve: bool,
@@ -71,7 +71,7 @@ pub(super) struct ShotArgs {
     #[arg(long, conflicts_with_all = ["curve", "sections", "study", "learn", "motion", "compare"])]
     pub limits: bool,
     /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene.
-    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(app::card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "sections", "motion"])]
+    #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "sections", "motion"])]
     pub learn: Option<u8>,
     /// For a dynamic scene: add the plot of its energy, and show the same motion with other integrators side by side.
     #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "sections", "study"])]
@@ -79,39 +79,19 @@ pub(super) struct ShotArgs {
     /// Show two to four panes side by side under one load. A pane is a method, an element, cells or an iteration limit,
     /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
-    #[arg(long, value_name = "PANE,PANE", value_parser = app::parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
+    #[arg(long, value_name = "PANE,PANE", value_parser = parse_panes, conflicts_with_all = ["curve", "sections", "study", "motion"])]
     pub compare: Option<PaneSettings>,
+    /// Appearance.
     #[command(flatten)]
     pub look: LookArgs,
 }
 
 /// Panes of a comparison, as the option --compare lists them: one value, which clap would not read as a `Vec`.
-type PaneSettings = Vec<app::PaneSetting>;
+type PaneSettings = Vec<PaneSetting>;
 
-/// Notes about files in `record --help`.
-pub(super) const RECORD_NOTES: &str = "\
-OUT.gif loops forever and has one palette of 256 colours. GIF frame times are hundredths of a second: if --fps does \
-not fit, the nearest rate is used and printed.
-A name without extension is a folder for images in full colour, frame-0001.png, frame-0002.png, ..., ready for
-  ffmpeg -framerate 25 -i FOLDER/frame-%04d.png -pix_fmt yuv420p OUT.mp4
-
-Camera and colour range fit the whole motion, which is computed once before it is drawn.
-Ctrl-C ends with a shorter, valid recording and exit code 1.
-";
-
-#[derive(Debug, Args)]
-pub(super) struct RecordArgs {
-    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
-    #[arg(required_unless_present = "story")]
-    pub scene: Option<PathBuf>,
-    #[command(flatten)]
-    pub set: SetArgs,
-    /// Record the story of the window's first start, 20 s on the default scene, in place of a scene.
-    #[arg(long, conflicts_with_all = ["scene", "assignments", "seconds", "speed"])]
-    pub story: bool,
-    /// File or folder to write.
-    #[arg(short, long, value_name = "OUT.gif|FOLDER")]
-    pub output: PathBuf,
+/// Options of a recording.
+#[derive(Clone, Debug, PartialEq, Args)]
+pub struct RecordOptions {
     /// Duration to record: 2, 2s or 500ms. Default: the scene's dynamics.duration.
     #[arg(long, value_name = "TIME", value_parser = within(range("dynamics.duration")))]
     pub seconds: Option<f64>,
@@ -127,31 +107,32 @@ pub(super) struct RecordArgs {
     /// Replace existing numbered images in the folder.
     #[arg(long)]
     pub overwrite: bool,
+    /// Appearance.
     #[command(flatten)]
     pub look: LookArgs,
 }
 
-fn parse_integrator(text: &str) -> Result<IntegratorKind, CliError> {
+fn parse_integrator(text: &str) -> Result<IntegratorKind, String> {
     let known = || INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", ");
     let entry = INTEGRATORS.iter().find(|entry| entry.id == text);
-    Ok(entry.ok_or_else(|| format!("expected one of {}", known()))?.kind)
+    entry.map(|entry| entry.kind).ok_or_else(|| format!("expected one of {}", known()))
 }
 
-fn parse_field(text: &str) -> Result<Field, CliError> {
+fn parse_field(text: &str) -> Result<Field, String> {
     let known = || Field::ALL.map(Field::id).join(", ");
     let field = Field::ALL.into_iter().find(|field| field.id() == text);
-    Ok(field.ok_or_else(|| format!("expected one of {}", known()))?)
+    field.ok_or_else(|| format!("expected one of {}", known()))
 }
 
-fn parse_magnification(text: &str) -> Result<app::Magnification, CliError> {
+fn parse_magnification(text: &str) -> Result<Magnification, String> {
     match text {
-        "auto" => Ok(app::Magnification::Automatic),
-        _ => within(app::Magnification::LIMIT)(text).map(app::Magnification::Factor),
+        "auto" => Ok(Magnification::Automatic),
+        _ => within(Magnification::LIMIT)(text).map(Magnification::Factor),
     }
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], CliError> {
-    let side = |text: &str| text.trim().parse().ok().filter(|side| (64..=app::MAX_SHOT_SIDE).contains(side));
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.trim().parse().ok().filter(|side| (64..=MAX_SHOT_SIDE).contains(side));
     let sides = text.split_once(['x', 'X', '×']).and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    Ok(sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, each from 64 to {}, as in 1280x800", app::MAX_SHOT_SIDE))?)
+    sides.ok_or_else(|| format!("expected WIDTHxHEIGHT, each from 64 to {MAX_SHOT_SIDE}, as in 1280x800"))
 }
