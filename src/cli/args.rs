@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::CliError;
-use super::shared_args::{OutputArgs, RequiredSceneArgs, SceneArgs};
+use super::shared_args::{OutputArgs, SceneArgs, or_default};
 #[cfg(feature = "app")]
 use crate::app::{AdapterArgs, RecordOptions, ShotOptions};
 use crate::scene::keys::range;
@@ -54,7 +54,7 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Open the window. Without a display, solve the scene and write an image.
     #[cfg(feature = "app")]
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, mut_arg("scene", or_default))]
     Run {
         #[command(flatten)]
         scene: SceneArgs,
@@ -83,6 +83,7 @@ pub(super) enum Command {
     /// (study.csv), a plot with the Pareto front (study.svg) and a summary (study.txt). For a dynamic scene:
     /// the error of the first probe's path against the computing time per simulated second, also for every integrator
     /// and time step, with the energy drift.
+    #[command(mut_arg("scene", or_default))]
     Study {
         #[command(flatten)]
         scene: SceneArgs,
@@ -130,7 +131,7 @@ pub(super) enum Command {
 #[derive(Debug, Default, Args)]
 pub(super) struct SolveArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
@@ -173,7 +174,7 @@ impl SolveArgs {
 #[derive(Debug, Args)]
 pub(super) struct CurveArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
     pub outputs: OutputArgs,
     /// Quantity in the figure: `PROBE.x` or `PROBE.y` for a component of a probe's displacement, `PROBE.path` for one
@@ -186,7 +187,7 @@ pub(super) struct CurveArgs {
 #[derive(Debug, Args)]
 pub(super) struct SectionArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     /// Point of the cut on the body at rest: X and Y, or X alone if the line crosses the body in one place. Numbers are
     /// in m, or have units: --at "30 mm,2 mm". Default: the sections of the scene.
     #[arg(long, value_name = "X[,Y]", value_parser = parse_place, allow_hyphen_values = true)]
@@ -216,7 +217,7 @@ fn parse_place(text: &str) -> Result<(f64, Option<f64>), CliError> {
 #[derive(Debug, Args)]
 pub(super) struct LimitsArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     /// Print one JSON object, and nothing else, on standard output.
     #[arg(long)]
     pub json: bool,
@@ -237,7 +238,7 @@ pub(super) struct FolderArgs {
 #[derive(Debug, Args)]
 pub(super) struct TuneArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
     #[arg(long, value_name = "PERCENT", value_parser = within(range("solver.max_error_percent")))]
     pub error: Option<f64>,
@@ -269,7 +270,7 @@ Ctrl-C ends with a shorter, valid recording and exit code 1.
 #[derive(Debug, Args)]
 pub(super) struct ShotArgs {
     #[command(flatten)]
-    pub scene: RequiredSceneArgs,
+    pub scene: SceneArgs,
     /// Image file to write.
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
@@ -279,12 +280,10 @@ pub(super) struct ShotArgs {
 
 #[cfg(feature = "app")]
 #[derive(Debug, Args)]
+#[command(mut_arg("scene", |scene| scene.required(false).required_unless_present("story")))]
 pub(super) struct RecordArgs {
-    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
-    #[arg(required_unless_present = "story")]
-    pub scene: Option<PathBuf>,
     #[command(flatten)]
-    pub set: super::shared_args::SetArgs,
+    pub scene: SceneArgs,
     /// Record the story of the window's first start, 20 s on the default scene, in place of a scene.
     #[arg(long, conflicts_with_all = ["scene", "assignments", "seconds", "speed"])]
     pub story: bool,

@@ -122,7 +122,7 @@ fn run() -> ExitCode {
         None => Ok(ExitCode::from(BAD_INPUT)),
         #[cfg(feature = "app")]
         Some(Command::Run { scene, output, adapter }) => {
-            let is_default = scene.scene.is_none() && scene.set.assignments.is_empty();
+            let is_default = scene.scene.is_none() && scene.assignments.is_empty();
             window::run(scene.into(), &output, adapter.adapter, is_default)
         }
         Some(Command::Scenes) => text::print(&text::scenes()).map(|()| ExitCode::SUCCESS),

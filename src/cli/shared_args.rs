@@ -2,47 +2,34 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Arg, Args};
 
 use super::{CliError, check_suffix};
 use crate::export;
 use crate::plot::Drawing;
 use crate::scene;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct SceneArgs {
-    /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input. Default: cantilever.
-    pub scene: Option<PathBuf>,
-    #[command(flatten)]
-    pub set: SetArgs,
-}
-
-#[derive(Debug, Default, Args)]
-pub(super) struct RequiredSceneArgs {
     /// Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input.
-    pub scene: PathBuf,
-    #[command(flatten)]
-    pub set: SetArgs,
-}
-
-#[derive(Debug, Default, Args)]
-pub(super) struct SetArgs {
+    #[arg(required = true)]
+    pub scene: Option<PathBuf>,
     /// Change a value of the scene: material.young=2e6, beam.cells=[40,2], load.0.force=[0,-5]. Numbers may have units:
     /// material.young="210 GPa", load.0.force=[0 N, -12 kN].
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub assignments: Vec<String>,
 }
 
-impl From<SceneArgs> for scene::Source {
-    fn from(args: SceneArgs) -> Self {
-        let name = args.scene.unwrap_or_else(|| scene::registry::DEFAULT.into());
-        Self { name, assignments: args.set.assignments }
-    }
+/// Lets a command without a scene take the default one.
+pub(super) fn or_default(scene: Arg) -> Arg {
+    const HELP: &str =
+        "Built-in scene (see `warpbeam scenes`) or scene file; `-` reads standard input. Default: cantilever";
+    scene.required(false).help(HELP)
 }
 
-impl From<RequiredSceneArgs> for scene::Source {
-    fn from(args: RequiredSceneArgs) -> Self {
-        Self { name: args.scene, assignments: args.set.assignments }
+impl From<SceneArgs> for scene::Source {
+    fn from(SceneArgs { scene, assignments }: SceneArgs) -> Self {
+        Self { name: scene.unwrap_or_else(|| scene::registry::DEFAULT.into()), assignments }
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use super::args::{DEFAULT_PICTURE, RecordArgs, ShotArgs, SolveArgs};
 use super::progress::Watch;
-use super::shared_args::{RequiredSceneArgs, SetArgs};
+use super::shared_args::SceneArgs;
 use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
 use crate::app;
 use crate::format::{count, number};
@@ -72,8 +72,7 @@ pub(super) fn run(
             let simulation = small.map_or_else(simulation, Ok)?;
             let picture = output.display();
             text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
-            let set = SetArgs { assignments: source.assignments.clone() };
-            let scene_args = RequiredSceneArgs { scene: source.name.clone(), set };
+            let scene_args = SceneArgs { scene: Some(source.name.clone()), assignments: source.assignments.clone() };
             commands::solve(SolveArgs { scene: scene_args, ..SolveArgs::default() })?;
             let look = app::LookArgs { adapter: app::AdapterArgs { adapter }, ..Default::default() };
             let options = app::ShotOptions { size: [1280, 800], look, ..Default::default() };
@@ -95,8 +94,8 @@ pub(super) fn gpu(name: Option<&str>) -> Result<ExitCode, CliError> {
 }
 
 pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
-    let RecordArgs { scene, set, output, options, .. } = args;
-    let source = scene.map(|name| scene::Source { name, assignments: set.assignments });
+    let RecordArgs { scene, story, output, options } = args;
+    let source = (!story).then(|| scene::Source::from(scene));
     let opened = source.map(|source| scene::open(&source).map(|scene| (source, scene))).transpose()?;
     let watch = Watch::new();
     let recorded = app::record(opened, &options, &output, &|progress| watch.observe(progress));

@@ -16,7 +16,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
     ("simulation", &["src/simulation"], 2_612),
     ("assembly", &["src/assembly"], 3_055),
-    ("cli", &["src/cli"], 2_328),
+    ("cli", &["src/cli"], 2_313),
     ("dynamics", &["src/dynamics"], 1_969),
     ("render", &["src/render"], 1_945),
     ("element", &["src/element"], 2_027),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_071;
+const SRC: usize = 61_056;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
