@@ -103,8 +103,8 @@ impl DisplayGeometry {
     /// Computes the components of a field at every point; `None` where they are not finite.
     pub(crate) fn components(&self, field: &InterpolatedField, at_points: &mut Vec<Option<Components>>) {
         at_points.clear();
-        let components = field.components();
-        match field.values() {
+        let components = &field.components;
+        match field.values {
             PointValues::Recovered => {
                 let own = self.nodes.chunks(self.stride.max(1)).zip(self.weights.chunks(self.stride.max(1)));
                 at_points.extend(own.map(|(nodes, weights)| {

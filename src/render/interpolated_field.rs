@@ -58,14 +58,15 @@ fn components_of(Local { strain, rotation }: &Local) -> Components {
 /// them: the von Mises stress of a bent beam vanishes at its neutral axis, although it is large at all nodes.
 #[derive(Debug)]
 pub(crate) struct InterpolatedField {
-    field: Field,
-    values: PointValues,
-    material: Material,
-    kinematics: Kinematics,
-    /// Components at the nodes if these are their source, else at every quadrature point.
-    components: Vec<Components>,
+    pub field: Field,
+    /// Source of the components.
+    pub values: PointValues,
+    pub material: Material,
+    pub kinematics: Kinematics,
+    /// Components at the nodes or at every quadrature point, by [`Self::values`]; NaN where the field has no value.
+    pub components: Vec<Components>,
     /// Largest magnitude of components that are not of the rotation.
-    largest_component: f64,
+    pub largest_component: f64,
     nodal: NodalStress,
     scratch: RecoveryScratch,
     of_elements: Vec<Option<f64>>,
@@ -141,32 +142,6 @@ impl InterpolatedField {
             && self.kinematics == simulation.kinematics()
     }
 
-    /// Returns the displayed field.
-    pub(crate) fn field(&self) -> Field {
-        self.field
-    }
-
-    /// Returns the material of the body.
-    pub(crate) fn material(&self) -> Material {
-        self.material
-    }
-
-    /// Returns the strain measure of the state.
-    pub(crate) fn kinematics(&self) -> Kinematics {
-        self.kinematics
-    }
-
-    /// Returns the source of the components.
-    pub(crate) fn values(&self) -> PointValues {
-        self.values
-    }
-
-    /// Returns the components at the nodes or at every quadrature point, by [`Self::values`]; NaN where the field has
-    /// no value.
-    pub(crate) fn components(&self) -> &[Components] {
-        &self.components
-    }
-
     /// Returns the value of interpolated components.
     pub(crate) fn value(&self, components: Components) -> Option<f64> {
         self.field.of_components(components, &self.material, self.kinematics)
@@ -185,11 +160,6 @@ impl InterpolatedField {
             }
         };
         self.value(components?)
-    }
-
-    /// Returns the largest magnitude of components that are not of the rotation.
-    pub(crate) fn largest_component(&self) -> f64 {
-        self.largest_component
     }
 
     /// Returns the largest magnitude of the values at the nodes, or at the corners of every element if the components

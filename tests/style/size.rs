@@ -18,7 +18,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_313),
     ("dynamics", &["src/dynamics"], 1_969),
-    ("render", &["src/render"], 1_945),
+    ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_056;
+const SRC: usize = 61_026;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -173,7 +173,7 @@ impl BodyMesh {
 
     /// Returns the range of the field's values in the current state.
     pub(crate) fn value_range(&self) -> [f64; 2] {
-        self.field.field().range(self.largest)
+        self.field.field.range(self.largest)
     }
 
     /// Returns `true` if the field has a value at a drawn point.
@@ -192,11 +192,11 @@ impl BodyMesh {
             stamp: self.stamp,
             positions: &self.points,
             triangles: &geometry.triangles,
-            field: self.field.field(),
+            field: self.field.field,
             components: &self.components,
-            largest_component: self.field.largest_component(),
-            material: self.field.material(),
-            kinematics: self.field.kinematics(),
+            largest_component: self.field.largest_component,
+            material: self.field.material,
+            kinematics: self.field.kinematics,
             range: self.range,
             lines: if wireframe { &geometry.lines } else { &[] },
             triangles_of_lines: &geometry.triangles_of_lines,
