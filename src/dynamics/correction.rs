@@ -87,11 +87,6 @@ impl Corrector {
         self.kept.weights = None;
     }
 
-    /// Records that the factor is no longer that of a constant matrix.
-    pub fn matrix_changes(&mut self) {
-        self.constant = None;
-    }
-
     /// Keeps the factor just computed for this state's matrix for later stages.
     pub fn keep(&mut self, weights: Weights, system: &System, state: &State) {
         let Kept { then, .. } = &mut self.kept;

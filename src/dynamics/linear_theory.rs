@@ -35,7 +35,7 @@ const NO_WAY: f64 = 1e-12;
 #[derive(Debug, Default)]
 pub(crate) struct LinearTheory {
     /// `true` if the current state is that of linear theory.
-    in_use: bool,
+    pub in_use: bool,
     /// `true` if linear theory was rejected and not tried again since.
     refused: bool,
     /// Estimated phase error, rad.
@@ -83,11 +83,6 @@ impl StepScratch {
 }
 
 impl LinearTheory {
-    /// Returns `true` if the current state is that of linear theory.
-    pub fn is_in_use(&self) -> bool {
-        self.in_use
-    }
-
     /// Returns `true` if linear theory should be tried for a step from `state`; `asked` is the requested error. The
     /// rotations of the state decide if linear theory is not in use.
     pub fn is_worth_a_try(&self, state: &State, asked: f64) -> bool {
@@ -143,16 +138,6 @@ impl LinearTheory {
         }
         (self.in_use, self.refused) = (accepted, !accepted);
         Ok(accepted)
-    }
-
-    /// Sets whether the current state is that of linear theory.
-    pub fn set_in_use(&mut self, in_use: bool) {
-        self.in_use = in_use;
-    }
-
-    /// Records that the current state is no longer that of linear theory.
-    pub fn leave(&mut self) {
-        self.in_use = false;
     }
 
     /// Resets everything but the work memory, for another motion.

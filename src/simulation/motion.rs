@@ -70,7 +70,7 @@ pub struct Moment {
 impl Moment {
     pub(super) fn of(motion: &TimeStepping, Body { state, scene, .. }: &Body) -> Self {
         let TimeStepping { ledger, counts, decision, ref linear, .. } = *motion;
-        let (is_linear, method) = (linear.is_in_use(), scene.solver.method);
+        let (is_linear, method) = (linear.in_use, scene.solver.method);
         Self { state: state.clone(), ledger, counts, decision, is_linear, method }
     }
 
@@ -79,7 +79,7 @@ impl Moment {
         self.state.copy_from(state);
         self.method = scene.solver.method;
         (self.ledger, self.counts, self.decision) = (motion.ledger, motion.counts, motion.decision);
-        self.is_linear = motion.linear.is_in_use();
+        self.is_linear = motion.linear.in_use;
     }
 
     /// Returns the state of the body.
@@ -142,7 +142,7 @@ impl TimeStepping {
         let Moment { state, ledger, counts, decision, is_linear, method } = moment;
         body.state.copy_from(state);
         self.linear.invalidate();
-        self.linear.set_in_use(*is_linear);
+        self.linear.in_use = *is_linear;
         // Only for another method: recomputed edge angles differ by rounding errors, and the same steps would not
         // repeat exactly.
         if *method != body.scene.solver.method {
@@ -251,7 +251,7 @@ impl TimeStepping {
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
             let (decision, steps) = match self.counts.factorizations > factorizations {
-                _ if self.linear.is_in_use() => (Decision::Linear, &mut self.counts.linear_steps),
+                _ if self.linear.in_use => (Decision::Linear, &mut self.counts.linear_steps),
                 true => (Decision::NewFactor, &mut self.counts.new_factor_steps),
                 false => (Decision::OldFactor, &mut self.counts.old_factor_steps),
             };
@@ -283,7 +283,7 @@ impl TimeStepping {
 
     /// Performs a step of length h; `auto` uses linear theory if it is accurate enough.
     fn take_step(&mut self, body: &mut Body, h: f64) -> Result<StepEnergy, StepError> {
-        let (asked, was_in_use) = (asked_error(&body.scene), self.linear.is_in_use());
+        let (asked, was_in_use) = (asked_error(&body.scene), self.linear.in_use);
         let decides = self.decides(&body.scene) && body.problem.mouse_spring().is_none();
         if decides && self.linear.is_worth_a_try(&body.state, asked) {
             if !was_in_use {
@@ -301,7 +301,7 @@ impl TimeStepping {
         } else if !was_in_use {
             return self.try_step(body, self.kinematics(), h);
         }
-        self.linear.leave();
+        self.linear.in_use = false;
         self.change_kinematics(body, Kinematics::Corotated);
         if was_in_use {
             self.change_theory(body);
@@ -368,7 +368,7 @@ impl TimeStepping {
     }
 
     pub(super) fn kinematics(&self) -> Kinematics {
-        let linear = self.method == MotionMethod::Linear || self.linear.is_in_use();
+        let linear = self.method == MotionMethod::Linear || self.linear.in_use;
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
@@ -391,7 +391,8 @@ impl TimeStepping {
         }
         self.is_guarded = true;
         self.quiet_steps = 0;
-        self.memory.corrector.matrix_changes();
+        // The spring adds to the matrix.
+        self.memory.corrector.constant = None;
     }
 
     /// Returns the forces and accelerations of the current state that sections balance, with this force of the mouse

@@ -14,10 +14,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("study", &["src/study"], 7_030),
     ("model", &["src/model", "src/scene"], 3_207),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
-    ("simulation", &["src/simulation"], 2_612),
+    ("simulation", &["src/simulation"], 2_613),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_313),
-    ("dynamics", &["src/dynamics"], 1_969),
+    ("dynamics", &["src/dynamics"], 1_949),
     ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 61_026;
+const SRC: usize = 61_007;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
