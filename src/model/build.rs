@@ -505,35 +505,25 @@ impl Scene {
         /// Smallest number of time steps in a pulse that resolve its shape in outline.
         const RESOLVED: f64 = 5.0;
         let DynamicsSettings { duration, time_step, .. } = self.dynamics;
-        let pulses = self.loads.iter().enumerate().filter_map(|(i, load)| Some((i, load.pulse()?)));
-        pulses
-            .filter_map(|(i, pulse)| {
-                let seconds = |time: f64| engineering(time, "s");
-                if pulse.end() <= 0.0 || pulse.start >= duration {
-                    Some(format!(
-                        "the pulse of load.{i}, from {} to {}, is outside the motion, which lasts {}",
-                        seconds(pulse.start),
-                        seconds(pulse.end()),
-                        seconds(duration)
-                    ))
-                } else if pulse.duration < time_step {
-                    Some(format!(
-                        "the pulse of load.{i} lasts {}, less than a time step of {}: its impulse is exact, its shape \
-                         is not resolved",
-                        seconds(pulse.duration),
-                        seconds(time_step)
-                    ))
-                } else if pulse.duration < RESOLVED * time_step {
-                    Some(format!(
-                        "the pulse of load.{i} lasts {}, only {:.1} time steps: a twentieth of it resolves its shape",
-                        seconds(pulse.duration),
-                        pulse.duration / time_step
-                    ))
-                } else {
-                    None
-                }
-            })
-            .collect()
+        let warning = |(i, load): (usize, &Load)| {
+            let pulse = load.pulse()?;
+            let [start, end, motion, length, step] =
+                [pulse.start, pulse.end(), duration, pulse.duration, time_step].map(|time| engineering(time, "s"));
+            let steps = pulse.duration / time_step;
+            let reason = if pulse.end() <= 0.0 || pulse.start >= duration {
+                format!(", from {start} to {end}, is outside the motion, which lasts {motion}")
+            } else if pulse.duration < time_step {
+                format!(
+                    " lasts {length}, less than a time step of {step}: its impulse is exact, its shape is not resolved"
+                )
+            } else if pulse.duration < RESOLVED * time_step {
+                format!(" lasts {length}, only {steps:.1} time steps: a twentieth of it resolves its shape")
+            } else {
+                return None;
+            };
+            Some(format!("the pulse of load.{i}{reason}"))
+        };
+        self.loads.iter().enumerate().filter_map(warning).collect()
     }
 
     /// Sets the element type of the scene's mesh. Does nothing if the scene has neither a beam nor a mesh file.
