@@ -109,23 +109,13 @@ pub const MAX_STATES: u64 = 300;
 #[derive(Debug)]
 pub struct MotionWriter {
     path: PathBuf,
-    kind: MotionFile,
-}
-
-#[derive(Debug)]
-enum MotionFile {
-    Table(BufWriter<File>),
-    Series(Series),
-    Last,
-}
-
-/// States of a `.pvd` file written so far.
-#[derive(Debug)]
-struct Series {
+    format: Format,
+    /// File of a table.
+    table: Option<BufWriter<File>>,
     /// Steps between written states, and steps since the last one.
     stride: u64,
     steps: u64,
-    /// Times, s, and file names.
+    /// Times, s, and file names of the states written so far.
     states: Vec<(f64, String)>,
 }
 
@@ -135,28 +125,25 @@ impl MotionWriter {
     /// # Errors
     /// [`ExportError`].
     pub fn create(simulation: &Simulation, path: &Path) -> Result<Self, ExportError> {
-        let kind = match Format::of(path)? {
-            Format::Csv => MotionFile::Table(BufWriter::new(File::create(path).map_err(failed(path))?)),
+        let (format, mut table, mut stride) = (Format::of(path)?, None, 1);
+        match format {
+            Format::Csv => {
+                let mut file = BufWriter::new(File::create(path).map_err(failed(path))?);
+                file.write_all(table_header(simulation).as_bytes()).map_err(failed(path))?;
+                table = Some(file);
+            }
             Format::Vtu => {
                 // Opens the file now, so that a missing folder is reported before the simulation runs.
                 File::options().write(true).create(true).truncate(false).open(path).map_err(failed(path))?;
-                MotionFile::Last
             }
             Format::Pvd => {
                 let settings = &simulation.scene().dynamics;
                 let steps = (settings.duration / settings.time_step).ceil() as u64;
-                MotionFile::Series(Series { stride: steps.div_ceil(MAX_STATES).max(1), steps: 0, states: Vec::new() })
+                stride = steps.div_ceil(MAX_STATES).max(1);
             }
-        };
-        let mut writer = Self { path: path.to_owned(), kind };
-        match &mut writer.kind {
-            MotionFile::Table(file) => {
-                let rows = table_header(simulation) + &table_row(simulation);
-                file.write_all(rows.as_bytes()).map_err(failed(path))?;
-            }
-            MotionFile::Series(series) => series.add(simulation, path)?,
-            MotionFile::Last => {}
         }
+        let mut writer = Self { path: path.to_owned(), format, table, stride, steps: 0, states: Vec::new() };
+        writer.write(simulation)?;
         Ok(writer)
     }
 
@@ -165,47 +152,38 @@ impl MotionWriter {
     /// # Errors
     /// [`ExportError::Write`].
     pub fn add(&mut self, simulation: &Simulation) -> Result<(), ExportError> {
-        match &mut self.kind {
-            MotionFile::Table(file) => {
-                file.write_all(table_row(simulation).as_bytes()).map_err(failed(&self.path))?;
-            }
-            MotionFile::Series(series) => {
-                series.steps += 1;
-                if series.steps == series.stride {
-                    series.add(simulation, &self.path)?;
-                }
-            }
-            MotionFile::Last => {}
-        }
-        Ok(())
+        self.steps += 1;
+        if self.steps == self.stride { self.write(simulation) } else { Ok(()) }
     }
 
     /// Completes the file with the last state.
     ///
     /// # Errors
     /// [`ExportError::Write`].
-    pub fn finish(self, simulation: &Simulation) -> Result<(), ExportError> {
-        match self.kind {
-            MotionFile::Table(mut file) => file.flush().map_err(failed(&self.path)),
-            MotionFile::Series(mut series) => {
-                if series.steps > 0 {
-                    series.add(simulation, &self.path)?;
-                }
-                write_text(&self.path, &collection(&series.states))
-            }
-            MotionFile::Last => write_text(&self.path, &vtu(simulation)),
+    pub fn finish(mut self, simulation: &Simulation) -> Result<(), ExportError> {
+        if self.steps > 0 {
+            self.write(simulation)?;
+        }
+        match (self.format, self.table) {
+            (Format::Pvd, _) => write_text(&self.path, &collection(&self.states)),
+            (_, Some(mut table)) => table.flush().map_err(failed(&self.path)),
+            (_, None) => write_text(&self.path, &vtu(simulation)),
         }
     }
-}
 
-impl Series {
-    fn add(&mut self, simulation: &Simulation, collection: &Path) -> Result<(), ExportError> {
-        // Lossy conversion: the collection lists the file names as XML text.
-        let stem = collection.file_stem().unwrap_or_default().to_string_lossy();
-        let name = format!("{stem}_{:04}.vtu", self.states.len());
-        write_text(&collection.with_file_name(&name), &vtu(simulation))?;
-        self.states.push((simulation.state().time(), name));
+    /// Writes a row of the table, or a file of the series.
+    fn write(&mut self, simulation: &Simulation) -> Result<(), ExportError> {
         self.steps = 0;
+        if let Some(table) = &mut self.table {
+            return table.write_all(table_row(simulation).as_bytes()).map_err(failed(&self.path));
+        }
+        if self.format == Format::Pvd {
+            // Lossy conversion: the collection lists the file names as XML text.
+            let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+            let name = format!("{stem}_{:04}.vtu", self.states.len());
+            write_text(&self.path.with_file_name(&name), &vtu(simulation))?;
+            self.states.push((simulation.state().time(), name));
+        }
         Ok(())
     }
 }

@@ -22,11 +22,11 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
     ("plot", &["src/plot"], 799),
-    ("the rest of src", &["src"], 5_136),
+    ("the rest of src", &["src"], 5_114),
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_997;
+const SRC: usize = 60_975;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
