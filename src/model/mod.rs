@@ -328,21 +328,16 @@ const MAX_CELL_ASPECT: f64 = 1e5;
 impl Beam {
     fn validate(&self) -> Result<(), Invalid> {
         let total = f64::from(self.cells[0]) * f64::from(self.cells[1]);
-        if limits::TOTAL_CELLS.check(total).is_err() {
-            let ([low, high], got) = (limits::TOTAL_CELLS.ends(), number(total));
-            let message = sentence!("expected %{low} to %{high}, got %{got} cells in all", low, high, got);
-            return Err(Invalid::new("beam.cells", message));
-        }
+        let ([low, high], got) = (limits::TOTAL_CELLS.ends(), number(total));
+        let message = sentence!("expected %{low} to %{high}, got %{got} cells in all", low, high, got);
+        refuse_if(limits::TOTAL_CELLS.check(total).is_err(), "beam.cells", message)?;
         let aspect = self.cell_aspect();
-        if (1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect) {
-            return Ok(());
-        }
         let message = sentence!(
             "expected cells at most %{n} times as long as high or as high as long, got %{got}",
             n = number(MAX_CELL_ASPECT),
             got = number(aspect)
         );
-        Err(Invalid::new("beam.cells", message))
+        refuse_if(!(1.0 / MAX_CELL_ASPECT..=MAX_CELL_ASPECT).contains(&aspect), "beam.cells", message)
     }
 
     /// Returns the height of the axis at rest above its ends, m; `along` is 0 at the left end and 1 at the right end.

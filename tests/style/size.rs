@@ -12,7 +12,7 @@ use crate::files::rust_files;
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 25_705),
     ("study", &["src/study"], 7_030),
-    ("model", &["src/model", "src/scene"], 3_197),
+    ("model", &["src/model", "src/scene"], 3_192),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
     ("simulation", &["src/simulation"], 2_613),
     ("assembly", &["src/assembly"], 3_055),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_975;
+const SRC: usize = 60_970;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
