@@ -35,6 +35,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     state.displacement.overwrite().copy_from_slice(&solver.memory.free_flight);
     solver.update_rotations(state);
     let stage = Stage {
+        start,
         inertia: 2.0 / (h * h),
         from_start: false,
         start_force: None,
@@ -46,7 +47,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         damps_at_midpoint: true,
         damping: 1.0,
     };
-    solver.solve(&stage, start, state)?;
+    solver.solve(&stage, state)?;
     combine(
         &mut state.velocity,
         [(2.0 / h, &state.displacement), (-2.0 / h, &start.displacement), (-1.0, &start.velocity)],

@@ -38,6 +38,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         solver.solves.tangent()
     };
     let stage = Stage {
+        start,
         inertia: 1.0 / (h * h),
         from_start,
         start_force: None,
@@ -48,7 +49,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         damps_at_midpoint: true,
         damping: 1.0,
     };
-    solver.solve(&stage, start, state)?;
+    solver.solve(&stage, state)?;
     combine(&mut state.velocity, [(1.0 / h, &state.displacement), (-1.0 / h, &start.displacement)]);
     state.time = start.time + h;
     if !*records_energy {

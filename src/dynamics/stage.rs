@@ -21,6 +21,8 @@ use crate::timings::{Timings, timed};
 /// is a number.
 #[derive(Debug)]
 pub(super) struct Stage<'a> {
+    /// State at the start of the step.
+    pub start: &'a State,
     /// α, 1/s².
     pub inertia: f64,
     /// `true` if the iteration starts from the state at the start of the step; `false` from the state in free flight.
@@ -115,7 +117,7 @@ impl StageSolver<'_> {
     ///
     /// # Errors
     /// [`StepError`]; the state is then invalid.
-    pub(super) fn solve(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) -> Result<(), StepError> {
+    pub(super) fn solve(&mut self, stage: &Stage<'_>, state: &mut State) -> Result<(), StepError> {
         let (most, tolerance) = match self.solves {
             Solves::Times(most) => (most, None),
             Solves::Tolerance(tolerance) => (MAX_SOLVES, Some(tolerance)),
@@ -129,7 +131,7 @@ impl StageSolver<'_> {
             let tangent = self.tangent(stage);
             // An iteration does not need the current matrix as long as the residual decreases fast.
             let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
-            let residual = self.linearize(stage, tangent.filter(|_| !old), start, state);
+            let residual = self.linearize(stage, tangent.filter(|_| !old), state);
             if !residual.norm.is_finite() {
                 return Err(StepError::NotFinite);
             }
@@ -142,10 +144,10 @@ impl StageSolver<'_> {
             }
             let gets_on = old && residual.norm <= PROGRESS * before;
             if old && !gets_on {
-                self.linearize(stage, tangent, start, state);
+                self.linearize(stage, tangent, state);
             }
             before = residual.norm;
-            self.correct(stage, tangent, gets_on, start, state)?;
+            self.correct(stage, tangent, gets_on, state)?;
             self.update_rotations(state);
         }
         Ok(())
@@ -185,12 +187,12 @@ impl StageSolver<'_> {
     }
 
     /// Computes the residual force of a state, and the matrix if requested.
-    fn linearize(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
+    fn linearize(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> Residual {
         let mut timings = std::mem::take(self.timings);
         let residual = timed(&mut timings.linearize, || {
-            let forces = self.residual(stage, tangent, start, state);
+            let forces = self.residual(stage, tangent, state);
             if let Some(tangent) = tangent {
-                self.complete_matrix(stage, tangent, start, state);
+                self.complete_matrix(stage, tangent, state);
             }
             forces
         });
@@ -200,20 +202,20 @@ impl StageSolver<'_> {
 
     /// Computes the residual force of a state into the memory's forces, and the elements' matrix if requested. Damping
     /// and the mouse spring are included in the residual only.
-    fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, start: &State, state: &State) -> Residual {
+    fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> Residual {
         let Memory { corrector, forces, free_flight, mean, scratch: [increment, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
         let matrix = tangent.map(|tangent| (tangent, &mut corrector.linear.matrix));
         match self.kinematics {
-            Kinematics::Corotated if stage.between => problem.linearize_between([start, state], forces, matrix),
+            Kinematics::Corotated if stage.between => problem.linearize_between([stage.start, state], forces, matrix),
             Kinematics::Linear if stage.between => {
-                combine(mean.displacement.overwrite(), [(0.5, &start.displacement), (0.5, &state.displacement)]);
+                combine(mean.displacement.overwrite(), [(0.5, &stage.start.displacement), (0.5, &state.displacement)]);
                 problem.linearize(mean, forces, matrix);
             }
             _ => problem.linearize(state, forces, matrix),
         }
         if stage.between && self.kinematics == Kinematics::Corotated {
-            problem.loads().force_between(system, [start, state], &mut forces.external);
+            problem.loads().force_between(system, [stage.start, state], &mut forces.external);
         } else {
             problem.loads().force(system, &state.displacement, self.kinematics, 1.0, &mut forces.external);
         }
@@ -227,12 +229,12 @@ impl StageSolver<'_> {
         scale = scale.max(pattern.norm(momentum));
         subtract(momentum, &mut forces.residual);
         if self.damping != Damping::default() {
-            self.damping_force(stage, start, state);
+            self.damping_force(stage, state);
             let Memory { forces, damping, .. } = &mut *self.memory;
             scale = scale.max(self.problem.system().pattern().norm(damping));
             subtract(damping, &mut forces.residual);
         }
-        let applied = self.applied_mouse_spring_force(stage, start, state);
+        let applied = self.applied_mouse_spring_force(stage, state);
         let (problem, forces) = (&*self.problem, &mut self.memory.forces);
         if let Some(spring) = problem.mouse_spring() {
             spring.add_force(applied, &mut forces.residual);
@@ -243,7 +245,7 @@ impl StageSolver<'_> {
     }
 
     /// Computes f_d into the memory.
-    fn damping_force(&mut self, stage: &Stage<'_>, start: &State, state: &State) {
+    fn damping_force(&mut self, stage: &Stage<'_>, state: &State) {
         let Memory { damping, scratch: [configuration, velocity], .. } = &mut *self.memory;
         let Damping { mass, stiffness, .. } = self.damping;
         let terms = terms(stage, state);
@@ -258,7 +260,7 @@ impl StageSolver<'_> {
             damping.iter_mut().for_each(|f| *f *= stage.damping * mass);
         }
         if stiffness > 0.0 {
-            damped_configuration(self.kinematics, stage, start, state, configuration);
+            damped_configuration(self.kinematics, stage, state, configuration);
             let rate = match self.kinematics {
                 Kinematics::Corotated => StrainRate::Difference(terms),
                 Kinematics::Linear => StrainRate::Velocity(velocity),
@@ -269,10 +271,10 @@ impl StageSolver<'_> {
     }
 
     /// Adds the parts of inertia, damping, moments and mouse spring to the elements' matrix.
-    fn complete_matrix(&mut self, stage: &Stage<'_>, tangent: Tangent, start: &State, state: &State) {
+    fn complete_matrix(&mut self, stage: &Stage<'_>, tangent: Tangent, state: &State) {
         if self.damping.stiffness > 0.0 {
             let Memory { corrector, scratch: [configuration, _], .. } = &mut *self.memory;
-            damped_configuration(self.kinematics, stage, start, state, configuration);
+            damped_configuration(self.kinematics, stage, state, configuration);
             let (system, material) = (self.problem.system(), self.problem.material());
             let moduli = material.membrane().scaled(stage.damping * self.damping.stiffness * stage.rate);
             corrector.linear.matrix.sum(|values| {
@@ -287,7 +289,7 @@ impl StageSolver<'_> {
             loads.add_stiffness(self.problem.system(), &state.displacement, tangent.geometric, matrix);
         }
         if let Some(spring) = self.problem.mouse_spring() {
-            let (u, v) = held(stage, spring, start, state);
+            let (u, v) = held(stage, spring, state);
             // Half way through the stage, the point moves half as far as at the end.
             let share = if stage.between { 0.5 } else { 1.0 };
             spring.add_stiffness(u, v, stage.rate / share, share, matrix);
@@ -295,16 +297,10 @@ impl StageSolver<'_> {
     }
 
     /// Factorizes the matrix; if it is not positive definite, a positive definite one is used instead.
-    fn factorize(
-        &mut self,
-        stage: &Stage<'_>,
-        tangent: Tangent,
-        start: &State,
-        state: &State,
-    ) -> Result<(), StepError> {
+    fn factorize(&mut self, stage: &Stage<'_>, tangent: Tangent, state: &State) -> Result<(), StepError> {
         let mut made = self.try_factorize();
         if made.is_err() && tangent.is_exact() {
-            self.linearize(stage, Some(Tangent { definite: true, ..tangent }), start, state);
+            self.linearize(stage, Some(Tangent { definite: true, ..tangent }), state);
             made = self.try_factorize();
         }
         self.memory.corrector.constant = if made.is_ok() { self.constant(stage) } else { None };
@@ -329,7 +325,6 @@ impl StageSolver<'_> {
         stage: &Stage<'_>,
         tangent: Option<Tangent>,
         earlier: bool,
-        start: &State,
         state: &mut State,
     ) -> Result<(), StepError> {
         let is_corrected = tangent.is_some() && self.correct_with_kept_factor(stage, earlier, state);
@@ -337,9 +332,9 @@ impl StageSolver<'_> {
             && !is_corrected
         {
             if earlier {
-                self.linearize(stage, Some(tangent), start, state);
+                self.linearize(stage, Some(tangent), state);
             }
-            self.factorize(stage, tangent, start, state)?;
+            self.factorize(stage, tangent, state)?;
             if self.method == MotionMethod::Adaptive {
                 let weights = self.weights(stage);
                 self.memory.corrector.keep(weights, self.problem.system(), state);
@@ -391,15 +386,15 @@ impl StageSolver<'_> {
 
     /// Stores the same force as it results from the stage's equations at its end: α M (u − û) + f_d without mouse
     /// spring and pulses.
-    pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, start: &State, state: &mut State) {
+    pub(super) fn keep_net_force(&mut self, stage: &Stage<'_>, state: &mut State) {
         let Memory { free_flight, scratch: [increment, _], .. } = &mut *self.memory;
         combine(increment, [(stage.inertia, &state.displacement), (-stage.inertia, free_flight)]);
         self.mass.multiply(increment, &mut state.net_force);
         if self.damping != Damping::default() {
-            self.damping_force(stage, start, state);
+            self.damping_force(stage, state);
             state.net_force.iter_mut().zip(&self.memory.damping).for_each(|(f, d)| *f += d);
         }
-        let applied = self.applied_mouse_spring_force(stage, start, state);
+        let applied = self.applied_mouse_spring_force(stage, state);
         self.add_mouse_spring_force(-applied, &mut state.net_force);
         let mut net_force = std::mem::take(&mut state.net_force);
         self.add_pulse_force(state, -1.0, &mut net_force);
@@ -428,14 +423,15 @@ impl StageSolver<'_> {
     }
 
     /// Returns the force of the mouse spring in a stage's equations, N.
-    pub(super) fn applied_mouse_spring_force(&self, stage: &Stage<'_>, start: &State, state: &State) -> Vector2<f64> {
+    pub(super) fn applied_mouse_spring_force(&self, stage: &Stage<'_>, state: &State) -> Vector2<f64> {
         self.problem.mouse_spring().map_or_else(Vector2::zeros, |spring| {
-            let (u, v) = held(stage, spring, start, state);
+            let (u, v) = held(stage, spring, state);
             spring.force(u, v)
         })
     }
 
-    /// Computes the stage's entries in the ledger; the residual at its end is left in the memory's forces.
+    /// Computes the stage's entries in the ledger, from its own start to its end; the residual there is left in the
+    /// memory's forces.
     ///
     /// The integrator's loss is the work of the unsolved residual, plus the difference between the work of the loads
     /// and that of the forces used. Forces averaged over the stage do exactly the work of the potential; the pulses are
@@ -445,20 +441,20 @@ impl StageSolver<'_> {
     /// The mouse spring is recorded with the mean force that the integrator applies, not with its force at the end
     /// velocity: a firm spring damps a light node within a step, and the end velocity of a trapezoidal stage then
     /// alternates.
-    pub(super) fn record(&mut self, stage: &Stage<'_>, start: &State, state: &State, spring: &MeanForce) -> StepEnergy {
-        let spring = spring.earlier + self.applied_mouse_spring_force(stage, start, state) * spring.share;
-        self.residual(stage, None, start, state);
+    pub(super) fn record(&mut self, stage: &Stage<'_>, from: &State, state: &State, spring: &MeanForce) -> StepEnergy {
+        let spring = spring.earlier + self.applied_mouse_spring_force(stage, state) * spring.share;
+        self.residual(stage, None, state);
         let loads = self.problem.loads();
-        let moved = |spring: &MouseSpring| spring.mean(&state.displacement) - spring.mean(&start.displacement);
+        let moved = |spring: &MouseSpring| spring.mean(&state.displacement) - spring.mean(&from.displacement);
         let moved = self.problem.mouse_spring().map_or_else(Vector2::zeros, moved);
         let Memory { forces, damping, .. } = &*self.memory;
-        let used = work(&forces.external, start, state);
-        let potential = loads.potential(start, 1.0) - loads.potential(state, 1.0);
-        let pulses = if stage.between { used - potential } else { loads.pulse_work([start, state]) };
+        let used = work(&forces.external, from, state);
+        let potential = loads.potential(from, 1.0) - loads.potential(state, 1.0);
+        let pulses = if stage.between { used - potential } else { loads.pulse_work([from, state]) };
         let damps = self.damping != Damping::default();
-        let unsolved = work(&forces.residual, start, state);
+        let unsolved = work(&forces.residual, from, state);
         StepEnergy {
-            dissipated: if damps { work(damping, start, state) } else { 0.0 },
+            dissipated: if damps { work(damping, from, state) } else { 0.0 },
             lost: Some(unsolved + (potential + pulses - used)),
             pulses,
             mouse_spring: spring.dot(&moved),
@@ -477,18 +473,12 @@ impl StageSolver<'_> {
 }
 
 /// Computes the displacement at which damping acts; in linear theory this is the rest position.
-fn damped_configuration(
-    kinematics: Kinematics,
-    stage: &Stage<'_>,
-    start: &State,
-    state: &State,
-    configuration: &mut [Vector2<f64>],
-) {
+fn damped_configuration(kinematics: Kinematics, stage: &Stage<'_>, state: &State, configuration: &mut [Vector2<f64>]) {
     let at_start = if stage.damps_at_midpoint { 0.5 } else { 0.0 };
     match kinematics {
         Kinematics::Linear => configuration.fill(Vector2::zeros()),
         Kinematics::Corotated => {
-            combine(configuration, [(at_start, &start.displacement), (1.0 - at_start, &state.displacement)]);
+            combine(configuration, [(at_start, &stage.start.displacement), (1.0 - at_start, &state.displacement)]);
         }
     }
 }
@@ -501,10 +491,10 @@ fn terms<'a>(stage: &Stage<'a>, state: &'a State) -> [(f64, &'a [Vector2<f64>]);
 }
 
 /// Returns displacement and velocity of the point of the mouse spring, at the place of the stage's forces.
-fn held(stage: &Stage<'_>, spring: &MouseSpring, start: &State, state: &State) -> (Vector2<f64>, Vector2<f64>) {
+fn held(stage: &Stage<'_>, spring: &MouseSpring, state: &State) -> (Vector2<f64>, Vector2<f64>) {
     let u = spring.mean(&state.displacement);
     let v = u * stage.rate + stage.others.iter().map(|(c, other)| spring.mean(other) * *c).sum::<Vector2<f64>>();
-    (if stage.between { (u + spring.mean(&start.displacement)) * 0.5 } else { u }, v)
+    (if stage.between { (u + spring.mean(&stage.start.displacement)) * 0.5 } else { u }, v)
 }
 
 fn subtract(what: &[Vector2<f64>], from: &mut [Vector2<f64>]) {

@@ -46,6 +46,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     // Half of the pulses acts at the start of the step, half at the end of the stage, both with their mean.
     solver.add_pulse_force(start, 1.0, &mut net_force);
     let trapezoid = Stage {
+        start,
         inertia: 4.0 / (g * g),
         from_start: false,
         start_force: Some(&net_force),
@@ -56,7 +57,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         damps_at_midpoint: true,
         damping: 2.0,
     };
-    let solved = solver.solve(&trapezoid, start, state);
+    let solved = solver.solve(&trapezoid, state);
     let recorded = solved.is_ok() && *records_energy;
     combine(
         &mut state.velocity,
@@ -69,7 +70,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         // The damping force of the stage is twice that of the step, because it acts over half of the stage's time.
         energies = StepEnergy { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
     }
-    let spring_at_end = solver.applied_mouse_spring_force(&trapezoid, start, state);
+    let spring_at_end = solver.applied_mouse_spring_force(&trapezoid, state);
     state.net_force = net_force;
     solved?;
     middle.copy_from(state);
@@ -93,6 +94,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     combine(state.displacement.overwrite(), [(1.0, &middle.displacement), (h - g, &middle.velocity)]);
     solver.update_rotations(state);
     let backward = Stage {
+        start,
         inertia: 1.0 / (w * w),
         from_start: false,
         start_force: None,
@@ -103,13 +105,13 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
         damps_at_midpoint: false,
         damping: 1.0,
     };
-    solver.solve(&backward, start, state)?;
+    solver.solve(&backward, state)?;
     combine(
         &mut state.velocity,
         [(1.0 / w, &state.displacement), (-c1 / w, &middle.displacement), (c0 / w, &start.displacement)],
     );
     state.time = start.time + h;
-    solver.keep_net_force(&backward, start, state);
+    solver.keep_net_force(&backward, state);
     if *records_energy {
         // M (v₁ − v_g) = c₀ M (v_g − v₀) + w f₁ is the impulse of this stage.
         let earlier = (spring_at_start + spring_at_end) * (0.5 * g * c0 / (h - g));

@@ -17,7 +17,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("simulation", &["src/simulation"], 2_613),
     ("assembly", &["src/assembly"], 3_055),
     ("cli", &["src/cli"], 2_313),
-    ("dynamics", &["src/dynamics"], 1_949),
+    ("dynamics", &["src/dynamics"], 1_943),
     ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_027),
     ("mesh", &["src/mesh"], 1_962),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_970;
+const SRC: usize = 60_964;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
