@@ -22,7 +22,6 @@ impl Lame {
     }
 
     /// Returns T = 2 μ ε + λ tr(ε) I, Pa, for a strain ε. With the Biot strain S − I this is the Biot stress.
-    #[must_use]
     #[inline]
     pub fn stress<T: Number>(self, strain: &Matrix2<T>) -> Matrix2<T> {
         let (double, pressure) = (T::splat(2.0 * self.mu), T::splat(self.lambda) * (strain.m11 + strain.m22));
@@ -35,7 +34,6 @@ impl Lame {
     }
 
     /// Returns ψ = μ ‖ε‖² + λ/2 tr²(ε), J/m³.
-    #[must_use]
     #[inline]
     pub fn energy_density<T: Number>(self, strain: &Matrix2<T>) -> T {
         let squares =
@@ -48,7 +46,6 @@ impl Lame {
 impl Material {
     /// Returns the Lamé constants of this material under its plane assumption.
     #[doc(hidden)]
-    #[must_use]
     pub fn lame(&self) -> Lame {
         let (e, nu) = (self.young, self.poisson);
         let lambda = match self.plane {
@@ -60,20 +57,17 @@ impl Material {
 
     /// Returns the Lamé constants times the thickness, N/m, which elements integrate over their area.
     #[doc(hidden)]
-    #[must_use]
     pub fn membrane(&self) -> Lame {
         let Lame { lambda, mu } = self.lame();
         Lame { lambda: lambda * self.thickness, mu: mu * self.thickness }
     }
 
     /// Returns the mass per area of the plane, kg/m².
-    #[must_use]
     pub fn area_density(&self) -> f64 {
         self.density * self.thickness
     }
 
     /// Returns the matrix C of σ = C ε with ε = (ε_xx, ε_yy, 2 ε_xy), Pa.
-    #[must_use]
     pub fn elasticity_matrix(&self) -> Matrix3<f64> {
         let Lame { lambda, mu } = self.lame();
         let axial = lambda + 2.0 * mu;
@@ -82,7 +76,6 @@ impl Material {
 
     /// Returns the stress out of the plane for in-plane stresses of the given sum: 0 in plane stress, ν (σ_xx + σ_yy)
     /// in plane strain, Pa.
-    #[must_use]
     pub fn out_of_plane_stress(&self, in_plane_trace: f64) -> f64 {
         match self.plane {
             Plane::Stress => 0.0,

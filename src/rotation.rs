@@ -20,14 +20,12 @@ impl Rotation {
     pub const IDENTITY: Self = Self { c: 1.0, s: 0.0 };
 
     /// Returns the rotation by `angle` (rad, counter-clockwise).
-    #[must_use]
     pub fn from_angle(angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         Self { c, s }
     }
 
     /// Returns the angle in (−π, π], rad.
-    #[must_use]
     pub fn angle(self) -> f64 {
         self.s.atan2(self.c)
     }
@@ -35,21 +33,18 @@ impl Rotation {
 
 impl<T: Number> Rotation<T> {
     /// Returns the matrix of article eq. (39).
-    #[must_use]
     #[inline(always)]
     pub fn matrix(self) -> Matrix2<T> {
         Matrix2::new(self.c, -self.s, self.s, self.c)
     }
 
     /// Returns R v.
-    #[must_use]
     #[inline(always)]
     pub fn apply(self, v: Vector2<T>) -> Vector2<T> {
         Vector2::new(self.c * v.x - self.s * v.y, self.s * v.x + self.c * v.y)
     }
 
     /// Returns Rᵀ v.
-    #[must_use]
     #[inline(always)]
     pub fn apply_inverse(self, v: Vector2<T>) -> Vector2<T> {
         Vector2::new(self.c * v.x + self.s * v.y, self.c * v.y - self.s * v.x)
@@ -89,7 +84,6 @@ const LARGEST_SQUARE: f64 = 1e300;
 /// assert_eq!((r.c, r.s), (0.0, 1.0));
 /// assert!(polar(&Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_none());
 /// ```
-#[must_use]
 #[inline(always)]
 pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
     let mut a = f.m11 + f.m22;
@@ -115,7 +109,6 @@ pub fn polar(f: &Matrix2<f64>) -> Option<Rotation> {
 }
 
 /// Returns [`polar`] of `f`, or `previous` where it is undefined.
-#[must_use]
 #[inline(always)]
 pub fn polar_or<T: Number>(f: &Matrix2<T>, previous: Rotation<T>) -> Rotation<T> {
     polar_or_else(f, || previous)

@@ -56,13 +56,11 @@ impl Sentence {
     }
 
     /// Returns `true` for an empty text.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pattern.is_empty()
     }
 
     /// Renders the sentence; `tr` translates the patterns and the plain texts.
-    #[must_use]
     pub fn render(&self, tr: &dyn Fn(&str) -> &str) -> String {
         let pattern = tr(&self.pattern);
         if self.parts.is_empty() {

@@ -51,7 +51,6 @@ pub enum StateError {
 
 impl State {
     /// Returns a body at rest with these numbers of nodes, rotations and named edges.
-    #[must_use]
     pub(crate) fn at_rest(nodes: usize, rotations: usize, edges: usize) -> Self {
         Self {
             displacement: Displacement::zeros(nodes),
@@ -91,46 +90,39 @@ impl State {
     }
 
     /// Returns the displacement u = x − X of every node, m.
-    #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.displacement
     }
 
     /// Returns the displacement including the digits that [`Self::displacement`] rounds away, m.
     #[doc(hidden)]
-    #[must_use]
     pub fn compensated(&self) -> Compensated<'_> {
         self.displacement.view()
     }
 
     /// Returns the rotations R, element by element: one per `t3` and `q4`, one per quadrature point (three) of a `t6`,
     /// element by element.
-    #[must_use]
     pub fn rotations(&self) -> &[Rotation] {
         &self.rotations
     }
 
     /// Returns the rotation of every named edge of the mesh since rest, rad, counter-clockwise, full turns included, in
     /// the order of their names; 0 for edges that are not straight.
-    #[must_use]
     pub fn edge_angles(&self) -> &[f64] {
         &self.edge_angles
     }
 
     /// Returns the velocity of every node, m/s.
-    #[must_use]
     pub fn velocity(&self) -> &[Vector2<f64>] {
         &self.velocity
     }
 
     /// Returns the time since the start, s.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.time
     }
 
     /// Returns the memory of the state's arrays, bytes.
-    #[must_use]
     pub(crate) fn bytes(&self) -> usize {
         let vectors = 2 * self.displacement.len() + self.velocity.len() + self.net_force.len();
         size_of::<Vector2<f64>>() * vectors
@@ -139,7 +131,6 @@ impl State {
     }
 
     /// Returns `true` if every number is finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         is_finite(&self.displacement)
             && is_finite(&self.velocity)
@@ -186,13 +177,11 @@ pub(crate) fn same_length(what: &'static str, expected: usize, got: usize) -> Re
 }
 
 /// Returns the largest distance of a node between two nodal fields.
-#[must_use]
 pub(crate) fn largest_distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
 /// Returns the largest length in a nodal field.
-#[must_use]
 pub(crate) fn largest(nodal: &[Vector2<f64>]) -> f64 {
     nodal.iter().map(|v| v.norm()).fold(0.0, f64::max)
 }

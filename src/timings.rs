@@ -22,7 +22,6 @@ pub struct Timings {
 
 impl Timings {
     /// Returns the sum of all stages.
-    #[must_use]
     pub fn total(&self) -> Duration {
         self.rotate + self.linearize + self.factorize + self.solve + self.advance + self.certify
     }

@@ -45,20 +45,17 @@ impl Edge {
     }
 
     /// Returns the name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Returns the nodes with their fraction of a uniform traction, ∫ Nₐ ds over the edge's length; the fractions sum
     /// to 1.
-    #[must_use]
     pub fn weights(&self) -> &[(u32, f64)] {
         &self.weights
     }
 
     /// Returns `true` if the edge is straight at rest: only then does it have a direction and can carry a moment.
-    #[must_use]
     pub fn is_straight(&self) -> bool {
         !self.arms.is_empty()
     }

@@ -157,7 +157,6 @@ impl Loads {
     }
 
     /// Returns the end of the last pulse, s; `None` if there are no pulses.
-    #[must_use]
     pub fn last_pulse_end(&self) -> Option<f64> {
         let moments = self.moments.iter().filter_map(|m| m.pulse);
         self.pulses.iter().map(|(pulse, _)| *pulse).chain(moments).map(|p| p.end()).reduce(f64::max)
@@ -165,7 +164,6 @@ impl Loads {
 
     /// Returns the work of the pulses from one state to another at a later time, J: the mean of their forces over that
     /// time times the change of displacement.
-    #[must_use]
     pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {
         let mean = |pulse: &Pulse| pulse.mean(before.time, after.time);
         let increment = |node: u32| after.displacement[node as usize] - before.displacement[node as usize];
@@ -181,7 +179,6 @@ impl Loads {
     }
 
     /// Returns the nodal forces of the dead loads at the current time, N.
-    #[must_use]
     pub fn dead_force(&self) -> &[Vector2<f64>] {
         &self.dead
     }
@@ -277,7 +274,6 @@ impl Loads {
 
     /// Returns the potential of the loads relative to rest at this load factor, J: minus the work of the constant loads
     /// at full size. Pulses have no potential.
-    #[must_use]
     pub fn potential(&self, state: &State, factor: f64) -> f64 {
         let dead: f64 = self.constant.iter().zip(&state.displacement).map(|(f, u)| f.dot(u)).sum();
         let always = self.moments.iter().filter(|m| m.pulse.is_none());

@@ -26,7 +26,6 @@ struct MassEntry {
 
 impl Mass {
     /// Returns the mass of a system's body for a mass per area, kg/m².
-    #[must_use]
     pub fn new(system: &System, area_density: f64) -> Self {
         let mesh = system.mesh();
         let entry = mesh.entry();
@@ -75,13 +74,11 @@ impl Mass {
     }
 
     /// Returns the mass of the whole body, kg.
-    #[must_use]
     pub fn total(&self) -> f64 {
         self.total
     }
 
     /// Returns the lumped mass of every node, kg.
-    #[must_use]
     pub fn lumped(&self) -> &[f64] {
         &self.lumped
     }
@@ -133,7 +130,6 @@ impl Mass {
     }
 
     /// Returns v M v.
-    #[must_use]
     pub fn energy_product(&self, v: &[Vector2<f64>]) -> f64 {
         let term = |MassEntry { nodes: [a, b], mass, .. }: &MassEntry| {
             let product = v[*a as usize].dot(&v[*b as usize]) * mass;

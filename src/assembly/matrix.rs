@@ -20,7 +20,6 @@ pub struct Matrix {
 
 impl Matrix {
     /// Returns the zero matrix.
-    #[must_use]
     pub fn new(pattern: &Pattern) -> Self {
         let (entries, dependent) = (pattern.entries(), pattern.dependent_entries().clone());
         Self { values: vec![0.0; entries + 1 + dependent.entries], entries, dependent }
@@ -32,7 +31,6 @@ impl Matrix {
     }
 
     /// Returns the stored values.
-    #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values[..self.entries]
     }

@@ -73,19 +73,16 @@ impl MouseSpring {
     }
 
     /// Returns the material point that the spring is attached to.
-    #[must_use]
     pub fn point(&self) -> MaterialPoint {
         self.point
     }
 
     /// Returns k, N/m.
-    #[must_use]
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
     /// Returns the largest force, N.
-    #[must_use]
     pub fn largest_force(&self) -> f64 {
         self.stiffness * self.reach
     }
@@ -121,13 +118,11 @@ impl MouseSpring {
     }
 
     /// Returns the position of the point for this displacement, m.
-    #[must_use]
     pub fn position(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.rest + self.mean(u)
     }
 
     /// Returns the target position, m.
-    #[must_use]
     pub fn target(&self) -> Vector2<f64> {
         self.target
     }
@@ -142,7 +137,6 @@ impl MouseSpring {
     }
 
     /// Returns the force on the point, N, for its displacement, m, and velocity, m/s.
-    #[must_use]
     pub fn force(&self, u: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
         self.capped(self.pull(u, v, self.delay), self.stiffness)
     }
@@ -160,7 +154,6 @@ impl MouseSpring {
     }
 
     /// Returns the force on the point of a body at rest, N.
-    #[must_use]
     pub fn force_at_rest(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
         self.force(self.mean(u), self.target_velocity)
     }

@@ -160,49 +160,41 @@ impl Pattern {
     }
 
     /// Returns the number of free unknowns.
-    #[must_use]
     pub fn dofs(&self) -> usize {
         self.free.len()
     }
 
     /// Returns the number of stored entries.
-    #[must_use]
     pub fn entries(&self) -> usize {
         self.row_indices.len()
     }
 
     /// Returns the start of each column in [`Self::row_indices`], and the end of the last.
-    #[must_use]
     pub fn column_starts(&self) -> &[usize] {
         &self.column_starts
     }
 
     /// Returns the row of every entry.
-    #[must_use]
     pub fn row_indices(&self) -> &[usize] {
         &self.row_indices
     }
 
     /// Returns the unknown (2 · node + axis) of each free number.
-    #[must_use]
     pub fn free(&self) -> &[u32] {
         &self.free
     }
 
     /// Returns 1 for free components of nodal vectors, 0 for fixed ones.
-    #[must_use]
     pub fn mask(&self) -> &[Vector2<f64>] {
         &self.mask
     }
 
     /// Returns the nodes with two free components, with the free number of the first; the second has the next number.
-    #[must_use]
     pub fn free_nodes(&self) -> &[(u32, u32)] {
         &self.free_nodes
     }
 
     /// Returns `true` for each component of a node, x and y, that is fixed; `false` for those that depend on others.
-    #[must_use]
     pub fn fixed(&self, node: u32) -> [bool; 2] {
         [0, 1].map(|axis| {
             let unknown = 2 * node + axis;
@@ -218,7 +210,6 @@ impl Pattern {
     }
 
     /// Returns `true` if a displacement is zero at all fixed unknowns and held points.
-    #[must_use]
     pub fn are_fixed_at_rest(&self, u: &[Vector2<f64>]) -> bool {
         /// Rounding error relative to the displacement.
         const ROUNDING: f64 = 1e-9;
@@ -314,7 +305,6 @@ impl Pattern {
     }
 
     /// Returns the work of nodal forces, N, on the displacement T u of free unknowns.
-    #[must_use]
     pub fn dot(&self, nodal: &[Vector2<f64>], free: &[f64]) -> f64 {
         let mut sum = 0.0;
         self.each(free, |unknown, value| sum += value * component(nodal, unknown as u32));
@@ -322,7 +312,6 @@ impl Pattern {
     }
 
     /// Returns the sum of nodal forces, N, without those of supports.
-    #[must_use]
     pub fn resultant(&self, nodal: &[Vector2<f64>]) -> Vector2<f64> {
         let mut sum: Vector2<f64> = nodal.iter().zip(&self.mask).map(|(f, mask)| f.component_mul(mask)).sum();
         for (unknown, row) in &self.dependent {
@@ -334,13 +323,11 @@ impl Pattern {
 
     /// Returns the Euclidean norm of the forces Tᵀ f on the free unknowns, without overflow; not finite if one of them is
     /// not.
-    #[must_use]
     pub fn norm(&self, nodal: &[Vector2<f64>]) -> f64 {
         self.norm_with(nodal, |c| c)
     }
 
     /// Returns a norm as [`Self::norm`] of bounds of forces, which do not cancel each other.
-    #[must_use]
     pub fn norm_of_bounds(&self, nodal: &[Vector2<f64>]) -> f64 {
         self.norm_with(nodal, f64::abs)
     }

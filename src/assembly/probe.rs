@@ -33,7 +33,6 @@ impl NodalProbe {
     }
 
     /// Returns the weighted mean of a nodal field.
-    #[must_use]
     pub fn mean(&self, field: &[Vector2<f64>]) -> Vector2<f64> {
         self.weights.iter().map(|&(node, weight)| field[node as usize] * weight).sum()
     }

@@ -57,7 +57,6 @@ pub struct Forces {
 
 impl Forces {
     /// Allocates the forces of `nodes` nodes.
-    #[must_use]
     pub fn new(nodes: usize) -> Self {
         let zero = vec![Vector2::zeros(); nodes];
         Self {
@@ -71,25 +70,21 @@ impl Forces {
     }
 
     /// Returns f_ext − f_int of every node, N.
-    #[must_use]
     pub fn residual(&self) -> &[Vector2<f64>] {
         &self.residual
     }
 
     /// Returns f_int of every node, N.
-    #[must_use]
     pub fn internal(&self) -> &[Vector2<f64>] {
         &self.internal
     }
 
     /// Returns Σ|fₑ| of every node by component, N.
-    #[must_use]
     pub fn magnitude(&self) -> &[Vector2<f64>] {
         &self.magnitude
     }
 
     /// Returns f_ext of every node, N.
-    #[must_use]
     pub fn external(&self) -> &[Vector2<f64>] {
         &self.external
     }
@@ -170,19 +165,16 @@ impl Problem {
     }
 
     /// Returns the system.
-    #[must_use]
     pub fn system(&self) -> &Arc<System> {
         &self.system
     }
 
     /// Returns the material of the whole body.
-    #[must_use]
     pub fn material(&self) -> &Material {
         &self.material
     }
 
     /// Returns the nodal loads.
-    #[must_use]
     pub fn loads(&self) -> &Loads {
         &self.loads
     }
@@ -193,13 +185,11 @@ impl Problem {
     }
 
     /// Returns the supports, with their prescribed displacements.
-    #[must_use]
     pub fn supports(&self) -> &Supports {
         &self.supports
     }
 
     /// Returns the mouse spring, if there is one.
-    #[must_use]
     pub fn mouse_spring(&self) -> Option<&MouseSpring> {
         self.mouse_spring.as_ref()
     }
@@ -227,7 +217,6 @@ impl Problem {
     }
 
     /// Returns the probes.
-    #[must_use]
     pub fn probes(&self) -> &[NodalProbe] {
         &self.probes
     }
@@ -333,14 +322,12 @@ impl Problem {
     }
 
     /// Returns the elastic energy, J.
-    #[must_use]
     pub fn elastic_energy(&self, state: &State) -> f64 {
         self.system.elements().energy(self.material.membrane(), state.compensated(), &state.rotations)
     }
 
     /// Returns the elastic energy plus the potential of loads and mouse spring at this load factor, J; equilibria are
     /// its stationary points.
-    #[must_use]
     pub fn energy(&self, state: &State, load_factor: f64) -> f64 {
         let spring = self.mouse_spring.as_ref().map_or(0.0, |spring| spring.energy(&state.displacement));
         self.elastic_energy(state) + self.loads.potential(state, load_factor) + load_factor * spring

@@ -257,13 +257,11 @@ impl Supports {
     }
 
     /// Returns the supports, in the order of the scene.
-    #[must_use]
     pub fn all(&self) -> &[NodalSupport] {
         &self.all
     }
 
     /// Returns `true` if any displacement or rotation is prescribed.
-    #[must_use]
     pub fn move_the_body(&self) -> bool {
         self.moves
     }

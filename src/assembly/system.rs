@@ -226,7 +226,6 @@ impl System {
     }
 
     /// Returns the rest mesh.
-    #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.body.mesh
     }
@@ -240,13 +239,11 @@ impl System {
     }
 
     /// Returns the loops over the elements.
-    #[must_use]
     pub fn elements(&self) -> &ElementLoops {
         &self.body.elements
     }
 
     /// Returns free unknowns and sparsity.
-    #[must_use]
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
     }
@@ -291,7 +288,6 @@ impl System {
     }
 
     /// Returns the indices of every element's matrix entries; see [`crate::element::MatrixSum`].
-    #[must_use]
     pub fn slots(&self) -> &[u32] {
         self.slots.get_or_init(|| self.mesh().elements().flat_map(|nodes| self.pattern.block_slots(nodes)).collect())
     }
@@ -309,32 +305,27 @@ impl System {
     }
 
     /// Returns the named edges, by name.
-    #[must_use]
     pub fn edges(&self) -> &[Edge] {
         &self.body.edges
     }
 
     /// Returns ∫ Nₐ dA of every node, m².
-    #[must_use]
     pub fn nodal_areas(&self) -> &[f64] {
         &self.body.nodal_areas
     }
 
     /// Returns the largest number of elements that share a node.
-    #[must_use]
     pub(super) fn valence(&self) -> u32 {
         self.body.valence
     }
 
     /// Returns the recovery matrix from quadrature points to nodes, computed on first use and shared.
-    #[must_use]
     pub fn recovery(&self) -> &Recovery {
         self.body.recovery.get_or_init(|| Recovery::new(&self.body.mesh))
     }
 
     /// Returns the length and height, m, of the straight strip with the body's area and perimeter at rest: those of a
     /// beam, and approximately those of a bent or curved strip.
-    #[must_use]
     pub fn strip(&self) -> [f64; 2] {
         *self.body.strip.get_or_init(|| {
             let mesh = self.mesh();
@@ -349,19 +340,16 @@ impl System {
     }
 
     /// Returns the size of the body at rest: the diagonal of its bounding box, m.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.body.size
     }
 
     /// Returns the number of free unknowns.
-    #[must_use]
     pub fn dofs(&self) -> usize {
         self.pattern.dofs()
     }
 
     /// Returns `true` if both have the same mesh, so that states of one are valid for the other.
-    #[must_use]
     pub(crate) fn shares_mesh(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.body, &other.body)
     }
@@ -373,7 +361,6 @@ impl System {
     }
 
     /// Returns the state at rest.
-    #[must_use]
     pub fn at_rest(&self) -> State {
         State::at_rest(self.mesh().nodes().len(), self.elements().rotation_count(), self.edges().len())
     }

@@ -121,20 +121,17 @@ impl Ledger {
     }
 
     /// Returns the sum of the kinetic energy, the elastic energy and the potential of the loads, J.
-    #[must_use]
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.potential
     }
 
     /// Returns the deviation of the sum of all entries from the energy at the start, J: rounding error, if every entry
     /// is right.
-    #[must_use]
     pub fn imbalance(&self) -> f64 {
         self.total() - self.start + self.dissipated + self.integrator - self.pulses - self.mouse_spring - self.edits
     }
 
     /// Returns the energy added by the integrator relative to the largest kinetic energy; 0 if nothing has moved.
-    #[must_use]
     pub fn drift(&self) -> f64 {
         let drift = -self.integrator / self.largest_kinetic;
         if drift.is_finite() { drift } else { 0.0 }
@@ -142,7 +139,6 @@ impl Ledger {
 
     /// Returns the energy added by the integrator relative to [`Self::put_in`]; negative if it has lost energy, down to
     /// −1, and 0 if no energy was put in.
-    #[must_use]
     pub fn drift_of_input(&self) -> f64 {
         let drift = -self.integrator / self.put_in;
         if drift.is_finite() { drift } else { 0.0 }
@@ -150,14 +146,12 @@ impl Ledger {
 
     /// Returns `true` if the integrator has added more than a tenth of the energy put in: the motion is not that of the
     /// body.
-    #[must_use]
     pub fn has_gained_too_much(&self) -> bool {
         self.drift_of_input() > MAX_GAIN
     }
 
     /// Returns a warning if the integrator has added more than a hundredth of the energy put in, or lost more than a tenth.
     #[doc(hidden)]
-    #[must_use]
     pub fn drift_warning(&self) -> Option<Sentence> {
         let drift = self.drift_of_input();
         let (energy, percent) = (engineering(self.integrator.abs(), "J"), percent(100.0 * drift.abs()));
@@ -197,7 +191,6 @@ pub struct Momentum {
 
 impl Momentum {
     /// Computes the momentum of a state.
-    #[must_use]
     pub(crate) fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
         let mut nodal = state.velocity.clone();
         match inertia {

@@ -62,7 +62,6 @@ pub struct IntegratorEntry {
 
 impl IntegratorEntry {
     /// Returns `true` for an explicit integrator, which solves no equations and is stable below a critical step only.
-    #[must_use]
     pub fn is_explicit(&self) -> bool {
         self.stages == 0
     }
@@ -76,7 +75,6 @@ macro_rules! registry {
         impl IntegratorKind {
             /// Returns the registry entry.
             #[doc(hidden)]
-            #[must_use]
             pub fn entry(self) -> &'static IntegratorEntry {
                 match self {
                     $(Self::$kind => &$entry),*
@@ -101,7 +99,6 @@ impl IntegratorKind {
     }
 
     /// Returns the name in scene files.
-    #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
     }

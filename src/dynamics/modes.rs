@@ -26,7 +26,6 @@ fn stiffness(problem: &Problem) -> Matrix {
 
 /// Returns the lowest angular frequency ω₁ of small vibrations about rest without loads, rad/s; `None` for a body that
 /// its supports leave free to move.
-#[must_use]
 pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
     let system = problem.system();
     let mut factor = Factor::new(system.symbolic().ok()?).ok()?;
@@ -41,7 +40,6 @@ pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
 /// Returns the step beyond which symplectic Euler is unstable about rest, s: 2 (√(1 + ξ²) − ξ)/ω with ω the highest
 /// frequency with lumped masses and ξ its damping ratio. Slightly below the exact value, because ω is known to one
 /// percent.
-#[must_use]
 pub fn critical_step(problem: &Problem, mass: &Mass, damping: Damping) -> Option<f64> {
     let system = problem.system();
     let matrix = stiffness(problem);

@@ -24,7 +24,6 @@ impl<T: Number> DiscreteGradient<T> {
     /// Returns the discrete gradient between the displacement gradients H and rotations of two states. Zero rotations
     /// do not give that of linear theory, which is the stress of the mean strain: the skew part of F̄ − R̄ vanishes
     /// only for the polar factors.
-    #[must_use]
     #[inline(always)]
     pub fn new([h0, h1]: [Matrix2<T>; 2], [r0, r1]: [Rotation<T>; 2]) -> Self {
         let half = T::splat(0.5);
@@ -54,7 +53,6 @@ impl<T: Number> DiscreteGradient<T> {
     }
 
     /// Returns P = 2μ (F̄ − R̄) + λ t̄ R̄, Pa.
-    #[must_use]
     #[inline(always)]
     pub fn stress(&self, lame: Lame) -> Matrix2<T> {
         self.strain * T::splat(2.0 * lame.mu) + self.mean_rotation * (T::splat(lame.lambda) * self.trace)

@@ -272,7 +272,6 @@ fn add_twist<T: Number>(
 
 impl IncompatibleQuads {
     /// Builds the elements from rest nodes (m) and node numbers; `element` is the registry entry of the quadrilateral.
-    #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
         let numbers = Connectivity::new(connectivity);
         let points = numbers.iter().map(|own| {

@@ -26,7 +26,6 @@ pub struct Isoparametric<const N: usize, const Q: usize> {
 
 impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
     /// Builds the elements from rest nodes and node numbers.
-    #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
         let numbers = Connectivity::new(connectivity);
         let points = numbers.batches().map(|(_, own)| {

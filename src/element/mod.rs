@@ -88,7 +88,6 @@ macro_rules! registry {
 
         impl ElementKind {
             /// Returns the registry entry of the element.
-            #[must_use]
             pub fn entry(self) -> &'static ElementType {
                 match self {
                     $(Self::$kind => &$entry),*
@@ -124,7 +123,6 @@ const fn most_side_nodes(elements: &[&ElementType]) -> usize {
 
 impl ElementKind {
     /// Returns the name in scene files.
-    #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
     }
@@ -137,7 +135,6 @@ impl ElementKind {
 
 impl ElementType {
     /// Returns the Jacobian ∂X/∂(ξ, η) at a point of an element with these rest nodes.
-    #[must_use]
     pub fn jacobian(&self, nodes: &[Vector2<f64>], at: [f64; 2]) -> Matrix2<f64> {
         let mut jacobian = Matrix2::zeros();
         for (x, g) in nodes.iter().zip((self.local_gradients)(at)) {
@@ -147,19 +144,16 @@ impl ElementType {
     }
 
     /// Returns the degree of the shape functions along a side.
-    #[must_use]
     pub fn degree(&self) -> usize {
         self.sides.first().map_or(1, |side| side.len() - 1)
     }
 
     /// Returns `true` if both have the same reference shape, so that a mesh of one can be converted to the other.
-    #[must_use]
     pub fn shares_cell(&self, other: &Self) -> bool {
         self.cell.corners == other.cell.corners
     }
 
     /// Returns the element's nodes in the order of the mirrored element: counter-clockwise becomes clockwise.
-    #[must_use]
     pub fn turned_over(&self) -> Vec<usize> {
         // Mirroring the cell at its diagonal exchanges ξ and η.
         let mirrored = |&[x, y]: &[f64; 2]| self.nodes.iter().position(|n| *n == [y, x]).unwrap_or_default();
@@ -167,14 +161,12 @@ impl ElementType {
     }
 
     /// Returns the node at these reference coordinates, if there is one.
-    #[must_use]
     pub fn node_at(&self, at: [f64; 2]) -> Option<usize> {
         const SAME: f64 = 1e-9;
         self.nodes.iter().position(|n| (n[0] - at[0]).abs() < SAME && (n[1] - at[1]).abs() < SAME)
     }
 
     /// Returns ∫ Nₐ dA over an element with these rest nodes, m², for every node.
-    #[must_use]
     pub fn nodal_areas(&self, nodes: &[Vector2<f64>]) -> Vec<f64> {
         let mut areas = vec![0.0; nodes.len()];
         for point in self.mass_points {
@@ -207,7 +199,6 @@ impl Tangent {
     pub const GEOMETRIC: Self = Self { warped: 0.0, ..Self::EXACT };
 
     /// Returns `true` if the tangent contains all of G; the tangent of the loads must then be added too.
-    #[must_use]
     pub fn is_exact(&self) -> bool {
         self.geometric != 0.0 && !self.definite
     }
@@ -395,7 +386,6 @@ pub trait Elements: std::fmt::Debug + Send + Sync {
 ///
 /// With R the polar factor of F this is the Biot strain S − I. It uses c − 1 = −s²/(1 + c), so that small strains under
 /// small rotations keep their digits.
-#[must_use]
 #[inline(always)]
 pub fn warped_strain<T: Number>(r: Rotation<T>, h: &Matrix2<T>) -> Matrix2<T> {
     let (c, s) = (r.c, r.s);

@@ -32,7 +32,6 @@ pub(super) const SMALLEST_STRETCH_TRACE: f64 = 0.02;
 impl<const N: usize> QuadraturePoint<N> {
     /// Returns the point at `at` of an element with these rest nodes. [`crate::mesh::Mesh`] has checked that the
     /// Jacobian there is positive.
-    #[must_use]
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], at: [f64; 2], weight: f64) -> Self {
         let jacobian = element.jacobian(nodes, at);
         let inverse = jacobian.try_inverse().unwrap_or_default().transpose();
@@ -45,7 +44,6 @@ impl<const N: usize> QuadraturePoint<N> {
 
     /// Returns the warped element force R Ke (Rᵀ x − X), N, for a displacement gradient: the first Piola–Kirchhoff
     /// stress R T of the corotated energy times the point's area, applied to ∇Nₐ.
-    #[must_use]
     pub fn warped_force(&self, moduli: Lame, r: Rotation, h: &Matrix2<f64>) -> [Vector2<f64>; N] {
         let stress = r.matrix() * moduli.stress(&warped_strain(r, h)) * self.area;
         self.gradients.map(|g| stress * g)
@@ -53,7 +51,6 @@ impl<const N: usize> QuadraturePoint<N> {
 
     /// Returns this point's part of the block of nodes a and b in Ke, N/m: v (λ g hᵀ + μ (g·h) I + μ h gᵀ) with g =
     /// ∇Nₐ, h = ∇N_b.
-    #[must_use]
     pub fn stiffness_block(&self, moduli: Lame, a: usize, b: usize) -> Matrix2<f64> {
         let (g, h) = (self.gradients[a], self.gradients[b]);
         let shear = Matrix2::identity() * g.dot(&h) + h * g.transpose();
@@ -84,7 +81,6 @@ impl<const N: usize, T: Number> QuadraturePoint<N, T> {
     ///
     /// Computed from differences of displacements, not from positions: small strains keep their digits however large
     /// the coordinates and the displacement of the element.
-    #[must_use]
     #[inline(always)]
     pub fn displacement_gradient(&self, u: &[Vector2<T>; N]) -> Matrix2<T> {
         let mut h = zero_matrix();

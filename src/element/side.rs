@@ -24,7 +24,6 @@ pub(crate) fn lagrange(n: usize, xi: f64) -> Vec<(f64, f64)> {
 }
 
 /// Returns ∫ Nₐ ds for nodes in their order along a side, m: the nodes' weights in a uniform traction.
-#[must_use]
 pub fn side_weights(nodes: &[Vector2<f64>]) -> Vec<f64> {
     let mut weights = vec![0.0; nodes.len()];
     if nodes.len() < 2 {

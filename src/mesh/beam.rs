@@ -9,7 +9,6 @@ use crate::model::{Beam, Diagonals};
 
 impl Mesh {
     /// Returns the number of nodes of [`Self::beam`].
-    #[must_use]
     pub fn beam_nodes(beam: &Beam) -> u64 {
         let pieces = beam.element.entry().degree() as u64;
         let [columns, rows] = beam.cells.map(|cells| u64::from(cells) * pieces + 1);

@@ -133,14 +133,12 @@ impl Mesh {
 
     /// Returns the element type in a file, from the headers of its blocks alone; of several types, the one with the
     /// most nodes, so that no node is lost. Errors in the file are reported when it is read.
-    #[must_use]
     pub fn gmsh_element(text: &str) -> Option<ElementKind> {
         Headers::of(text).own().map(|entry| entry.kind)
     }
 
     /// Returns the number of nodes of a file's mesh converted to `element`, from the headers of its blocks alone: exact
     /// for the file's own element type; for others, valid for a connected body without holes.
-    #[must_use]
     pub fn gmsh_nodes(text: &str, element: ElementKind) -> u64 {
         let headers = Headers::of(text);
         let Some(own) = headers.own() else { return 0 };

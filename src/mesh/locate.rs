@@ -25,7 +25,6 @@ const BULGE: f64 = 0.25;
 
 impl Mesh {
     /// Returns the material point at a rest position, m; `None` outside the body.
-    #[must_use]
     pub fn locate(&self, at: Vector2<f64>) -> Option<MaterialPoint> {
         self.locate_in(&self.nodes, at)
     }
@@ -35,7 +34,6 @@ impl Mesh {
     ///
     /// Tests the bounding boxes of all elements. For a moving body a search index would have to be rebuilt in every
     /// state, which costs more.
-    #[must_use]
     pub fn locate_in(&self, positions: &[Vector2<f64>], at: Vector2<f64>) -> Option<MaterialPoint> {
         if positions.len() != self.nodes.len() {
             return None;
@@ -151,7 +149,6 @@ impl Mesh {
 
     /// Returns the material point nearest to a position, m, within the distance `within`, m, with the nodes at
     /// `positions`; `outline` is [`Self::outline`].
-    #[must_use]
     pub fn pick(
         &self,
         positions: &[Vector2<f64>],
@@ -179,7 +176,6 @@ impl Mesh {
 
     /// Returns the nodes of a material point's element with their shape functions there; the weights sum to 1. `None`
     /// if there is no such element.
-    #[must_use]
     pub fn weights(&self, point: MaterialPoint) -> Option<Vec<(u32, f64)>> {
         let nodes = self.elements().nth(point.element)?;
         Some(nodes.iter().copied().zip((self.entry().shape)(point.at)).collect())

@@ -85,7 +85,6 @@ pub struct Segment {
 impl Segment {
     /// Returns the segment through these nodes, in their order along it; `None` for fewer than two nodes or more than a
     /// side has.
-    #[must_use]
     pub fn new(nodes: &[u32]) -> Option<Self> {
         let count = nodes.len();
         if !(2..=MAX_SIDE_NODES).contains(&count) {
@@ -97,19 +96,16 @@ impl Segment {
     }
 
     /// Returns the nodes, in their order along the segment.
-    #[must_use]
     pub fn nodes(&self) -> &[u32] {
         &self.nodes[..self.count]
     }
 
     /// Returns the first and the last node.
-    #[must_use]
     pub fn ends(&self) -> [u32; 2] {
         [self.nodes[0], self.nodes[self.count - 1]]
     }
 
     /// Returns the end nodes, smaller number first: the same for both elements that share the side.
-    #[must_use]
     pub fn key(&self) -> [u32; 2] {
         side_key(self.ends())
     }
@@ -329,50 +325,42 @@ impl Mesh {
     }
 
     /// Returns the rest positions X, m.
-    #[must_use]
     pub fn nodes(&self) -> &[Vector2<f64>] {
         &self.nodes
     }
 
     /// Returns the rest position of a node, m.
-    #[must_use]
     pub(crate) fn node(&self, node: u32) -> Vector2<f64> {
         self.nodes[node as usize]
     }
 
     /// Returns `true` if the mesh was read from a file, with node numbers.
-    #[must_use]
     pub fn is_from_file(&self) -> bool {
         !self.tags.is_empty()
     }
 
     /// Returns the number of a node for display: its number in the mesh file, or without a file its index from 0.
     /// `None` for a node that was added between those of a file.
-    #[must_use]
     pub fn node_name(&self, node: u32) -> Option<u64> {
         if self.is_from_file() { self.tags.get(node as usize).copied().flatten() } else { Some(u64::from(node)) }
     }
 
     /// Returns the element type.
-    #[must_use]
     pub fn element(&self) -> ElementKind {
         self.element
     }
 
     /// Returns the node numbers, element by element, in the order of [`Self::new`].
-    #[must_use]
     pub fn connectivity(&self) -> &[u32] {
         &self.connectivity
     }
 
     /// Returns the segments of every edge, by name.
-    #[must_use]
     pub fn edges(&self) -> &BTreeMap<String, Vec<Segment>> {
         &self.edges
     }
 
     /// Returns the number of elements.
-    #[must_use]
     pub fn element_count(&self) -> usize {
         self.connectivity.len() / self.element.entry().nodes.len()
     }
@@ -383,7 +371,6 @@ impl Mesh {
     }
 
     /// Returns the nodes of a named edge, each once; `None` if there is no such edge.
-    #[must_use]
     pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
         let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.nodes().to_vec()).collect();
         nodes.sort_unstable();
@@ -392,7 +379,6 @@ impl Mesh {
     }
 
     /// Returns the node nearest to a rest position; the first of several at the same distance.
-    #[must_use]
     pub fn nearest_node(&self, at: Vector2<f64>) -> u32 {
         let mut best = (f64::INFINITY, 0);
         for (i, node) in (0..).zip(&self.nodes) {
@@ -405,7 +391,6 @@ impl Mesh {
     }
 
     /// Returns the lower left and upper right corner of the bounding box of the rest mesh, m.
-    #[must_use]
     pub fn bounds(&self) -> (Vector2<f64>, Vector2<f64>) {
         let start = Vector2::repeat(f64::INFINITY);
         self.nodes.iter().fold((start, -start), |(low, high), p| (low.inf(p), high.sup(p)))
@@ -422,7 +407,6 @@ impl Mesh {
     }
 
     /// Returns the sides that belong to only one element, each counter-clockwise around the body.
-    #[must_use]
     pub fn outline(&self) -> Vec<Segment> {
         outer(self.elements().flat_map(|nodes| self.sides(nodes)).collect())
     }

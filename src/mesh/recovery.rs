@@ -24,7 +24,6 @@ pub struct Recovery {
 
 impl Recovery {
     /// Returns the recovery matrix of a mesh.
-    #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         let patches = Patches::new(mesh);
         let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); mesh.nodes().len()];

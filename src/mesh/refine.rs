@@ -62,7 +62,6 @@ impl OnSides {
 
 impl Mesh {
     /// Interpolates a nodal vector to [`Self::refined`] by the shape functions.
-    #[must_use]
     pub fn prolonged(&self, nodal: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         // Refinement interpolates any nodal vector in the same way as positions.
         Self { nodes: nodal.to_vec(), ..self.clone() }.refined().nodes
@@ -70,7 +69,6 @@ impl Mesh {
 
     /// Returns the mesh with every element cut into four of the same type and every named edge into halves. The old
     /// nodes come first, with the same numbers; the body is the same.
-    #[must_use]
     pub fn refined(&self) -> Self {
         let entry = self.entry();
         // Distinct positions of all children's nodes, and their indices for each child.

@@ -60,7 +60,6 @@ pub const METHODS: &[MethodEntry] = &[linear::ENTRY, warped::ENTRY, newton::ENTR
 impl MethodKind {
     /// Returns the registry entry.
     #[doc(hidden)]
-    #[must_use]
     pub fn entry(self) -> MethodEntry {
         match self {
             Self::Linear => linear::ENTRY,
@@ -71,7 +70,6 @@ impl MethodKind {
     }
 
     /// Returns the name in scene files.
-    #[must_use]
     pub fn id(self) -> &'static str {
         self.entry().id
     }

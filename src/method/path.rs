@@ -225,7 +225,6 @@ impl From<&Drive> for Sentence {
 
 impl Drive {
     /// Returns the quantities that grow along the path of a problem.
-    #[must_use]
     pub fn of(problem: &Problem) -> Self {
         let loads = problem.loads();
         let is_loaded = loads.moments().next().is_some() || loads.dead_force().iter().any(|f| *f != Vector2::zeros());
@@ -314,7 +313,6 @@ fn percent(factor: f64) -> String {
 
 impl Bifurcation {
     /// Returns a short label for figures: `buckles at 49.3 %`.
-    #[must_use]
     pub fn label(&self) -> Sentence {
         let percent = engineering((self.factor * 1e3).round() / 10.0, "%");
         match self.unstable_modes {

@@ -30,7 +30,6 @@ pub enum Reason {
 
 impl Reason {
     /// Returns `true` if the iteration diverges; `false` if it stopped while still improving, or close to convergence.
-    #[must_use]
     pub fn is_divergence(&self) -> bool {
         match self {
             Self::IterationLimit(_) | Self::Stuck(_) | Self::NoEquilibrium(_) | Self::Interrupted => false,

@@ -24,7 +24,6 @@ pub struct LoadId(usize);
 impl LoadId {
     /// Returns the handle of a load by its position among the loads, counted from 0: `load.0`, `load.1`, … of a scene
     /// file.
-    #[must_use]
     pub const fn nth(position: usize) -> Self {
         Self(position)
     }
@@ -37,7 +36,6 @@ pub struct SupportId(usize);
 impl SupportId {
     /// Returns the handle of a support by its position among the supports, counted from 0: `support.0`, `support.1`, …
     /// of a scene file.
-    #[must_use]
     pub const fn nth(position: usize) -> Self {
         Self(position)
     }
@@ -45,7 +43,6 @@ impl SupportId {
 
 impl Scene {
     /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
-    #[must_use]
     pub fn named(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
@@ -62,7 +59,6 @@ impl Scene {
     /// assert!(beam.probe("tip").is_some_and(|u| u.y < -3.0));
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
-    #[must_use]
     pub fn beam(length: f64, height: f64) -> Self {
         // The cells are about as long as high.
         let along = (length / height).round().clamp(4.0, 100.0);
@@ -381,7 +377,6 @@ impl Scene {
     }
 
     /// Returns the handle of the first force or moment on an edge, by name, or on a point.
-    #[must_use]
     pub fn load_on(&self, place: impl Into<Place>) -> Option<LoadId> {
         let place = place.into();
         let is_there = |load: &Load| match load {
@@ -393,7 +388,6 @@ impl Scene {
     }
 
     /// Returns the handle of the first support of an edge, by name, or of a point.
-    #[must_use]
     pub fn support_on(&self, place: impl Into<Place>) -> Option<SupportId> {
         let place = place.into();
         self.supports.iter().position(|support| support.place == place).map(SupportId)
@@ -493,14 +487,12 @@ impl Scene {
     }
 
     /// Returns the element type of the scene's mesh.
-    #[must_use]
     pub fn element(&self) -> ElementKind {
         let beam = self.beam.as_ref().map(|b| b.element);
         beam.or(self.mesh.as_ref().and_then(|m| m.element)).unwrap_or_default()
     }
 
     /// Returns warnings about pulses that are shorter than a time step, or outside the motion.
-    #[must_use]
     pub fn unresolved_pulses(&self) -> Vec<String> {
         /// Smallest number of time steps in a pulse that resolve its shape in outline.
         const RESOLVED: f64 = 5.0;
@@ -556,7 +548,6 @@ impl Material {
     /// let mut steel = Material::new(2.1e11, 0.3);
     /// (steel.density, steel.thickness, steel.plane) = (7800.0, 0.01, Plane::Strain);
     /// ```
-    #[must_use]
     pub fn new(young: f64, poisson: f64) -> Self {
         Self { young, poisson, ..Self::default() }
     }

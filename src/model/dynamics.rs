@@ -108,7 +108,6 @@ impl Pulse {
     /// let pulse = Pulse { start: 1.0, duration: 0.2 };
     /// assert_eq!((pulse.factor(0.9), pulse.factor(1.1), pulse.factor(1.3)), (0.0, 1.0, 0.0));
     /// ```
-    #[must_use]
     pub fn factor(&self, time: f64) -> f64 {
         let t = (time - self.start) / self.duration;
         if (0.0..=1.0).contains(&t) { (std::f64::consts::PI * t).sin().powi(2) } else { 0.0 }
@@ -121,7 +120,6 @@ impl Pulse {
     /// let pulse = Pulse { start: 1.0, duration: 0.2 };
     /// assert_eq!(pulse.impulse(0.0, 9.0), 0.1);
     /// ```
-    #[must_use]
     pub fn impulse(&self, from: f64, to: f64) -> f64 {
         use std::f64::consts::TAU;
         // ∫ sin²(π t/d) dt = t/2 − d/4π sin(2π t/d).
@@ -136,13 +134,11 @@ impl Pulse {
     }
 
     /// Returns the mean of the factor from one time to another.
-    #[must_use]
     pub fn mean(&self, from: f64, to: f64) -> f64 {
         if to > from { self.impulse(from, to) / (to - from) } else { self.factor(from) }
     }
 
     /// Returns the end of the pulse, s.
-    #[must_use]
     pub fn end(&self) -> f64 {
         self.start + self.duration
     }

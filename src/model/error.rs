@@ -31,7 +31,6 @@ impl Invalid {
     }
 
     /// Returns the expected and the actual value.
-    #[must_use]
     pub fn message(&self) -> String {
         self.message.to_string()
     }

@@ -59,7 +59,6 @@ pub enum Need {
 
 impl KeyKind {
     /// Returns the range of the numbers of the value; `None` if it holds no number that can have a unit.
-    #[must_use]
     pub fn quantity(self) -> Option<Limit> {
         match self {
             Self::Number(limit) | Self::Pair(limit) | Self::Vector(limit) => Some(limit),

@@ -34,7 +34,6 @@ impl Limit {
     }
 
     /// Returns the message for `got`, which is not a number in the range.
-    #[must_use]
     pub fn expected(&self, got: &str) -> Sentence {
         let [low, high] = self.ends();
         sentence!("expected %{low} to %{high}, got %{got}", low, high, got)

@@ -347,13 +347,11 @@ impl Beam {
 
     /// Returns the rest coordinates of a point, m: `along` is 0 at the left end and 1 at the right end, `across` −½ at
     /// the bottom and ½ at the top, measured upwards.
-    #[must_use]
     pub fn point(&self, along: f64, across: f64) -> [f64; 2] {
         [along * self.length, self.axis(along) + across * self.height]
     }
 
     /// Returns length over height of one cell.
-    #[must_use]
     pub fn cell_aspect(&self) -> f64 {
         let [nx, ny] = self.cells.map(f64::from);
         (self.length / nx) / (self.height / ny)
@@ -363,7 +361,6 @@ impl Beam {
 impl Plane {
     /// Returns the range of Poisson ratios for this plane assumption. In plane strain ½ is incompressible, and λ infinite.
     #[doc(hidden)]
-    #[must_use]
     pub fn poisson_limit(self) -> limits::Limit {
         match self {
             Self::Stress => keys::range("material.poisson"),

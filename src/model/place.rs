@@ -101,19 +101,16 @@ pub struct Support {
 
 impl Support {
     /// Returns a support of an edge, or of the node nearest to a point, without prescribed displacement.
-    #[must_use]
     pub fn new(place: impl Into<Place>, fix: &[Axis]) -> Self {
         Self { place: place.into(), at_point: false, width: 0.0, fix: fix.to_vec(), displacement: [0.0; 2], turn: 0.0 }
     }
 
     /// Returns a support of a point of the body, m, and not of its nearest node.
-    #[must_use]
     pub fn point(at: impl Into<Vector2<f64>>, fix: &[Axis]) -> Self {
         Self { at_point: true, ..Self::new(at.into(), fix) }
     }
 
     /// Returns `true` if a displacement or rotation is prescribed.
-    #[must_use]
     pub fn moves(&self) -> bool {
         self.displacement != [0.0; 2] || self.turn != 0.0
     }
@@ -173,7 +170,6 @@ pub struct SectionLine {
 
 impl SectionLine {
     /// Returns the unit normal at rest.
-    #[must_use]
     pub fn normal(&self) -> Vector2<f64> {
         Vector2::new(self.angle.cos(), self.angle.sin())
     }
@@ -226,31 +222,26 @@ pub enum Load {
 
 impl Load {
     /// Returns a dead force, N, on an edge or on the node nearest to a point.
-    #[must_use]
     pub fn force(place: impl Into<Place>, force: impl Into<Vector2<f64>>) -> Self {
         Self::Force { place: place.into(), at_point: false, width: 0.0, force: force.into().into(), pulse: None }
     }
 
     /// Returns a dead force, N, at a point of the body, m, and not on its nearest node.
-    #[must_use]
     pub fn point_force(at: impl Into<Vector2<f64>>, force: impl Into<Vector2<f64>>) -> Self {
         Self::Force { place: at.into().into(), at_point: true, width: 0.0, force: force.into().into(), pulse: None }
     }
 
     /// Returns a moment, N m, on an edge.
-    #[must_use]
     pub fn moment(edge: &str, moment: f64) -> Self {
         Self::Moment { edge: edge.to_owned(), moment, pulse: None }
     }
 
     /// Returns the weight of the body under an acceleration, m/s².
-    #[must_use]
     pub fn gravity(acceleration: impl Into<Vector2<f64>>) -> Self {
         Self::Gravity { acceleration: acceleration.into().into(), pulse: None }
     }
 
     /// Returns the load's pulse; `None` for a constant load.
-    #[must_use]
     pub fn pulse(&self) -> Option<Pulse> {
         match self {
             Self::Force { pulse, .. } | Self::Moment { pulse, .. } | Self::Gravity { pulse, .. } => *pulse,
@@ -258,7 +249,6 @@ impl Load {
     }
 
     /// Returns `true` for a moment.
-    #[must_use]
     pub fn is_moment(&self) -> bool {
         matches!(self, Self::Moment { .. })
     }

@@ -41,7 +41,6 @@ impl Scene {
 
     /// Returns the number of unknowns of the scene's mesh, including fixed ones, without meshing it: two per node, see
     /// [`Mesh::beam_nodes`] and [`Mesh::gmsh_nodes`]. 0 if the mesh is given by the caller.
-    #[must_use]
     pub fn unknowns(&self) -> u64 {
         let file = |mesh: &MeshFile| mesh.text.as_deref().map_or(0, |text| Mesh::gmsh_nodes(text, self.element()));
         let nodes = self.beam.as_ref().map(Mesh::beam_nodes).or(self.mesh.as_ref().map(file));

@@ -38,20 +38,17 @@ pub fn open(source: &Source) -> Result<Scene, SceneError> {
 }
 
 /// Adds the location of an error that was found when the scene was simulated: the `--set` assignment, or file and line.
-#[must_use]
 pub fn locate(source: &Source, invalid: Invalid) -> SceneError {
     blame(&source.text().unwrap_or_default(), Some(&source.name), &source.assignments, invalid)
 }
 
 impl Source {
     /// Returns the built-in scene with this name, `None` if there is none.
-    #[must_use]
     pub fn built_in(&self) -> Option<&'static registry::BuiltIn> {
         self.name.to_str().and_then(registry::find)
     }
 
     /// Returns the folder that the scene's mesh file is relative to: empty for a built-in scene, else absolute.
-    #[must_use]
     pub fn folder(&self) -> PathBuf {
         if self.built_in().is_some() {
             return PathBuf::new();
@@ -75,7 +72,6 @@ impl Source {
     }
 
     /// Returns `true` for standard input and for pipes (`<(…)` in a shell), which can be read only once.
-    #[must_use]
     pub fn is_stream(&self) -> bool {
         self.name == Path::new(STANDARD_INPUT)
             || self.built_in().is_none()

@@ -65,7 +65,6 @@ pub(crate) fn mesh(file: &str) -> Option<&'static str> {
 pub const DEFAULT: &str = BUILT_IN[0].id;
 
 /// Returns the built-in scene with this name.
-#[must_use]
 pub fn find(id: &str) -> Option<&'static BuiltIn> {
     BUILT_IN.iter().find(|b| b.id == id)
 }

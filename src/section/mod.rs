@@ -114,19 +114,16 @@ pub struct Section {
 impl Section {
     /// Returns the middle of the cut, m, about which [`SectionForces::moment`] acts: in linear theory at rest, else in the
     /// current state.
-    #[must_use]
     pub fn middle(&self) -> Vector2<f64> {
         (self.axis[0] + self.axis[1]) * 0.5
     }
 
     /// Returns the unit tangent from the first end to the second: in linear theory at rest, else in the current state.
-    #[must_use]
     pub fn tangent(&self) -> Vector2<f64> {
         (self.axis[1] - self.axis[0]).normalize()
     }
 
     /// Returns the unit normal: the tangent, rotated clockwise by 90°.
-    #[must_use]
     pub fn normal(&self) -> Vector2<f64> {
         let tangent = self.tangent();
         Vector2::new(tangent.y, -tangent.x)

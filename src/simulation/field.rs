@@ -103,37 +103,31 @@ impl Field {
     };
 
     /// Returns the identifier.
-    #[must_use]
     pub fn id(self) -> &'static str {
         Self::TABLE[self as usize].1
     }
 
     /// Returns the name for display.
-    #[must_use]
     pub fn name(self) -> &'static str {
         Self::TABLE[self as usize].2
     }
 
     /// Returns the unit, empty for pure numbers.
-    #[must_use]
     pub fn unit(self) -> &'static str {
         Self::TABLE[self as usize].3
     }
 
     /// Returns `true` if values of both signs occur.
-    #[must_use]
     pub fn has_sign(self) -> bool {
         Self::TABLE[self as usize].4
     }
 
     /// Returns `true` if the field has one value per element and none at nodes.
-    #[must_use]
     pub fn is_of_elements(self) -> bool {
         self == Self::MeshError
     }
 
     /// Returns `true` if the field follows from the displacement at a point alone.
-    #[must_use]
     pub fn is_of_displacement(self) -> bool {
         matches!(self, Self::Displacement | Self::DisplacementX | Self::DisplacementY | Self::ReferenceDistance)
     }

@@ -405,7 +405,6 @@ impl Simulation {
     }
 
     /// Returns the mouse spring and its force on the body, N.
-    #[must_use]
     pub fn mouse_spring(&self) -> Option<(&MouseSpring, Vector2<f64>)> {
         let State { displacement, velocity, .. } = &self.body.state;
         let spring = self.body.problem.mouse_spring()?;
@@ -436,7 +435,6 @@ impl Simulation {
     /// Returns `true` if another step would change nothing: the search has ended, or the motion has stopped or come to
     /// rest (for half a second no node has moved faster than a millionth of the body's size per second, and no pulse is
     /// to come).
-    #[must_use]
     pub fn is_at_rest(&self) -> bool {
         match &self.process {
             Process::Search(_) => self.body.status != Status::Running,
@@ -504,7 +502,6 @@ impl Simulation {
     }
 
     /// Returns the change of the body's area relative to its area at rest, ∫ det F dA / ∫ dA − 1.
-    #[must_use]
     pub fn area_change(&self) -> f64 {
         area_change(&self.body.problem, &self.body.state)
     }
@@ -532,7 +529,6 @@ impl Simulation {
     /// assert!((max_rotation_deg.to_radians() - 6e-4).abs() < 3e-5 && inverted_elements == 0);
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
-    #[must_use]
     pub fn solution(&self) -> Solution {
         let Body { problem, state, .. } = &self.body;
         let search = self.equilibrium();
@@ -577,14 +573,12 @@ impl Simulation {
     /// assert!(beam.mesh().nodes()[node as usize].x == 0.0 && (pascals - 60.0).abs() < 6.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn nodal_stress(&self) -> NodalStress {
         NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
     }
 
     /// Returns the estimate of the mesh's error in the current state; see [`ErrorEstimate`].
     #[doc(hidden)]
-    #[must_use]
     pub fn mesh_error(&self, nodal: &NodalStress) -> ErrorEstimate {
         ErrorEstimate::of(&self.body.problem, &self.body.state, nodal)
     }
@@ -606,20 +600,17 @@ impl Simulation {
 
     /// Returns the stress results: the largest stress, those at the probes, and the estimated mesh error.
     #[doc(hidden)]
-    #[must_use]
     pub fn stress_result(&self) -> StressResult {
         let nodal = self.nodal_stress();
         StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
     }
 
     /// Returns the displacement of a probe, m, the mean over its edge; `None` if there is no such probe.
-    #[must_use]
     pub fn probe(&self, name: &str) -> Option<Vector2<f64>> {
         self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.displacement))
     }
 
     /// Returns the velocity of a probe, m/s; `None` if there is no such probe.
-    #[must_use]
     pub fn probe_velocity(&self, name: &str) -> Option<Vector2<f64>> {
         self.nodal_probe(name).map(|probe| probe.mean(&self.body.state.velocity))
     }
@@ -629,27 +620,23 @@ impl Simulation {
     }
 
     /// Returns the current scene.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.body.scene
     }
 
     /// Returns the equations of the scene with numerical values.
     #[doc(hidden)]
-    #[must_use]
     pub fn problem(&self) -> &Problem {
         &self.body.problem
     }
 
     /// Returns the parts of the equations that do not depend on the state and the material: mesh, elements, sparsity.
     #[doc(hidden)]
-    #[must_use]
     pub fn system(&self) -> &Arc<System> {
         self.body.problem.system()
     }
 
     /// Returns the results of the search; `None` for a motion.
-    #[must_use]
     pub fn equilibrium(&self) -> Option<Equilibrium<'_>> {
         match &self.process {
             Process::Search(search) => Some(Equilibrium { search, body: &self.body }),
@@ -658,7 +645,6 @@ impl Simulation {
     }
 
     /// Returns the results of the motion; `None` for a search for an equilibrium.
-    #[must_use]
     pub fn motion(&self) -> Option<Motion<'_>> {
         match &self.process {
             Process::Search(_) => None,
@@ -675,13 +661,11 @@ impl Simulation {
     }
 
     /// Returns the current state; a clone can be passed to [`Self::restore`].
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.body.state
     }
 
     /// Returns the displacement x − X of every node, m.
-    #[must_use]
     pub fn displacement(&self) -> &[Vector2<f64>] {
         &self.body.state.displacement
     }
@@ -693,21 +677,18 @@ impl Simulation {
 
     /// Returns `true` if the body passes through itself in the current state: contact is not modelled. Takes a sweep over
     /// the outline.
-    #[must_use]
     pub fn passes_through_itself(&self) -> bool {
         let positions: Vec<Vector2<f64>> = self.positions().collect();
         self.mesh().passes_through_itself(&self.mesh().outline(), &positions)
     }
 
     /// Returns the mesh: nodes at rest, elements and named edges.
-    #[must_use]
     pub fn mesh(&self) -> &Mesh {
         self.system().mesh()
     }
 
     /// Returns the forces of the current state; for a motion, those of its last stage.
     #[doc(hidden)]
-    #[must_use]
     pub fn forces(&self) -> &Forces {
         match &self.process {
             Process::Search(search) => &search.forces,
@@ -716,26 +697,22 @@ impl Simulation {
     }
 
     /// Returns the reaction of each support, in the scene's order.
-    #[must_use]
     pub fn support_reactions(&self) -> Vec<SupportReaction> {
         support_reactions(&self.body.problem, &self.body.state, self.kinematics(), self.forces())
     }
 
     /// Returns `true` if the state is one of linear theory; otherwise strains are measured in the rotated frames of the
     /// elements.
-    #[must_use]
     pub fn is_linear(&self) -> bool {
         self.kinematics() == Kinematics::Linear
     }
 
     /// Returns the status of the simulation.
-    #[must_use]
     pub fn status(&self) -> &Status {
         &self.body.status
     }
 
     /// Returns the number of solves since the last edit, or since the start of the motion.
-    #[must_use]
     pub fn iterations(&self) -> u32 {
         match &self.process {
             Process::Search(search) => search.iterations,
@@ -745,7 +722,6 @@ impl Simulation {
 
     /// Returns ‖f_ext − f_int‖ / ‖Σ|fₑ|‖ of the current state; for a motion, the residual of the last stage relative to
     /// the largest of its forces.
-    #[must_use]
     pub fn residual(&self) -> f64 {
         match &self.process {
             Process::Search(search) => search.residual(),
@@ -754,7 +730,6 @@ impl Simulation {
     }
 
     /// Returns the computing time of the last iteration or time step, by stage.
-    #[must_use]
     pub fn last_iteration(&self) -> &Timings {
         &self.body.last_iteration
     }
@@ -770,7 +745,6 @@ impl Simulation {
     /// assert!(timings.total() >= timings.linearize + timings.factorize);
     /// # Ok::<(), warpbeam::SimulationError>(())
     /// ```
-    #[must_use]
     pub fn timings(&self) -> &Timings {
         &self.body.timings
     }

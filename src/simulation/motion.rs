@@ -83,19 +83,16 @@ impl Moment {
     }
 
     /// Returns the state of the body.
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
     /// Returns the energy ledger up to this moment.
-    #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
     /// Returns the memory used, bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.state.bytes()
     }

@@ -48,7 +48,6 @@ pub struct PointState {
 
 impl PointState {
     /// Returns the value of a field at the point; `None` if it has none, such as fields of elements.
-    #[must_use]
     pub fn field(&self, field: Field) -> Option<f64> {
         let kinematics = if self.is_linear { Kinematics::Linear } else { Kinematics::Corotated };
         let u = Some(self.displacement).filter(|_| field != Field::ReferenceDistance);
@@ -59,7 +58,6 @@ impl PointState {
 impl Field {
     /// Returns the value at a material point, interpolated from values recovered at the nodes of `mesh`; `None` if
     /// there is no such point, or no value, as for fields of elements and of the displacement.
-    #[must_use]
     pub fn smooth_at(self, mesh: &Mesh, nodal: &NodalStress, point: MaterialPoint) -> Option<f64> {
         self.of(&nodal.mean(&mesh.weights(point)?), nodal.material(), nodal.kinematics())
     }
@@ -85,7 +83,6 @@ impl Simulation {
     /// assert_eq!(state.field(Field::RotationAngle), Some(rotation.angle().to_degrees()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn point_state(&self, point: MaterialPoint, values: PointValues) -> Option<PointState> {
         let (problem, state) = (self.problem(), self.state());
         let mesh = problem.system().mesh();

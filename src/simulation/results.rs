@@ -66,7 +66,6 @@ pub struct Deformation {
 impl Deformation {
     /// Computes the measures for a state whose stress has been recovered.
     #[doc(hidden)]
-    #[must_use]
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let elements = problem.system().elements();
         let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
@@ -92,7 +91,6 @@ impl Deformation {
 }
 
 /// Returns the change of a body's area relative to its area at rest, ∫ det F dA / ∫ dA − 1.
-#[must_use]
 pub fn area_change(problem: &Problem, state: &State) -> f64 {
     let elements = problem.system().elements();
     let (mut rest, mut change) = (0.0, 0.0);
@@ -106,7 +104,6 @@ pub fn area_change(problem: &Problem, state: &State) -> f64 {
 }
 
 /// Returns the results of every probe of a problem for a state.
-#[must_use]
 pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
     let mesh = problem.system().mesh();
     let see = problem.probes().iter().map(|probe| {
@@ -118,7 +115,6 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
 
 /// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with lever arms about the origin:
 /// those at rest in linear theory, else current ones.
-#[must_use]
 pub fn reaction(problem: &Problem, state: &State, kinematics: Kinematics, forces: &Forces) -> Wrench {
     let mut total = Wrench::default();
     let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
@@ -137,7 +133,6 @@ pub fn reaction(problem: &Problem, state: &State, kinematics: Kinematics, forces
 
 /// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes, or the force on its point.
 /// An unknown fixed by several supports belongs to the first.
-#[must_use]
 pub fn support_reactions(
     problem: &Problem,
     state: &State,
@@ -171,7 +166,6 @@ pub fn support_reactions(
 
 /// Returns the derivative of the work of moving supports with respect to the load factor, J: their current reactions
 /// times the whole displacement and rotation of each.
-#[must_use]
 pub fn supports_power(problem: &Problem, reactions: &[SupportReaction]) -> f64 {
     let pairs = problem.supports().all().iter().zip(reactions);
     pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.rotation).sum()
@@ -221,7 +215,6 @@ pub struct StressResult {
 
 impl StressResult {
     /// Computes the results from recovered stresses.
-    #[must_use]
     pub fn of(problem: &Problem, nodal: &NodalStress, error: &ErrorEstimate) -> Self {
         let (mesh, material) = (problem.system().mesh(), nodal.material());
         let probes = problem.probes().iter().map(|probe| {

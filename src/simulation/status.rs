@@ -45,7 +45,6 @@ pub enum Status {
 
 impl Status {
     /// Returns the identifier in JSON.
-    #[must_use]
     pub fn id(&self) -> &'static str {
         match self {
             Self::Running => "running",
@@ -59,19 +58,16 @@ impl Status {
     }
 
     /// Returns the status in English for display, such as `not converged`.
-    #[must_use]
     pub fn word(&self) -> String {
         self.id().replace('_', " ")
     }
 
     /// Returns `true` if the simulation ended successfully.
-    #[must_use]
     pub fn is_success(&self) -> bool {
         matches!(self, Self::Converged | Self::Accepted | Self::Finished)
     }
 
     /// Returns the reason why the simulation ended without success; `None` otherwise.
-    #[must_use]
     pub fn failure(&self) -> Option<String> {
         self.failure_sentence().map(|reason| reason.to_string())
     }

@@ -26,7 +26,6 @@ pub struct Equilibrium<'a> {
 
 impl Equilibrium<'_> {
     /// Returns the result of [`Simulation::certify`], if it was called since the last change.
-    #[must_use]
     pub fn certificate(self) -> Option<Certificate> {
         self.search.certificate
     }
@@ -39,26 +38,22 @@ impl Equilibrium<'_> {
 
     /// Returns the decisions of `auto`; `None` for other methods.
     #[doc(hidden)]
-    #[must_use]
     pub fn auto_report(self) -> Option<AutoReport> {
         self.search.method.report().auto_report
     }
 
     /// Returns the load factor currently applied, relative to the full loads.
-    #[must_use]
     pub fn load_factor(self) -> f64 {
         self.search.load_factor()
     }
 
     /// Returns the number of load steps so far; 1 if the loads were applied at once.
-    #[must_use]
     pub fn load_steps(self) -> u32 {
         self.search.method.report().load_steps
     }
 
     /// Returns the bound of the rounding error of [`Simulation::residual`], if a solve has ended within this bound but
     /// above the tolerance. `None` if the tolerance is met, or the solve has not converged.
-    #[must_use]
     pub fn residual_floor(self) -> Option<f64> {
         let below = self.search.forces.below_rounding.filter(|_| self.body.status == Status::Converged);
         let floor = self.search.floor.or(below.map(|[_, bound]| bound));
@@ -67,14 +62,12 @@ impl Equilibrium<'_> {
 
     /// Returns the critical points of the path from rest; `None` if the result is not known to be its end.
     #[doc(hidden)]
-    #[must_use]
     pub fn path_events(self) -> Option<PathEvents> {
         self.search.method.path_events().filter(|_| self.body.status.is_success())
     }
 
     /// Returns a copy of the search, for display while the search itself goes on elsewhere. It has no work memory; that
     /// is allocated if the copy is itself continued.
-    #[must_use]
     pub fn snapshot(self) -> Simulation {
         Simulation { body: self.body.clone(), process: Process::Search(Box::new(self.search.copy())) }
     }
@@ -110,19 +103,16 @@ pub struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     /// Returns the energy ledger since the start.
-    #[must_use]
     pub fn ledger(self) -> &'a Ledger {
         &self.steps.ledger
     }
 
     /// Returns the numbers of steps and solves since the start.
-    #[must_use]
     pub fn counts(self) -> Counts {
         self.steps.counts
     }
 
     /// Returns the momentum and angular momentum.
-    #[must_use]
     pub fn momentum(self) -> Momentum {
         let Body { scene, problem, state, .. } = self.body;
         Momentum::of(problem, &self.steps.mass, inertia(scene), state)
@@ -146,19 +136,16 @@ impl<'a> Motion<'a> {
     /// assert_eq!(counts.linear_steps + counts.old_factor_steps + counts.new_factor_steps, 30);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn decision(self) -> Option<Decision> {
         self.steps.decides(&self.body.scene).then_some(self.steps.decision)
     }
 
     /// Returns the longest stable step about rest, s; `None` for integrators without such a limit.
-    #[must_use]
     pub fn critical_step(self) -> Option<f64> {
         self.steps.critical_step
     }
 
     /// Returns a snapshot for [`Simulation::return_to`].
-    #[must_use]
     pub fn moment(self) -> Moment {
         Moment::of(self.steps, self.body)
     }

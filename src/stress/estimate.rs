@@ -38,7 +38,6 @@ pub struct ErrorEstimate {
 
 impl ErrorEstimate {
     /// Computes the estimate for a state and its recovered stresses.
-    #[must_use]
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let mut result = Self::default();
         result.update(problem, state, nodal);

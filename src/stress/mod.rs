@@ -38,19 +38,16 @@ pub struct PlaneTensor {
 
 impl PlaneTensor {
     /// Returns xx, yy, zz and xy; xy is the tensor component, half of the engineering shear strain.
-    #[must_use]
     pub fn components(&self) -> [f64; 4] {
         [self.plane.m11, self.plane.m22, self.zz, self.plane.m12]
     }
 
     /// Returns all nine components, row by row.
-    #[must_use]
     pub fn rows(&self) -> [f64; 9] {
         [self.plane.m11, self.plane.m12, 0.0, self.plane.m12, self.plane.m22, 0.0, 0.0, 0.0, self.zz]
     }
 
     /// Returns the von Mises stress √(3/2 s:s) of a stress with deviator s, Pa.
-    #[must_use]
     pub fn von_mises(&self) -> f64 {
         let [x, y, z, xy] = self.components();
         let (a, b, c) = (x - y, y - z, z - x);
@@ -64,7 +61,6 @@ impl PlaneTensor {
     }
 
     /// Returns `true` if every component is finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         self.components().iter().all(|v| v.is_finite())
     }
@@ -102,7 +98,6 @@ impl Local {
     }
 
     /// Returns ε with its component out of the plane: −ν/(1 − ν) tr ε in plane stress, 0 in plane strain.
-    #[must_use]
     pub fn strain(&self, material: &Material) -> PlaneTensor {
         let zz = match material.plane {
             Plane::Stress => -material.poisson / (1.0 - material.poisson) * self.strain.trace(),
@@ -112,7 +107,6 @@ impl Local {
     }
 
     /// Returns the Biot stress T, Pa, in the rotated frame.
-    #[must_use]
     pub fn biot(&self, material: &Material) -> PlaneTensor {
         let plane = material.lame().stress(&self.strain);
         PlaneTensor { plane, zz: material.out_of_plane_stress(plane.trace()) }
@@ -120,7 +114,6 @@ impl Local {
 
     /// Returns the Cauchy stress σ, Pa, in the spatial frame; `None` if the body is crushed or inverted, where the
     /// Cauchy stress is undefined, and if the arithmetic leaves the range of f64.
-    #[must_use]
     pub fn cauchy(&self, material: &Material, kinematics: Kinematics) -> Option<PlaneTensor> {
         let PlaneTensor { plane: t, zz } = self.biot(material);
         let stress = match kinematics {
@@ -180,7 +173,6 @@ pub struct RecoveryScratch {
 impl NodalStress {
     /// Recovers the stress of a state.
     #[doc(hidden)]
-    #[must_use]
     pub fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
         let mut result = Self::empty(*problem.material());
         result.update(problem, state, kinematics, &mut RecoveryScratch::default());
@@ -188,7 +180,6 @@ impl NodalStress {
     }
 
     /// Returns an object without nodes.
-    #[must_use]
     pub(crate) fn empty(material: Material) -> Self {
         Self { material, kinematics: Kinematics::Corotated, nodes: Vec::new() }
     }
@@ -222,20 +213,17 @@ impl NodalStress {
 
     /// Returns strain and rotation at every node.
     #[doc(hidden)]
-    #[must_use]
     pub fn nodes(&self) -> &[Local] {
         &self.nodes
     }
 
     /// Returns the material of the body.
-    #[must_use]
     pub fn material(&self) -> &Material {
         &self.material
     }
 
     /// Returns the strain measure of the state.
     #[doc(hidden)]
-    #[must_use]
     pub fn kinematics(&self) -> Kinematics {
         self.kinematics
     }
@@ -246,7 +234,6 @@ impl NodalStress {
     }
 
     /// Returns the node with the largest von Mises (Cauchy) stress, and this stress, Pa.
-    #[must_use]
     pub fn largest_von_mises(&self) -> Option<(u32, f64)> {
         let values = (0..).zip(self.cauchy()).filter_map(|(node, stress)| Some((node, stress?.von_mises())));
         values.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
@@ -254,7 +241,6 @@ impl NodalStress {
 
     /// Returns the weighted mean of strain and rotation over nodes, with weights that sum to 1.
     #[doc(hidden)]
-    #[must_use]
     pub fn mean(&self, weights: &[(u32, f64)]) -> Local {
         Local::mean(weights.iter().filter_map(|&(node, weight)| Some((*self.nodes.get(node as usize)?, weight))))
     }

@@ -42,7 +42,6 @@ const CORNER: f64 = 0.6;
 impl Singularity {
     /// Returns the cause of an unbounded stress at a node or, at the end of a support or a re-entrant corner, at the others
     /// of its elements, to which the largest recovered stress of a coarse mesh may belong; `None` if the stress is bounded.
-    #[must_use]
     pub fn near(problem: &Problem, node: u32) -> Option<Self> {
         let own = problem.system().mesh().elements().filter(|element| element.contains(&node));
         // Across the height from a point support or force the stress of bending may be the largest.
@@ -52,7 +51,6 @@ impl Singularity {
     }
 
     /// Returns the cause of an unbounded stress at a node; `None` if the stress is bounded.
-    #[must_use]
     pub fn at(problem: &Problem, node: u32) -> Option<Self> {
         let mesh = problem.system().mesh();
         let is_there = |place: &Place| matches!(place, Place::At(at) if mesh.nearest_node((*at).into()) == node);

@@ -5,7 +5,6 @@ use crate::format::{number, three_digits};
 use crate::sentence::{Sentence, sentence};
 
 /// Returns a warning for strains beyond [`LAW_HOLDS`].
-#[must_use]
 pub(crate) fn strain_warning(max_strain: f64) -> Option<Sentence> {
     /// Relative excess that is rounding error.
     const ROUNDING: f64 = 1e-9;
@@ -20,7 +19,6 @@ pub(crate) fn strain_warning(max_strain: f64) -> Option<Sentence> {
 }
 
 /// Returns a warning for a state in which some elements, out of `all`, are inverted.
-#[must_use]
 pub(crate) fn inversion_warning(inverted: usize, all: usize) -> Option<Sentence> {
     (inverted > 0).then(|| {
         sentence!(

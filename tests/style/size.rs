@@ -12,21 +12,21 @@ use crate::files::rust_files;
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 25_705),
     ("study", &["src/study"], 7_030),
-    ("model", &["src/model", "src/scene"], 3_192),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_296),
-    ("simulation", &["src/simulation"], 2_613),
-    ("assembly", &["src/assembly"], 3_055),
+    ("model", &["src/model", "src/scene"], 3_157),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
+    ("simulation", &["src/simulation"], 2_551),
+    ("assembly", &["src/assembly"], 2_993),
     ("cli", &["src/cli"], 2_313),
-    ("dynamics", &["src/dynamics"], 1_943),
+    ("dynamics", &["src/dynamics"], 1_931),
     ("render", &["src/render"], 1_915),
-    ("element", &["src/element"], 2_027),
-    ("mesh", &["src/mesh"], 1_962),
+    ("element", &["src/element"], 2_008),
+    ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 799),
-    ("the rest of src", &["src"], 5_114),
+    ("the rest of src", &["src"], 5_064),
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_964;
+const SRC: usize = 60_693;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
