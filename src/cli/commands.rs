@@ -212,7 +212,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     outputs.write_table(|| table)?;
     outputs.write_picture(|| {
         let path = path.as_ref().ok_or_else(no_path)?;
-        Ok(plot::figure(&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)))
+        Ok(plot::figures([&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
     })?;
     text::print(&summary)?;
     Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })

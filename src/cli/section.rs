@@ -11,7 +11,7 @@ use super::args::SectionArgs;
 use super::progress::Watch;
 use super::{CliError, about, exit_code, json, sections_of, simulate, text};
 use crate::format::{Context, engineering, in_power, number, prefix, three_digits};
-use crate::plot::{self, Drawing};
+use crate::plot;
 use crate::scene::{self, Scene, SectionLine};
 use crate::section::{Section, SectionError, SectionForces, SectionPoint};
 use crate::simulation::{Simulation, Status};
@@ -54,15 +54,18 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     let diagram = || LazyCell::force(&diagram).as_ref().map_err(|error| refused(*error));
     outputs.write_picture(|| {
         Ok(match along {
-            None => Drawing::stacked(sections.iter().flat_map(|cut| {
-                let within = section_chart::contexts(std::slice::from_ref(cut), &simulation);
-                section_chart::stress(cut, &scene, &within, &ToString::to_string).map(|figure| plot::figure(&figure))
-            })),
+            None => {
+                let figures = sections.iter().flat_map(|cut| {
+                    let within = section_chart::contexts(std::slice::from_ref(cut), &simulation);
+                    section_chart::stress(cut, &scene, &within, &ToString::to_string)
+                });
+                plot::figures(&figures.collect::<Vec<_>>())
+            }
             Some(_) => {
                 let diagram = diagram()?;
                 let within = section_chart::contexts(diagram, &simulation);
                 let figures = section_chart::forces(diagram, &scene, &within, &ToString::to_string);
-                Drawing::stacked(figures.iter().map(plot::figure))
+                plot::figures(&figures)
             }
         })
     })?;

@@ -17,7 +17,8 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
     let [rows, columns] = [0, 1].map(|axis| labels(entries, |case| Some(case.cell()?[axis].clone())));
     let counts = counts(entries, |case| Some((case.series(), case.cell()?)));
     let panel_size = [MARGIN[0] + CELL[0] * columns.len() as f64, GAP + CELL[1] * rows.len() as f64];
-    let mut drawing = Drawing::new([
+    let mut drawing = Drawing::default();
+    drawing.page([
         (20.0 + panel_size[0] * ElementKind::all().count() as f64).max(LEGEND * Outcome::COUNT as f64 + 40.0),
         MARGIN[1] + panel_size[1] * names.len() as f64,
     ]);

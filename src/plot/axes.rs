@@ -1,6 +1,6 @@
 //! Axes of drawings: margins, scales, grids and the marks of elements.
 
-use super::drawing::{Anchor, Color, Drawing, GRID, Outline, Shape, Text, solid};
+use super::drawing::{Anchor, Drawing, GRID, Text, solid};
 use crate::scene::ElementKind;
 
 /// Size of a drawing.
@@ -85,22 +85,21 @@ impl PlotMargins {
         [SIZE[1] - self.bottom, self.top]
     }
 
-    /// Starts a drawing with its title.
-    pub fn start(&self, title: impl Into<String>) -> Drawing {
-        let mut drawing = Drawing::new([self.width, SIZE[1]]);
+    /// Adds a page with its title.
+    pub fn start(&self, drawing: &mut Drawing, title: impl Into<String>) {
+        drawing.page([self.width, SIZE[1]]);
         drawing.put(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) });
-        drawing
     }
 
     /// Draws lines at places of both axes with their numbers, and the labels of the axes.
     pub fn grid(&self, drawing: &mut Drawing, [x, y]: [Vec<(f64, String)>; 2], [x_label, y_label]: [&str; 2]) {
         let ([left, right], [bottom, top]) = (self.across(), self.up());
         for (at, text) in x {
-            drawing.line(vec![[at, top], [at, bottom]], GRID, solid(1.0));
+            drawing.line(&[[at, top], [at, bottom]], GRID, solid(1.0));
             drawing.text([at, bottom + 18.0], Anchor::Middle, text);
         }
         for (at, text) in y {
-            drawing.line(vec![[left, at], [right, at]], GRID, solid(1.0));
+            drawing.line(&[[left, at], [right, at]], GRID, solid(1.0));
             drawing.text([left - 8.0, at + 4.0], Anchor::End, text);
         }
         drawing.text([0.5 * (left + right), SIZE[1] - 14.0], Anchor::Middle, x_label);
@@ -109,12 +108,12 @@ impl PlotMargins {
     }
 }
 
-/// The mark of an element: as many corners as it has nodes.
-pub(super) fn mark([x, y]: [f64; 2], element: ElementKind, color: Color, size: f64) -> Shape {
+/// Returns the corners of the mark of an element: as many as it has nodes.
+pub(super) fn mark([x, y]: [f64; 2], element: ElementKind, size: f64) -> Vec<[f64; 2]> {
     let corners = element.entry().nodes.len();
     let corner = |i: usize| {
         let (s, c) = (std::f64::consts::TAU * i as f64 / corners as f64).sin_cos();
         [x + size * s, y - size * c]
     };
-    Shape::filled(Outline::Polygon((0..corners).map(corner).collect()), color)
+    (0..corners).map(corner).collect()
 }

@@ -1,8 +1,8 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
 use super::axes::{PlotMargins, SIZE};
-use super::drawing::{Anchor, Drawing, Outline, Shape, Stroke, solid};
-use crate::format::{number, prefix, ticks};
+use super::drawing::{Anchor, Drawing, Stroke, solid};
+use crate::format::{number, prefix, rounded, ticks};
 use crate::study::color;
 use crate::study::figure::{Figure, Ink, Mark};
 
@@ -11,8 +11,14 @@ const TABLE: f64 = 330.0;
 const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };
 
-/// Draws a figure with the table beside it.
-pub fn figure(figure: &Figure) -> Drawing {
+/// Draws figures one below the other, each with the table beside it.
+pub fn figures<'a>(figures: impl IntoIterator<Item = &'a Figure>) -> Drawing {
+    let mut drawing = Drawing::default();
+    figures.into_iter().for_each(|figure| add(&mut drawing, figure));
+    drawing
+}
+
+fn add(drawing: &mut Drawing, figure: &Figure) {
     let ends = [MARGINS.across(), MARGINS.up()];
     let [mut low, mut high] = figure.corners();
     if figure.has_one_scale() {
@@ -27,7 +33,7 @@ pub fn figure(figure: &Figure) -> Drawing {
         let [from, to] = ends[i];
         from + (to - from) * (value - low[i]) / (high[i] - low[i])
     };
-    let mut drawing = MARGINS.start(figure.title.as_str());
+    MARGINS.start(drawing, figure.title.as_str());
     let mut labels = [String::new(), String::new()];
     let mut numbers = [Vec::new(), Vec::new()];
     for i in 0..2 {
@@ -36,23 +42,30 @@ pub fn figure(figure: &Figure) -> Drawing {
         let unit = format!("{symbol}{}", quantity.unit);
         labels[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
         let values = ticks(low[i], high[i], 8);
-        numbers[i] = values.into_iter().map(|v| (place(v, i), tick(v / 10f64.powi(power)))).collect();
+        // Without the rounding errors of the steps; adding 0 turns −0 into 0.
+        let tick = |v: f64| number(rounded(v / 10f64.powi(power), 7) + 0.0);
+        numbers[i] = values.into_iter().map(|v| (place(v, i), tick(v))).collect();
     }
-    MARGINS.grid(&mut drawing, numbers, [&labels[0], &labels[1]]);
+    MARGINS.grid(drawing, numbers, [&labels[0], &labels[1]]);
     let [[left, right], [bottom, top]] = ends;
     drawing.clipped([[left, top], [right - left, bottom - top]], |drawing| {
         // Marks in the same place lie in each other.
         let mut size = 6.5;
         for series in figure.series.iter().filter(|series| !series.points.is_empty()) {
             let points = series.points.iter().filter_map(|p| figure.place(p));
-            draw(drawing, series.ink, series.mark, points.map(|[x, y]| [place(x, 0), place(y, 1)]).collect(), size);
+            draw(
+                drawing,
+                series.ink,
+                series.mark,
+                &points.map(|[x, y]| [place(x, 0), place(y, 1)]).collect::<Vec<_>>(),
+                size,
+            );
             if series.mark == Mark::Disc {
                 size = (size - 1.2).max(2.0);
             }
         }
     });
-    table(&mut drawing, figure, right + 24.0, MARGINS.width - 14.0);
-    drawing
+    table(drawing, figure, right + 24.0, MARGINS.width - 14.0);
 }
 
 fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
@@ -70,12 +83,12 @@ fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
         let middle = y - 4.5;
         let line = || vec![[left, middle], [left + 20.0, middle]];
         let places = if series.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
-        draw(drawing, series.ink, series.mark, places, 4.5);
+        draw(drawing, series.ink, series.mark, &places, 4.5);
     }
 }
 
 /// Draws a series at its places in the picture.
-fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size: f64) {
+fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: &[[f64; 2]], size: f64) {
     let color = match ink {
         Ink::Method(method) => color(method.id(), false),
         Ink::Unstable => [0xbe, 0x14, 0x1e],
@@ -89,21 +102,14 @@ fn draw(drawing: &mut Drawing, ink: Ink, mark: Mark, places: Vec<[f64; 2]>, size
     if mark.is_line() {
         return drawing.line(places, color, Stroke { width: 2.2, dashes });
     }
-    for place in places {
-        let [x, y] = place;
+    for &[x, y] in places {
         let mut cross = |ends: [[f64; 2]; 2]| {
-            drawing.line(ends.map(|[u, v]| [x + size * u, y + size * v]).to_vec(), color, solid(2.0));
+            drawing.line(&ends.map(|[u, v]| [x + size * u, y + size * v]), color, solid(2.0));
         };
         match mark {
             Mark::Cross => [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]].into_iter().for_each(&mut cross),
-            Mark::Ring => drawing.add(Shape::stroked(Outline::Circle(place, size), color, solid(1.5))),
-            _ => drawing.add(Shape::filled(Outline::Circle(place, size), color)),
+            Mark::Ring => drawing.circle([x, y], size, color, Some(solid(1.5))),
+            _ => drawing.circle([x, y], size, color, None),
         }
     }
-}
-
-/// A number at an axis, without the rounding of its steps.
-fn tick(value: f64) -> String {
-    let short: f64 = format!("{value:.6e}").parse().unwrap_or(value);
-    number(if short == 0.0 { 0.0 } else { short })
 }

@@ -1,7 +1,7 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::ScaledAxis;
-use super::drawing::{Anchor, Color, Drawing, GRID, INK, Outline, Shape, Stroke, Text, solid};
+use super::drawing::{Anchor, Color, Drawing, GRID, INK, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
 use crate::study::figure::LoadAxis;
@@ -37,23 +37,24 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     // A motion has no load curve.
     let top = 44.0 + if limits.reference.is_empty() { CURVE[0] } else { CURVE[1] };
     let bottom = top + ROW * limits.strips.len() as f64;
-    let mut drawing = Drawing::new([WIDTH, bottom + 84.0]);
+    let mut drawing = Drawing::default();
+    drawing.page([WIDTH, bottom + 84.0]);
     let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
     drawing.put(Text { size: 16.0, ..title });
     for (x, factor) in axis.values() {
-        drawing.line(vec![[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
+        drawing.line(&[[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
         drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));
     }
     // The scene's own load.
     if limits.contains(1.0) {
         let own = axis.place(1.0);
-        drawing.line(vec![[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
+        drawing.line(&[[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
         drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
     }
     if let Some(critical) = limits.critical().filter(|&critical| limits.contains(critical)) {
         let x = axis.place(critical);
         let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
-        drawing.line(vec![[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
+        drawing.line(&[[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
     }
     if !limits.reference.is_empty() {
         curve(&mut drawing, limits, &axis);
@@ -86,12 +87,12 @@ fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &ScaledAxis) {
     let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
     let up = ScaledAxis::decades(lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
     for (y, length) in up.values() {
-        drawing.line(vec![[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
+        drawing.line(&[[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
         drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, engineering(length, "m"));
     }
     for known in lengths.split(|(_, u)| u.is_none()) {
         let places = known.iter().filter_map(|(factor, u)| Some([axis.place(*factor), up.place((*u)?)]));
-        drawing.line(places.collect(), INK, solid(2.0));
+        drawing.line(&places.collect::<Vec<_>>(), INK, solid(2.0));
     }
     drawing.text([ACROSS[1] + 12.0, CURVE[0] + 12.0], Anchor::Start, "reference displacement");
     drawing.text([ACROSS[1] + 12.0, CURVE[0] + 30.0], Anchor::Start, "of the first probe");
@@ -104,8 +105,7 @@ fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
         // Lines of neighbouring bars meet.
         let mut x = (from / GAP).floor() * GAP - (bottom - top);
         while x < to {
-            let line = vec![[x, bottom], [x + bottom - top, top]];
-            drawing.add(Shape::stroked(Outline::Line(line), INK, solid(1.2)));
+            drawing.line(&[[x, bottom], [x + bottom - top, top]], INK, solid(1.2));
             x += GAP;
         }
     });

@@ -9,7 +9,7 @@ mod trade;
 
 pub use atlas::atlas;
 pub use drawing::Drawing;
-pub use figure::figure;
+pub use figure::figures;
 pub use limits::limits;
 pub use trade::study;
 #[cfg(feature = "app")]

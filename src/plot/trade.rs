@@ -1,7 +1,7 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
 use super::axes::{MARGINS, ROW, ScaledAxis, mark};
-use super::drawing::{Anchor, Drawing, INK, Outline, Shape, Stroke, Text, solid};
+use super::drawing::{Anchor, Drawing, INK, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::format::number;
 use crate::method::METHODS;
@@ -34,23 +34,23 @@ pub fn study(study: &Study) -> Drawing {
     };
     let x = ScaledAxis::decades(measured.iter().map(|m| m.milliseconds).chain(real_time), MARGINS.across());
     let y = ScaledAxis::decades(measured.iter().map(|m| error(m)), MARGINS.up());
-    let mut drawing = MARGINS.start(format!("{}: {title}", study.scene));
+    let mut drawing = Drawing::default();
+    MARGINS.start(&mut drawing, format!("{}: {title}", study.scene));
     let ticks = [&x, &y].map(|axis| axis.values().into_iter().map(|(place, value)| (place, number(value))).collect());
     MARGINS.grid(&mut drawing, ticks, labels);
     if let Some(time) = real_time {
         let ([bottom, top], at) = (MARGINS.up(), x.place(time));
-        drawing.line(vec![[at, top], [at, bottom]], [0x55; 3], DASHED);
+        drawing.line(&[[at, top], [at, bottom]], [0x55; 3], DASHED);
         let label = Text::new([at, top - 6.0], Anchor::Middle, "real time");
         drawing.put(Text { color: INK, ..label });
     }
     let place = |m: &Measurement| [x.place(m.milliseconds), y.place(error(m))];
-    drawing.line(study.front().into_iter().map(place).collect(), INK, solid(WIDTH));
+    drawing.line(&study.front().into_iter().map(place).collect::<Vec<_>>(), INK, solid(WIDTH));
     for m in measured {
-        let shape =
-            mark(place(m), m.setting.element, color(m.setting.series(), false), if m.pareto { 5.5 } else { 3.5 });
+        let mark = mark(place(m), m.setting.element, if m.pareto { 5.5 } else { 3.5 });
         let is_faint = if moves { m.setting.method == MethodKind::Linear } else { !m.converged };
         let opacity = if is_faint { 0.45 } else { 1.0 };
-        drawing.add(Shape { opacity, title: m.setting.to_string(), ..shape });
+        drawing.polygon(&mark, color(m.setting.series(), false), opacity, &m.setting.to_string());
     }
     key(&mut drawing, moves);
     drawing
@@ -59,24 +59,26 @@ pub fn study(study: &Study) -> Drawing {
 fn key(drawing: &mut Drawing, moves: bool) {
     let [_, right] = MARGINS.across();
     let mut row = MARGINS.top + 10.0;
-    let mut add = |symbol: &dyn Fn(f64) -> Option<Shape>, text: &str| {
-        symbol(row).into_iter().for_each(|symbol| drawing.add(symbol));
+    let mut add = |symbol: &dyn Fn(&mut Drawing, f64), text: &str| {
+        symbol(drawing, row);
         drawing.text([right + 36.0, row + 4.0], Anchor::Start, text);
         row += ROW;
     };
     let methods = METHODS.iter().map(|entry| entry.id).filter(|_| !moves);
     for id in methods.chain(INTEGRATORS.iter().map(|entry| entry.id).filter(|_| moves)) {
         for element in ElementKind::all() {
-            let symbol = |row: f64| Some(mark([right + 22.0, row], element, color(id, false), 5.0));
+            let symbol = |drawing: &mut Drawing, row: f64| {
+                drawing.polygon(&mark([right + 22.0, row], element, 5.0), color(id, false), 1.0, "");
+            };
             add(&symbol, &format!("{} {id}", element.id()));
         }
     }
-    let line = |row: f64, stroke| {
-        Some(Shape::stroked(Outline::Line(vec![[right + 12.0, row], [right + 32.0, row]]), INK, stroke))
+    let line = |stroke| {
+        move |drawing: &mut Drawing, row: f64| drawing.line(&[[right + 12.0, row], [right + 32.0, row]], INK, stroke)
     };
-    add(&|row| line(row, solid(WIDTH)), "Pareto front");
+    add(&line(solid(WIDTH)), "Pareto front");
     if moves {
-        add(&|row| line(row, DASHED), "real time");
-        add(&|_| None, "faint: linear theory");
+        add(&line(DASHED), "real time");
+        add(&|_, _| {}, "faint: linear theory");
     }
 }

@@ -16,17 +16,17 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_551),
     ("assembly", &["src/assembly"], 2_993),
-    ("cli", &["src/cli"], 2_313),
+    ("cli", &["src/cli"], 2_316),
     ("dynamics", &["src/dynamics"], 1_931),
     ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_936),
-    ("plot", &["src/plot"], 799),
+    ("plot", &["src/plot"], 728),
     ("the rest of src", &["src"], 5_064),
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_693;
+const SRC: usize = 60_625;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

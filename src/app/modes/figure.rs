@@ -22,7 +22,7 @@ pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, Sentenc
     let new = NewFile::create(Path::new(""), file.extension()).map_err(|error| error.to_string())?;
     let bytes = match file {
         FigureFile::Csv => figure.csv().into_bytes(),
-        FigureFile::Svg => crate::plot::figure(figure).svg().into_bytes(),
+        FigureFile::Svg => crate::plot::figures([figure]).svg().into_bytes(),
     };
     let path = new.path().to_owned();
     files::save(&path, &bytes).map_err(|error| Sentence::located(path.display().to_string(), error.to_string()))?;
