@@ -100,6 +100,13 @@ pub enum Extent {
     Full,
 }
 
+impl Extent {
+    /// Returns the value of a quick study or the one of a full study.
+    pub(super) fn pick<T>(self, [quick, full]: [T; 2]) -> T {
+        if self == Self::Full { full } else { quick }
+    }
+}
+
 /// Converts [`ControlFlow::Break`] to [`StudyError::Cancelled`].
 pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }

@@ -11,7 +11,7 @@ use crate::progress::{Observer, Progress};
 use crate::scene::{IntegratorKind, MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Deformation, Simulation, Status};
-use crate::study::motion::{MotionReference, Samples, fine_path, path};
+use crate::study::motion::{MotionReference, REFERENCE_STEPS, Samples, fine_path, path};
 use crate::study::parallel;
 use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
@@ -81,7 +81,7 @@ impl<'a> Motions<'a> {
     fn new(scene: &'a Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
         let reference = MotionReference::new(scene, Extent::Quick, observe)?;
         let (samples, system) = (reference.samples(), system_of(scene)?);
-        let steps = Extent::Quick.plan().reference_steps();
+        let steps = Extent::Quick.pick(REFERENCE_STEPS);
         let exact = fine_path(scene.clone().with_method(MethodKind::Newton), &system, samples, steps, observe)?;
         let mesh_error_percent = reference.distance(&exact, &reference.path)[0] + reference.error_percent;
         let mut motions = Self { scene, system, samples, reference, exact, mesh_error_percent };

@@ -6,8 +6,8 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use web_time::Instant;
 
-pub(super) use self::plan::Samples;
-use self::plan::{meshes, settings};
+use self::plan::{MOST_STEPS, TIMING, meshes, settings};
+pub(super) use self::plan::{REFERENCE_STEPS, Samples};
 pub use self::reference::MotionReference;
 use self::reference::run;
 pub(super) use self::reference::{fine_path, path};
@@ -60,7 +60,7 @@ pub(super) fn study(
     let studied = Studied { scene, extent, reference };
     let (begun, now) = (REFERENCE_SHARE + OWN_SHARE, sentence!("the motion on every mesh"));
     let meshed = parallel::all(&meshes(scene, extent), observe, [REFERENCE_SHARE, begun], &now, |mesh, observe| {
-        let (samples, steps) = (studied.reference.samples(), extent.plan().reference_steps());
+        let (samples, steps) = (studied.reference.samples(), extent.pick(REFERENCE_STEPS));
         Meshed::new(scene, *mesh, |scene, system| fine_path(scene, system, samples, steps, observe))
     })?;
     // Every mesh has the same settings.
@@ -101,7 +101,7 @@ impl Studied<'_> {
             check(observe(Progress { fraction, now: Some(&now) }))?;
             let scene = measurement.setting.apply(self.scene);
             let mut simulation = Simulation::with_system(&scene, system.clone())?;
-            let timing = self.extent.plan().timing;
+            let timing = self.extent.pick(TIMING);
             let warm_up = steps.min(*steps_of_sample);
             measurement.milliseconds = milliseconds_per_second(&mut simulation, warm_up, steps, timing, &|| true);
             study.measurements.push(measurement);
@@ -121,7 +121,7 @@ impl Studied<'_> {
         let samples = reference.samples();
         let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
         let steps = u64::from(steps_of_sample) * u64::from(samples.count);
-        let is_cut = steps > u64::from(self.extent.plan().most_steps);
+        let is_cut = steps > u64::from(self.extent.pick(MOST_STEPS));
         let (steps, path) = if is_cut {
             run(&mut simulation, MIN_STEPS);
             (MIN_STEPS, Vec::new())
@@ -163,16 +163,15 @@ impl Studied<'_> {
 pub fn time_of_motion(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     let goes_on = || observe(Progress::at(0.0)).is_continue();
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_some() && goes_on())?;
-    let plan = Extent::Quick.plan();
-    let steps = (Samples::of(scene, plan).ok()?.duration() / scene.dynamics.time_step).round().max(1.0);
-    let steps = if steps > f64::from(plan.most_steps) { MIN_STEPS } else { steps as u32 };
+    let steps = (Samples::of(scene, Extent::Quick).ok()?.duration() / scene.dynamics.time_step).round().max(1.0);
+    let steps = if steps > f64::from(Extent::Quick.pick(MOST_STEPS)) { MIN_STEPS } else { steps as u32 };
     let begun = Instant::now();
     run(&mut simulation, 1);
     let of_step = begun.elapsed().as_secs_f64();
     simulation.reset();
     let steps = steps.min((MAX_TIME_OF_MOTION / of_step).max(MIN_STEPS_OF_LARGE) as u32);
     // A window that displays the motion has just opened, and disturbs the first runs.
-    let milliseconds = milliseconds_per_second(&mut simulation, steps, steps, Extent::Full.plan().timing, &goes_on);
+    let milliseconds = milliseconds_per_second(&mut simulation, steps, steps, Extent::Full.pick(TIMING), &goes_on);
     goes_on().then_some(milliseconds)
 }
 

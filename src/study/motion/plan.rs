@@ -12,77 +12,36 @@ use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
 use crate::study::setting::{Setting, Stepping};
 
-/// Size of a study.
-pub(in crate::study) struct Plan {
-    /// Longest simulated time, in periods of the body's lowest natural frequency and in time steps of the scene; the
-    /// longer one counts.
-    longest: (f64, f64),
-    /// Largest number of samples of a path; a longer motion is sampled, and stepped, more coarsely.
-    most_samples: f64,
-    /// Longest time step relative to the scene's.
-    coarsest: f64,
-    /// Numbers of time steps per sampling interval, which is the longest time step.
-    steps: &'static [u32],
-    /// Numbers of solves per step; 0 iterates to the tolerance.
-    solves: &'static [u32],
-    /// Numbers of nodes along the beam relative to the scene's mesh.
-    meshes: &'static [f64],
-    /// Number of nodes along the beam of the reference's mesh, relative to the scene's.
-    pub reference_mesh: f64,
-    /// Largest number of steps of a run; longer ones are shortened.
-    pub most_steps: u32,
-    /// Time spent on timing a setting.
-    pub timing: Duration,
-}
+// Values of a quick and of a full study.
 
-const QUICK: Plan = Plan {
-    longest: (2.0, 60.0),
-    most_samples: 240.0,
-    coarsest: 1.0,
-    steps: &[1, 2, 4],
-    solves: &[1, 0],
-    meshes: &[0.5, 1.0],
-    reference_mesh: 2.0,
-    most_steps: 20_000,
-    timing: Duration::from_millis(20),
-};
+/// Longest simulated time, in periods of the body's lowest natural frequency and in time steps of the scene; the longer
+/// one counts.
+const LONGEST: [(f64, f64); 2] = [(2.0, 60.0), (4.0, 120.0)];
+/// Largest number of samples of a path; a longer motion is sampled, and stepped, more coarsely.
+const MOST_SAMPLES: [f64; 2] = [240.0, 480.0];
+/// Longest time step relative to the scene's.
+const COARSEST: [f64; 2] = [1.0, 2.0];
+/// Numbers of time steps per sampling interval, which is the longest time step.
+const STEPS: [&[u32]; 2] = [&[1, 2, 4], &[1, 2, 4, 8, 16]];
+/// Number of reference steps between samples: four in the shortest step of the settings.
+pub(in crate::study) const REFERENCE_STEPS: [u32; 2] = [4 * 4, 4 * 16];
+/// Numbers of solves per step; 0 iterates to the tolerance.
+const SOLVES: [&[u32]; 2] = [&[1, 0], &[1, 2, 0]];
+/// Numbers of nodes along the beam relative to the scene's mesh.
+const MESHES: [&[f64]; 2] = [&[0.5, 1.0], &[0.25, 0.5, 1.0, 1.5]];
+/// Number of nodes along the beam of the reference's mesh, relative to the scene's.
+pub(super) const REFERENCE_MESH: [f64; 2] = [2.0, 3.0];
+/// Largest number of steps of a run; longer ones are shortened.
+pub(super) const MOST_STEPS: [u32; 2] = [20_000, 100_000];
+/// Time spent on timing a setting.
+pub(super) const TIMING: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(200)];
 
-const FULL: Plan = Plan {
-    longest: (4.0, 120.0),
-    most_samples: 480.0,
-    coarsest: 2.0,
-    steps: &[1, 2, 4, 8, 16],
-    solves: &[1, 2, 0],
-    meshes: &[0.25, 0.5, 1.0, 1.5],
-    reference_mesh: 3.0,
-    most_steps: 100_000,
-    timing: Duration::from_millis(200),
-};
-
-/// Number of reference steps in the shortest step of the settings.
-const REFERENCE_STEPS: u32 = 4;
 /// Step of the explicit integrator relative to its critical step.
 const BELOW_CRITICAL: f64 = 0.9;
 /// Smallest number of steps in a scene; a shorter scene is studied with shorter steps.
 const MIN_STEPS: f64 = 8.0;
 /// Largest number of nodes, along times across, of a mesh with `factor` 1.
 const MAX_NODES: f64 = 1000.0;
-
-impl Plan {
-    /// Returns the number of reference steps between samples.
-    pub fn reference_steps(&self) -> u32 {
-        self.steps.iter().copied().max().unwrap_or(1) * REFERENCE_STEPS
-    }
-}
-
-impl Extent {
-    pub(in crate::study) fn plan(self) -> &'static Plan {
-        match self {
-            Self::Quick => &QUICK,
-            Self::Full => &FULL,
-        }
-    }
-}
 
 /// Sampling times of paths: multiples of the longest time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,8 +54,8 @@ pub(in crate::study) struct Samples {
 
 impl Samples {
     /// Returns the sampling times of a scene.
-    pub fn of(scene: &Scene, plan: &Plan) -> Result<Self, StudyError> {
-        let (periods, steps) = plan.longest;
+    pub fn of(scene: &Scene, extent: Extent) -> Result<Self, StudyError> {
+        let (periods, steps) = extent.pick(LONGEST);
         let own = scene.dynamics.time_step;
         let system = system_of(scene)?;
         let mass = Mass::new(&system, scene.material.area_density());
@@ -106,9 +65,9 @@ impl Samples {
         let period = frequency.map(|frequency| TAU / frequency).filter(|period| period.is_finite());
         let longest = period.map_or(0.0, |period| periods * period).max(steps * own);
         let duration = scene.dynamics.duration.min(longest);
-        let mut interval = (plan.coarsest * own).min(duration / MIN_STEPS);
+        let mut interval = (extent.pick(COARSEST) * own).min(duration / MIN_STEPS);
         // Doubled, so that the scene's own step remains one of the measured steps.
-        while duration / interval > plan.most_samples {
+        while duration / interval > extent.pick(MOST_SAMPLES) {
             interval *= 2.0;
         }
         Ok(Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 })
@@ -154,8 +113,9 @@ pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<
 
 /// Returns every mesh of a scene, from coarse to fine for each element.
 pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<Setting> {
-    let factors = extent.plan().meshes;
-    let of = |element| factors.iter().map(move |&factor| Setting::newton(element, cells(scene, element, factor)));
+    let of = |element| {
+        extent.pick(MESHES).iter().map(move |&factor| Setting::newton(element, cells(scene, element, factor)))
+    };
     let mut meshes: Vec<Setting> = scene.elements().flat_map(of).collect();
     meshes.dedup();
     meshes
@@ -164,15 +124,15 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<Setting> {
 /// Returns all settings measured on a mesh, each with its number of steps between samples. `critical` is the critical step
 /// of the explicit integrator there, s.
 pub(super) fn settings(mesh: Setting, critical: Option<f64>, samples: Samples, extent: Extent) -> Vec<(Setting, u32)> {
-    let (plan, interval) = (extent.plan(), samples.interval);
+    let interval = samples.interval;
     let stable = (interval / critical.map_or(interval, |critical| BELOW_CRITICAL * critical)).ceil().max(1.0) as u32;
     let mut settings = Vec::new();
     for integrator in INTEGRATORS {
-        for &steps in if integrator.is_explicit() { std::slice::from_ref(&stable) } else { plan.steps } {
+        for &steps in if integrator.is_explicit() { std::slice::from_ref(&stable) } else { extent.pick(STEPS) } {
             let stepping = Stepping { integrator: integrator.kind, time_step: interval / f64::from(steps) };
             for method in methods(integrator, extent) {
                 let of = |&iterations| (Setting { method, iterations, stepping: Some(stepping), ..mesh }, steps);
-                settings.extend(solves(integrator, method, plan).iter().map(of));
+                settings.extend(solves(integrator, method, extent).iter().map(of));
             }
         }
     }
@@ -190,14 +150,14 @@ fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
 }
 
 /// Returns the numbers of solves that give different results.
-fn solves(integrator: &IntegratorEntry, method: MethodKind, plan: &Plan) -> &'static [u32] {
+fn solves(integrator: &IntegratorEntry, method: MethodKind, extent: Extent) -> &'static [u32] {
     if integrator.is_explicit() || integrator.always_iterates {
         &[0]
     } else if method.moves_linearly() {
         // A single solve is exact.
         &[1]
     } else {
-        plan.solves
+        extent.pick(SOLVES)
     }
 }
 

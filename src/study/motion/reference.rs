@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::plan::{Plan, Samples, cells, nodes_of_shape, slenderness};
+use super::plan::{REFERENCE_MESH, REFERENCE_STEPS, Samples, cells, nodes_of_shape, slenderness};
 use crate::assembly::System;
 use crate::format::percent;
 use crate::progress::{Observer, Progress};
@@ -75,9 +75,8 @@ impl MotionReference {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
-        let plan = extent.plan();
-        let (samples, steps) = (Samples::of(scene, plan)?, plan.reference_steps());
-        let [coarse, fine] = meshes(scene, plan)?;
+        let (samples, steps) = (Samples::of(scene, extent)?, extent.pick(REFERENCE_STEPS));
+        let [coarse, fine] = meshes(scene, extent)?;
         // Paths on a coarser mesh, with longer steps, and the best one.
         let paths = [(&coarse, steps / 2), (&fine, steps / 2), (&fine, steps)];
         let now = sentence!("the reference solution");
@@ -161,9 +160,9 @@ fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[
 }
 
 /// Returns the scene with half as many cells in each direction, and with the fine mesh, each with its equations.
-fn meshes(scene: &Scene, plan: &Plan) -> Result<[(Scene, Arc<System>); 2], StudyError> {
+fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2], StudyError> {
     let element = finest_element(scene);
-    let fine = reference_cells(scene, element, plan.reference_mesh);
+    let fine = reference_cells(scene, element, extent.pick(REFERENCE_MESH));
     let with = |cells| {
         let scene = Setting::newton(element, cells).apply(scene);
         let system = system_of(&scene)?;
