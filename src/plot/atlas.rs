@@ -1,6 +1,6 @@
 //! A stability atlas as a drawing.
 
-use super::drawing::{Anchor, Color, Drawing, Text};
+use super::drawing::{Anchor, Drawing, Text};
 use crate::scene::ElementKind;
 use crate::study::extremes::{Case, Entry, Outcome, counts, labels};
 
@@ -24,7 +24,7 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
     ]);
     for (i, outcome) in C::OUTCOMES.into_iter().enumerate() {
         let x = 20.0 + LEGEND * i as f64;
-        drawing.rect([[x, 14.0], [14.0; 2]], color(outcome));
+        drawing.rect([[x, 14.0], [14.0; 2]], outcome.entry().1);
         text(&mut drawing, 12.0, [x + 20.0, 26.0], Anchor::Start, &outcome.id().replace('_', " "));
     }
     for (j, name) in names.iter().enumerate() {
@@ -45,7 +45,7 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
                     let (total, mut left) = (counts.iter().sum::<usize>(), x + CELL[0] * column as f64);
                     for (outcome, &count) in C::OUTCOMES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
                         let width = (CELL[0] - 2.0) * count as f64 / total as f64;
-                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], color(outcome));
+                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], outcome.entry().1);
                         left += width;
                     }
                 }
@@ -61,15 +61,4 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
 
 fn text(drawing: &mut Drawing, size: f64, at: [f64; 2], anchor: Anchor, content: &str) {
     drawing.put(Text { size, ..Text::new(at, anchor, content) });
-}
-
-/// Returns the colour of an outcome. Colours of one atlas differ in brightness (Okabe and Ito 2008).
-fn color(outcome: Outcome) -> Color {
-    match outcome {
-        Outcome::Certified | Outcome::Finished => [0x00, 0x72, 0xb2],
-        Outcome::Converged | Outcome::Stopped => [0x56, 0xb4, 0xe9],
-        Outcome::Inverted => [0xf0, 0xe4, 0x42],
-        Outcome::Stalled | Outcome::GainedEnergy => [0xe6, 0x9f, 0x00],
-        Outcome::NotConverged | Outcome::Exploded => [0xb0, 0x3a, 0x2e],
-    }
 }

@@ -31,22 +31,12 @@ pub enum Effort {
     Full,
 }
 
-impl Effort {
-    /// Returns the largest number of unknowns of a mesh.
-    pub(super) fn most_unknowns(self) -> usize {
-        if self == Self::Full { 700_000 } else { 10_000 }
-    }
-
-    /// Returns the largest sum of unknowns over all solves.
-    fn most_work(self) -> f64 {
-        if self == Self::Full { f64::INFINITY } else { 5e5 }
-    }
-
-    /// Returns the error, relative to the displacement, below which no finer mesh is tried.
-    fn good_enough(self) -> f64 {
-        if self == Self::Full { 1e-4 } else { 1e-3 }
-    }
-}
+/// Largest number of unknowns of a mesh, of each effort.
+const MOST_UNKNOWNS: [usize; 2] = [10_000, 700_000];
+/// Largest sum of unknowns over all solves.
+const MOST_WORK: [f64; 2] = [5e5, f64::INFINITY];
+/// Error, relative to the displacement, below which no finer mesh is tried.
+const GOOD_ENOUGH: [f64; 2] = [1e-3, 1e-4];
 
 /// Returns the element of fine solutions: the one of the highest degree that the scene's mesh can have, which converges
 /// fastest.
@@ -178,7 +168,7 @@ fn on_fine_meshes(
         }
         if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
-            work -= FOLD_SHARE * effort.most_work();
+            work -= FOLD_SHARE * MOST_WORK[effort as usize];
             status = solve(&mut simulation, effort, &mut work, observe)?;
         }
         let converged = match status {
@@ -203,7 +193,8 @@ fn on_fine_meshes(
         }
         let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
         let next = 4 * unknowns;
-        let next_fits = next <= effort.most_unknowns() && work + MIN_SOLVES_LEFT * next as f64 <= effort.most_work();
+        let next_fits = next <= MOST_UNKNOWNS[effort as usize]
+            && work + MIN_SOLVES_LEFT * next as f64 <= MOST_WORK[effort as usize];
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {
             finest = Some(simulation);
@@ -291,7 +282,7 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effo
     let Some(last) = solutions.last() else { return false };
     let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let counts = last.iter().zip(errors(solutions, has_point)).filter(|(u, _)| u.norm() > LITTLE * largest);
-    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= effort.good_enough() * u.norm()))
+    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= GOOD_ENOUGH[effort as usize] * u.norm()))
 }
 
 /// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
@@ -303,8 +294,8 @@ fn solve(
 ) -> Result<Status, StudyError> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
-    let fraction = (unknowns as f64 / effort.most_unknowns() as f64).min(1.0);
-    while *simulation.status() == Status::Running && *work <= effort.most_work() {
+    let fraction = (unknowns as f64 / MOST_UNKNOWNS[effort as usize] as f64).min(1.0);
+    while *simulation.status() == Status::Running && *work <= MOST_WORK[effort as usize] {
         check(observe(Progress { fraction, now: Some(&now) }))?;
         let before = simulation.iterations();
         simulation.step();
@@ -338,7 +329,7 @@ impl Meshes {
         let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
         // A mesh given by the caller is kept.
         let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-        if 4 * unknowns_of(&own, element.entry()) > effort.most_unknowns() {
+        if 4 * unknowns_of(&own, element.entry()) > MOST_UNKNOWNS[effort as usize] {
             return Err(StudyError::TooFine { elements: own.element_count() });
         }
         // The same nodes are used for the scene's points on every mesh, including the scene's own.
@@ -444,7 +435,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
-    let nodes = 0.5 * Effort::Bounded.most_unknowns() as f64;
+    let nodes = 0.5 * MOST_UNKNOWNS[0] as f64;
     let cells = |short: f64, extra: usize| {
         (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
     };

@@ -1,10 +1,16 @@
 //! Parallel execution of untimed work on all cores. Timed work must not run at the same time.
 
 use std::ops::ControlFlow;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::progress::StudyError;
 use crate::progress::{Observer, Progress};
 use crate::sentence::Sentence;
+
+/// Locks a value, which is whole even if another thread has panicked.
+pub fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Processes all items as [`map`], and returns the results, or the error of the first that failed or was cancelled. Reports
 /// the progress from the first to the second of two fractions.

@@ -1,11 +1,12 @@
 //! Timing of iterations from rest: medians over repetitions after warm-up, by stage.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use web_time::{Duration, Instant};
 
+use super::parallel::lock;
 use super::reference::first_probe;
 use crate::progress::{Observer, Progress};
 use crate::scene::Scene;
@@ -66,7 +67,7 @@ impl SolveFromRest {
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,
 /// `None` if the computation is cancelled. Only one thread of the process measures at a time.
 pub fn times_from_rest(simulation: &mut Simulation, iterations: u32, observe: Observer<'_>) -> Option<Vec<Timings>> {
-    let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
+    let _turn = lock(&TIMED);
     let mut runs: Vec<Vec<Timings>> = Vec::new();
     let start = Instant::now();
     let is_enough = |runs: usize, spent: Duration| {
@@ -120,7 +121,7 @@ pub(super) fn median_time(
 ) -> Duration {
     /// Largest number of runs.
     const RUNS: usize = 5;
-    let _turn = TIMED.lock().unwrap_or_else(PoisonError::into_inner);
+    let _turn = lock(&TIMED);
     let mut times: Vec<Duration> = Vec::new();
     while times.is_empty() || (times.len() < RUNS && times.iter().sum::<Duration>() < enough) {
         simulation.reset();

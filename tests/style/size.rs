@@ -11,7 +11,7 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 25_705),
-    ("study", &["src/study"], 6_995),
+    ("study", &["src/study"], 6_974),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_551),
@@ -21,12 +21,12 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_936),
-    ("plot", &["src/plot"], 728),
+    ("plot", &["src/plot"], 717),
     ("the rest of src", &["src"], 5_064),
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_590;
+const SRC: usize = 60_558;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -41,19 +41,24 @@ impl Outcome {
     /// Number of outcomes of a search for an equilibrium, and of a motion.
     pub const COUNT: usize = 5;
 
+    /// Returns the identifier in tables, and the colour. Colours of one atlas differ in brightness (Okabe and Ito 2008).
+    pub(crate) fn entry(self) -> (&'static str, [u8; 3]) {
+        match self {
+            Self::Certified => ("certified", [0x00, 0x72, 0xb2]),
+            Self::Converged => ("converged", [0x56, 0xb4, 0xe9]),
+            Self::Finished => ("finished", [0x00, 0x72, 0xb2]),
+            Self::Inverted => ("inverted", [0xf0, 0xe4, 0x42]),
+            Self::Stalled => ("stalled", [0xe6, 0x9f, 0x00]),
+            Self::NotConverged => ("not_converged", [0xb0, 0x3a, 0x2e]),
+            Self::GainedEnergy => ("gained_energy", [0xe6, 0x9f, 0x00]),
+            Self::Exploded => ("exploded", [0xb0, 0x3a, 0x2e]),
+            Self::Stopped => ("stopped", [0x56, 0xb4, 0xe9]),
+        }
+    }
+
     /// Returns the identifier in tables.
     pub fn id(self) -> &'static str {
-        match self {
-            Self::Certified => "certified",
-            Self::Converged => "converged",
-            Self::Finished => "finished",
-            Self::Inverted => "inverted",
-            Self::Stalled => "stalled",
-            Self::NotConverged => "not_converged",
-            Self::GainedEnergy => "gained_energy",
-            Self::Exploded => "exploded",
-            Self::Stopped => "stopped",
-        }
+        self.entry().0
     }
 
     /// Classifies the solution of a search or motion that has ended.

@@ -3,16 +3,17 @@
 //! which time step. Loads are tried from small to large; each stated end lies between two of them that differ by at most
 //! one percent.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
+use super::parallel::{self, lock};
 use super::progress::{StudyError, check};
 use super::reference::{first_probe, system_of};
-use super::{Effort, ProbeReference, Reference, parallel};
+use super::{Effort, ProbeReference, Reference};
 use crate::assembly::System;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, number, percent, three_digits};
@@ -27,12 +28,9 @@ mod motion;
 
 /// Smallest and largest part of the scene's loads and prescribed displacements.
 pub const RANGE: [f64; 2] = [0.01, 10.0];
-/// Returns the smallest and the largest part of the time step of a motion.
+/// Smallest and largest part of the time step of a motion.
 #[cfg(feature = "app")]
-pub(crate) fn time_step_range() -> [f64; 2] {
-    motion::POWERS.map(|power| 2f64.powi(power))
-}
-
+pub(crate) const TIME_STEPS: [f64; 2] = [1.0 / 16.0, 8.0];
 /// Loads per decade; at every second one the error is measured too, which takes longest.
 const PER_DECADE: i32 = 12;
 /// Further loads of a strip relative to the critical load of its mesh, near which errors change within a percent of the
@@ -121,32 +119,20 @@ enum Property {
     Law,
 }
 
-/// Answer to the question if a load has a property.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Ternary {
-    Yes,
-    No,
-    /// The reference solution does not tell.
-    Unknown,
-}
-
 impl LimitPoint {
-    /// Returns the answer to a question; `None` if it was not sought at this load.
-    fn answer(&self, property: Property) -> Option<Ternary> {
-        let of = |holds: bool| if holds { Ternary::Yes } else { Ternary::No };
+    /// Returns `true` if the load has a property, and `None` if the reference solution does not tell; `None` instead of an
+    /// answer if it was not sought at this load.
+    fn answer(&self, property: Property) -> Option<Option<bool>> {
         match property {
-            Property::Converges => Some(of(self.converges)),
-            Property::Law => {
-                let is_beyond = self.max_strain? > LAW_HOLDS || self.inverted_elements > 0;
-                Some(of(!is_beyond))
-            }
-            Property::Within(_) if !self.converges => Some(Ternary::No),
+            Property::Converges => Some(Some(self.converges)),
+            Property::Law => Some(Some(self.max_strain? <= LAW_HOLDS && self.inverted_elements == 0)),
+            Property::Within(_) if !self.converges => Some(Some(false)),
             Property::Within(limit) => self.is_compared.then_some(match (self.error_percent, self.reference_percent) {
-                (None, _) => Ternary::Unknown,
-                (Some(error), _) if error <= limit => Ternary::Yes,
+                (None, _) => None,
+                (Some(error), _) if error <= limit => Some(true),
                 // Without the error of the reference, which is large, it may be within the limit.
-                (Some(error), Some(own)) if error - own <= limit && own > LARGE_OWN * limit => Ternary::Unknown,
-                _ => Ternary::No,
+                (Some(error), Some(own)) if error - own <= limit && own > LARGE_OWN * limit => None,
+                _ => Some(false),
             }),
         }
     }
@@ -220,22 +206,22 @@ impl Strip {
     }
 
     /// Returns the loads at which a property was sought, with the answers.
-    fn answers(&self, property: Property) -> impl Iterator<Item = (f64, Ternary)> {
+    fn answers(&self, property: Property) -> impl Iterator<Item = (f64, Option<bool>)> {
         self.points.iter().filter_map(move |point| Some((point.factor, point.answer(property)?)))
     }
 
     /// Returns the rows of loads that have a property, from small to large.
     fn runs(&self, property: Property) -> Vec<LoadRange> {
         let mut runs: Vec<LoadRange> = Vec::new();
-        let mut last: Option<(f64, Ternary)> = None;
+        let mut last: Option<(f64, Option<bool>)> = None;
         for (factor, answer) in self.answers(property) {
-            let follows = last.is_some_and(|(_, last)| last == Ternary::Yes);
+            let follows = last.is_some_and(|(_, last)| last == Some(true));
             match (answer, runs.last_mut().filter(|_| follows)) {
-                (Ternary::Yes, Some(run)) => run.range[1] = factor,
-                (Ternary::Yes, None) => {
+                (Some(true), Some(run)) => run.range[1] = factor,
+                (Some(true), None) => {
                     runs.push(LoadRange { range: [factor; 2], before: last.map(|(before, _)| before), ends: false });
                 }
-                (Ternary::No, Some(run)) => run.ends = factor <= FINE * run.range[1],
+                (Some(false), Some(run)) => run.ends = factor <= FINE * run.range[1],
                 _ => {}
             }
             last = Some((factor, answer));
@@ -258,9 +244,9 @@ impl Strip {
     /// `None` if it is not larger up to [`Self::last_known`].
     pub fn within(&self, percent: f64) -> Option<f64> {
         match self.answers(Property::Within(percent)).next()? {
-            (_, Ternary::Unknown) => None,
-            (_, Ternary::No) => Some(0.0),
-            (_, Ternary::Yes) => {
+            (_, None) => None,
+            (_, Some(false)) => Some(0.0),
+            (_, Some(true)) => {
                 let end = self.runs(Property::Within(percent)).first()?.range[1];
                 (self.last_known() != Some(end)).then_some(end)
             }
@@ -287,7 +273,7 @@ impl Strip {
 
     /// Returns the part of the load from which elements are inverted or strains exceed those of the linear law.
     pub fn law_ends_at(&self) -> Option<f64> {
-        self.answers(Property::Law).find(|(_, answer)| *answer == Ternary::No).map(|(factor, _)| factor)
+        self.answers(Property::Law).find(|(_, answer)| *answer == Some(false)).map(|(factor, _)| factor)
     }
 
     /// Returns the strip in pieces: each load has the middle between it and its neighbours. The pieces of a strip that is
@@ -301,7 +287,7 @@ impl Strip {
             // Loads at which the error was not sought have that of the load below.
             let rating = point.rating().or(last.map(|last| last.rating)).unwrap_or(Rating::Unknown);
             let is_beyond_law = match point.answer(Property::Law) {
-                Some(answer) => answer == Ternary::No,
+                Some(answer) => answer == Some(false),
                 None => point.converges && last.is_some_and(|last| last.is_beyond_law),
             };
             match pieces.last_mut() {
@@ -322,7 +308,7 @@ impl Strip {
         let of = |property: Property| {
             let Some((run, again)) = self.first_run(property) else {
                 return match self.answers(property).next() {
-                    Some((_, Ternary::No)) => sentence!("not at %{load}", load = load(range[0])),
+                    Some((_, Some(false))) => sentence!("not at %{load}", load = load(range[0])),
                     _ => sentence!("not known"),
                 };
             };
@@ -381,10 +367,10 @@ impl Strip {
     fn change(&self, is_sought: &dyn Fn(Property, f64) -> bool) -> Option<(f64, bool)> {
         let all = [Property::Within(GOOD), Property::Within(USABLE), Property::Converges, Property::Law];
         all.into_iter().find_map(|property| {
-            let answers: Vec<(f64, Ternary)> = self.answers(property).collect();
-            let is_change = |pair: &&[(f64, Ternary)]| {
+            let answers: Vec<(f64, Option<bool>)> = self.answers(property).collect();
+            let is_change = |pair: &&[(f64, Option<bool>)]| {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
-                let is_known = before != Ternary::Unknown && after != Ternary::Unknown;
+                let is_known = before.is_some() && after.is_some();
                 before != after && is_known && to > FINE * from && is_sought(property, to)
             };
             let is_error = matches!(property, Property::Within(_));
@@ -556,13 +542,13 @@ impl MethodLimits {
             sweep.solve_references(factors, shares, observe)
         };
         solve_references(&factors, 0)?;
-        let added = steep(&sweep.limits().reference);
+        let added = steep(&lock(&sweep.limits).reference);
         sweep.change(|limits| {
             limits.reference.extend(added.iter().map(|&factor| (factor, None)));
             limits.reference.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         });
         solve_references(&added, factors.len())?;
-        let compared: Vec<f64> = sweep.limits().reference.iter().map(|(factor, _)| *factor).collect();
+        let compared: Vec<f64> = lock(&sweep.limits).reference.iter().map(|(factor, _)| *factor).collect();
         let is_new = |factor: &f64| compared.iter().all(|other| (other / factor).ln().abs() > FINE.ln());
         let between: Vec<(f64, bool)> = between.filter(is_new).map(|factor| (factor, false)).collect();
         rows.sort_by_key(|(_, (own, _))| {
@@ -573,7 +559,7 @@ impl MethodLimits {
         parallel::all(&rows, observe, [begun, 1.0], &now, |(row, (own, system)), observe| {
             let is_sought =
                 |property: Property, factor: f64| !matches!(property, Property::Within(_)) || !sweep.folds(factor);
-            let critical = sweep.limits().critical_of(own.element());
+            let critical = lock(&sweep.limits).critical_of(own.element());
             let near = critical.into_iter().flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
             let near = near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor));
             let mut factors: Vec<(f64, bool)> = compared.iter().copied().chain(near).map(|at| (at, true)).collect();
@@ -582,7 +568,8 @@ impl MethodLimits {
             let point = |factor, is_compared| sweep.point(own, system, (factor, is_compared), observe);
             sweep.follow(*row, &factors, &point, &is_sought)
         })?;
-        Ok(sweep.end())
+        let limits = lock(&sweep.limits).clone();
+        Ok(limits)
     }
 }
 
@@ -605,21 +592,9 @@ struct KnownReference {
 }
 
 impl Sweep<'_> {
-    fn limits(&self) -> MutexGuard<'_, MethodLimits> {
-        self.limits.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn known(&self) -> MutexGuard<'_, Vec<KnownReference>> {
-        self.references.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn end(self) -> MethodLimits {
-        self.limits.into_inner().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Changes the limits, and reports them.
     fn change(&self, change: impl FnOnce(&mut MethodLimits)) {
-        let mut limits = self.limits();
+        let mut limits = lock(&self.limits);
         change(&mut limits);
         (self.partial)(&limits);
     }
@@ -647,7 +622,7 @@ impl Sweep<'_> {
         if self.is_beyond_folds(factor) {
             return Ok(None);
         }
-        if let Some(known) = self.known().iter().find(|known| known.factor == factor) {
+        if let Some(known) = lock(&self.references).iter().find(|known| known.factor == factor) {
             return Ok(known.probe);
         }
         let found = match Reference::find(&at(self.scene, factor), None, Effort::Bounded, observe) {
@@ -656,19 +631,19 @@ impl Sweep<'_> {
         };
         let probe = found.as_ref().and_then(Reference::first);
         let folds = found.is_some_and(|reference| reference.folds);
-        self.known().push(KnownReference { factor, probe, folds });
+        lock(&self.references).push(KnownReference { factor, probe, folds });
         Ok(probe)
     }
 
     /// Returns `true` if the material folds at a smaller part of the load, and the reference does not tell good results there.
     fn is_beyond_folds(&self, factor: f64) -> bool {
         let is_bad = |probe: Option<ProbeReference>| probe.is_none_or(|probe| probe.own_error_percent > USABLE);
-        self.known().iter().any(|known| known.folds && is_bad(known.probe) && known.factor < factor)
+        lock(&self.references).iter().any(|known| known.folds && is_bad(known.probe) && known.factor < factor)
     }
 
     /// Returns `true` if the reference under a part of the load is known, and folds.
     fn folds(&self, factor: f64) -> bool {
-        self.known().iter().any(|known| known.factor == factor && known.folds)
+        lock(&self.references).iter().any(|known| known.factor == factor && known.folds)
     }
 
     /// Solves a scene from rest under a part of its load, and compares the result with the reference if `is_compared`.
@@ -709,7 +684,7 @@ impl Sweep<'_> {
         solve: &dyn Fn(f64, bool) -> Result<LimitPoint, StudyError>,
         is_sought: &dyn Fn(Property, f64) -> bool,
     ) -> Result<(), StudyError> {
-        let mut strip = self.limits().strips[row].clone();
+        let mut strip = lock(&self.limits).strips[row].clone();
         let report = |strip: &Strip| self.change(|limits| limits.strips[row].clone_from(strip));
         for (i, &(factor, is_compared)) in factors.iter().enumerate() {
             strip.points.push(solve(factor, is_compared)?);
@@ -876,7 +851,7 @@ mod tests {
         for point in points {
             let piece = pieces.iter().find(|piece| point.factor <= piece.range[1]).unwrap();
             let rating = point.rating().unwrap_or(Rating::Good);
-            let is_beyond_law = point.answer(Property::Law) == Some(Ternary::No);
+            let is_beyond_law = point.answer(Property::Law) == Some(Some(false));
             assert_eq!((piece.rating, piece.is_beyond_law), (rating, is_beyond_law), "{point:?}");
         }
     }

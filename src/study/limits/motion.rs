@@ -12,12 +12,12 @@ use crate::scene::{IntegratorKind, MethodKind, Scene};
 use crate::sentence::sentence;
 use crate::simulation::{Deformation, Simulation, Status};
 use crate::study::motion::{MotionReference, REFERENCE_STEPS, Samples, fine_path, path};
-use crate::study::parallel;
+use crate::study::parallel::{self, lock};
 use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
 
 /// Powers of two of the shortest and the longest time step, relative to the scene's.
-pub(super) const POWERS: [i32; 2] = [-4, 3];
+const POWERS: [i32; 2] = [-4, 3];
 /// Largest number of steps of a motion; shorter time steps are not measured.
 const MAX_STEPS: f64 = 4000.0;
 
@@ -60,7 +60,8 @@ pub(super) fn limits(
         };
         sweep.follow(row, &factors, &point, &|property, _| property == Property::Converges)
     })?;
-    Ok(sweep.end())
+    let limits = lock(&sweep.limits).clone();
+    Ok(limits)
 }
 
 /// Motions of a scene on its own mesh, and their reference.

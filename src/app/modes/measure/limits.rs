@@ -168,7 +168,7 @@ fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
     }
     if moves {
         let part = scene.dynamics.time_step / base.dynamics.time_step;
-        let [shortest, longest] = limits::time_step_range();
+        let [shortest, longest] = limits::TIME_STEPS;
         return (shortest..=longest).contains(&part).then_some(part);
     }
     let [full, own] = [base, scene].map(|scene| load_values(scene).collect::<Vec<f64>>());
