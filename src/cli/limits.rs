@@ -14,7 +14,7 @@ use crate::plot;
 use crate::scene::{self, Scene};
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
-use crate::study::moved_points;
+use crate::study::{Setting, moved_points};
 
 /// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
@@ -28,7 +28,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress), &|_| {});
     drop(watch);
     let limits = limits.map_err(|error| about(&source, error))?;
-    outputs.write_table(|| table(&limits, &scene))?;
+    outputs.write_table(|| table(&limits))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
     text::print(&match json {
         true => as_json(&limits, &scene, &notes),
@@ -75,18 +75,18 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
 }
 
 /// Formats every result as CSV.
-fn table(limits: &MethodLimits, scene: &Scene) -> String {
+fn table(limits: &MethodLimits) -> String {
     let first = if limits.duration.is_some() { "integrator,time_step" } else { "element,method,load_factor" };
     let mut text = format!("{first},displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n");
     for strip in &limits.strips {
-        let Strip { element, integrator, points, .. } = strip;
+        let Setting { element, stepping, .. } = strip.setting;
         let method = strip.method_name(str::to_owned);
-        for point in points.iter().filter(|point| point.is_compared) {
+        for point in strip.points.iter().filter(|point| point.is_compared) {
             let LimitPoint { factor, displacement, inverted_elements, .. } = point;
             let error = point.error_percent.map_or_else(String::new, |error| error.to_string());
             let max_strain = point.max_strain.unwrap_or_default();
-            let first = match integrator {
-                Some(integrator) => format!("{},{}", integrator.id(), factor * scene.dynamics.time_step),
+            let first = match stepping {
+                Some(stepping) => format!("{},{}", stepping.integrator.id(), factor * stepping.time_step),
                 None => format!("{},{method},{factor}", element.id()),
             };
             let [x, y]: [f64; 2] = (*displacement).into();
@@ -99,11 +99,11 @@ fn table(limits: &MethodLimits, scene: &Scene) -> String {
 fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String {
     let axis = LoadAxis::of(scene);
     let strip = |strip: &Strip| {
-        let fails = strip.fails();
+        let (fails, Setting { element, method, iterations, stepping, .. }) = (strip.fails(), strip.setting);
         let mut object = json!({
-            "element": strip.element.id(),
-            "method": strip.method.id(),
-            "accept_after": strip.accept_after,
+            "element": element.id(),
+            "method": method.id(),
+            "accept_after": stepping.map_or(iterations, |_| scene.solver.accept_after),
             "within_1_percent": strip.within(GOOD),
             "within_5_percent": strip.within(USABLE),
             "error_known_to": strip.last_known(),
@@ -111,10 +111,10 @@ fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String 
             "converges_again_from": fails.first().map(|[_, again]| again).filter(|again| **again < limits.range[1]),
             "does_not_converge": fails,
             "law_ends_at": strip.law_ends_at(),
-            "critical_load_factor": limits.critical_of(strip.element),
+            "critical_load_factor": limits.critical_of(element),
         });
-        if let Some(integrator) = strip.integrator {
-            object["integrator"] = json!(integrator.id());
+        if let Some(stepping) = stepping {
+            object["integrator"] = json!(stepping.integrator.id());
         }
         object
     };

@@ -14,8 +14,7 @@ const NEXT: f64 = 1.0101;
 /// Result of a single solve: its error, percent, with that of the reference, and `true` if its strains are beyond the
 /// linear law.
 fn solved(scene: &Scene, strip: &Strip, factor: f64) -> Option<(Option<f64>, bool)> {
-    let mut scene = scene.clone().with_method(strip.method);
-    scene.set_element(strip.element);
+    let mut scene = strip.setting.apply(scene);
     scene.scale_loads(factor);
     let mut simulation = Simulation::new(&scene).ok()?;
     simulation.solve().is_success().then_some(())?;

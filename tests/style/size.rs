@@ -10,8 +10,8 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 25_705),
-    ("study", &["src/study"], 6_974),
+    ("app", &["src/app"], 25_703),
+    ("study", &["src/study"], 6_958),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_551),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 717),
     ("the rest of src", &["src"], 5_064),
-    ("tests", &["tests"], 21_445),
+    ("tests", &["tests"], 21_444),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_558;
+const SRC: usize = 60_540;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -13,13 +13,13 @@ use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::parallel::{self, lock};
 use super::progress::{StudyError, check};
 use super::reference::{first_probe, system_of};
-use super::{Effort, ProbeReference, Reference};
+use super::{Effort, ProbeReference, Reference, Setting};
 use crate::assembly::System;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, number, percent, three_digits};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, IntegratorKind, MethodKind, Scene};
+use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::{Deformation, Simulation};
 use crate::stress::LAW_HOLDS;
@@ -161,17 +161,11 @@ struct LoadRange {
     ends: bool,
 }
 
-/// Results of a method with an element, from small to large loads.
+/// Results of a method with an element, from small to large loads; of an integrator, from short to long time steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strip {
-    /// Element.
-    pub element: ElementKind,
-    /// Method.
-    pub method: MethodKind,
-    /// Number of iterations after which a result is accepted; 0: each is iterated to the tolerance.
-    pub accept_after: u32,
-    /// Integrator of a motion.
-    pub integrator: Option<IntegratorKind>,
+    /// Element, method and number of iterations, or integrator.
+    pub setting: Setting,
     /// Loads that have been tried, from small to large.
     pub points: Vec<LimitPoint>,
     /// Fraction of the loads that have been solved; 1 once the strip is complete.
@@ -179,29 +173,23 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Returns the strip of a scene's element and method before the first load is solved.
-    fn new(scene: &Scene) -> Self {
-        Self {
-            element: scene.element(),
-            method: scene.solver.method,
-            accept_after: scene.solver.accept_after,
-            integrator: (scene.analysis == Analysis::Dynamic).then_some(scene.dynamics.integrator),
-            points: Vec::new(),
-            done: 0.0,
-        }
+    /// Returns a strip before the first load is solved.
+    fn new(setting: Setting) -> Self {
+        Self { setting, points: Vec::new(), done: 0.0 }
     }
 
     /// Returns the name of the method, translated by `text`, with the number of iterations of an early stop: `warped:2`.
     pub fn method_name(&self, text: impl Fn(&'static str) -> String) -> String {
-        let method = text(self.method.id());
-        if self.accept_after == 0 { method } else { format!("{method}:{}", self.accept_after) }
+        let Setting { method, iterations, .. } = self.setting;
+        let method = text(method.id());
+        if iterations == 0 { method } else { format!("{method}:{iterations}") }
     }
 
     /// Returns the name of the integrator, or the names of element and method, translated by `text`.
     pub fn name(&self, text: impl Fn(&'static str) -> String) -> String {
-        match self.integrator {
-            Some(integrator) => text(integrator.id()),
-            None => format!("{} {}", self.element.id(), self.method_name(text)),
+        match self.setting.stepping {
+            Some(stepping) => text(stepping.integrator.id()),
+            None => format!("{} {}", self.setting.element.id(), self.method_name(text)),
         }
     }
 
@@ -354,7 +342,7 @@ impl Strip {
             {
                 sentence!("reference \u{b1} %{own}", own = percent(own))
             }
-            (None, Some(LoadRange { range: [_, to], before: None, ends: true })) => match self.integrator {
+            (None, Some(LoadRange { range: [_, to], before: None, ends: true })) => match self.setting.stepping {
                 Some(_) => sentence!("finishes to %{load}", load = load(*to)),
                 None => sentence!("converges to %{load}", load = load(*to)),
             },
@@ -506,30 +494,22 @@ impl MethodLimits {
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
+        let own = Setting::of(scene);
         // Methods share the system of an element.
-        let systems = scene.elements().map(|element| {
-            let mut own = scene.clone();
-            own.set_element(element);
-            Ok((system_of(&own)?, own))
-        });
-        let mut systems = systems.collect::<Result<Vec<_>, StudyError>>()?;
-        let methods = || METHODS.iter().map(|method| method.kind).filter(|method| *method != MethodKind::Auto);
-        let all = systems.iter().flat_map(|(system, own)| {
-            methods().map(move |method| {
-                let mut own = own.clone().with_method(method);
-                own.solver.accept_after = 0;
-                (own, system.clone())
-            })
-        });
+        let system = |element| Ok((element, system_of(&Setting { element, ..own }.apply(scene))?));
+        let mut systems = scene.elements().map(system).collect::<Result<Vec<_>, StudyError>>()?;
+        systems.sort_by_key(|(element, _)| *element != own.element);
+        let methods = METHODS.iter().map(|entry| entry.kind).filter(|method| *method != MethodKind::Auto);
+        let all = scene
+            .elements()
+            .flat_map(|element| methods.clone().map(move |method| Setting { element, method, iterations: 0, ..own }));
         // The scene's own early stop has a strip too.
-        let early = systems.iter().find(|(_, own)| own.element() == scene.element() && scene.solver.accept_after > 0);
-        let early = early.map(|(system, own)| (own.clone(), system.clone()));
-        let mut rows: Vec<(usize, (Scene, Arc<System>))> = early.into_iter().chain(all).enumerate().collect();
-        let strips = rows.iter().map(|(_, (own, _))| Strip::new(own)).collect();
-        systems.sort_by_key(|(_, own)| own.element() != scene.element());
+        let early = (own.iterations > 0).then_some(own);
+        let strips: Vec<Strip> = early.into_iter().chain(all).map(Strip::new).collect();
+        let mut rows: Vec<(usize, Setting)> = strips.iter().map(|strip| strip.setting).enumerate().collect();
         let now = sentence!("reference solutions");
-        let criticals = parallel::all(&systems, observe, [0.0; 2], &now, |(system, own), observe| {
-            Ok((own.element(), critical(own, system, observe)))
+        let criticals = parallel::all(&systems, observe, [0.0; 2], &now, |&(element, ref system), observe| {
+            Ok((element, critical(&Setting { element, ..own }.apply(scene), system, observe)))
         })?;
         let between = factors().into_iter().skip(1).step_by(2);
         let factors: Vec<f64> = factors().into_iter().step_by(2).collect();
@@ -551,22 +531,25 @@ impl MethodLimits {
         let compared: Vec<f64> = lock(&sweep.limits).reference.iter().map(|(factor, _)| *factor).collect();
         let is_new = |factor: &f64| compared.iter().all(|other| (other / factor).ln().abs() > FINE.ln());
         let between: Vec<(f64, bool)> = between.filter(is_new).map(|factor| (factor, false)).collect();
-        rows.sort_by_key(|(_, (own, _))| {
-            u8::from(own.element() != scene.element()) + u8::from(own.solver.method != scene.solver.method)
+        rows.sort_by_key(|(_, setting)| {
+            u8::from(setting.element != own.element) + u8::from(setting.method != own.method)
         });
         let now = sentence!("following each method");
         let begun = compared.len() as f64 / (compared.len() + rows.len()) as f64;
-        parallel::all(&rows, observe, [begun, 1.0], &now, |(row, (own, system)), observe| {
+        parallel::all(&rows, observe, [begun, 1.0], &now, |&(row, setting), observe| {
+            let system = systems.iter().find(|(element, _)| *element == setting.element);
+            let (own, system) = (setting.apply(scene), &system.ok_or(StudyError::NoReference)?.1);
+            let folds = |factor: f64| sweep.known(factor).is_some_and(|known| known.folds);
             let is_sought =
-                |property: Property, factor: f64| !matches!(property, Property::Within(_)) || !sweep.folds(factor);
-            let critical = lock(&sweep.limits).critical_of(own.element());
+                |property: Property, factor: f64| !(matches!(property, Property::Within(_)) && folds(factor));
+            let critical = lock(&sweep.limits).critical_of(setting.element);
             let near = critical.into_iter().flat_map(|at| NEAR_CRITICAL.map(|part| part * at));
             let near = near.filter(|factor| (RANGE[0]..RANGE[1]).contains(factor));
             let mut factors: Vec<(f64, bool)> = compared.iter().copied().chain(near).map(|at| (at, true)).collect();
             factors.extend(&between);
             factors.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-            let point = |factor, is_compared| sweep.point(own, system, (factor, is_compared), observe);
-            sweep.follow(*row, &factors, &point, &is_sought)
+            let point = |factor, is_compared| sweep.point(&own, system, (factor, is_compared), observe);
+            sweep.follow(row, &factors, &point, &is_sought)
         })?;
         let limits = lock(&sweep.limits).clone();
         Ok(limits)
@@ -602,18 +585,15 @@ impl Sweep<'_> {
     /// Computes the reference solutions under these parts of the load, and reports the progress between two fractions.
     fn solve_references(&self, factors: &[f64], shares: [f64; 2], observe: Observer<'_>) -> Result<(), StudyError> {
         let now = sentence!("reference solutions");
-        let solved = parallel::all(factors, observe, shares, &now, |&factor, observe| {
-            let displacement = self.reference(factor, observe)?.map(|known| known.displacement);
-            self.change(|limits| {
-                let known = limits.reference.iter_mut().find(|(own, _)| *own == factor);
-                let _ = known.map(|(_, u)| *u = displacement);
-            });
+        parallel::all(factors, observe, shares, &now, |&factor, observe| {
+            self.reference(factor, observe)?;
+            // A reference may have been found before that of a smaller load at which the material folds.
+            let known = |factor: f64| self.known(factor).filter(|_| !self.is_beyond_folds(factor))?.probe;
+            let displacement = |factor: f64| known(factor).map(|probe| probe.displacement);
+            self.change(|limits| limits.reference.iter_mut().for_each(|(factor, u)| *u = displacement(*factor)));
             Ok(())
-        });
-        // A reference may have been found before that of a smaller load.
-        let is_beyond = |(factor, _): &&mut (f64, _)| self.is_beyond_folds(*factor);
-        self.change(|limits| limits.reference.iter_mut().filter(is_beyond).for_each(|(_, u)| *u = None));
-        solved.map(|_| ())
+        })
+        .map(|_| ())
     }
 
     /// Returns the reference under a part of the load; `None` if there is none, so that the error is not known, or if it is
@@ -622,7 +602,7 @@ impl Sweep<'_> {
         if self.is_beyond_folds(factor) {
             return Ok(None);
         }
-        if let Some(known) = lock(&self.references).iter().find(|known| known.factor == factor) {
+        if let Some(known) = self.known(factor) {
             return Ok(known.probe);
         }
         let found = match Reference::find(&at(self.scene, factor), None, Effort::Bounded, observe) {
@@ -641,9 +621,9 @@ impl Sweep<'_> {
         lock(&self.references).iter().any(|known| known.folds && is_bad(known.probe) && known.factor < factor)
     }
 
-    /// Returns `true` if the reference under a part of the load is known, and folds.
-    fn folds(&self, factor: f64) -> bool {
-        lock(&self.references).iter().any(|known| known.factor == factor && known.folds)
+    /// Returns the reference under a part of the load, if it has been computed.
+    fn known(&self, factor: f64) -> Option<KnownReference> {
+        lock(&self.references).iter().find(|known| known.factor == factor).copied()
     }
 
     /// Solves a scene from rest under a part of its load, and compares the result with the reference if `is_compared`.
@@ -782,7 +762,7 @@ mod tests {
     }
 
     fn strip(points: Vec<LimitPoint>) -> Strip {
-        Strip { points, done: 1.0, ..Strip::new(&Scene::beam(10.0, 1.0)) }
+        Strip { points, done: 1.0, ..Strip::new(Setting::of(&Scene::beam(10.0, 1.0))) }
     }
 
     /// Axis of a force of 1 kN.
@@ -907,7 +887,9 @@ mod tests {
                 simulation.solve();
                 let probe = first_probe(&simulation).unwrap();
                 let error = reference.error_bound(error_percent(probe, reference.displacement).unwrap());
-                let is_own = |strip: &&Strip| strip.element == element && strip.method == MethodKind::Newton;
+                let is_own = |strip: &&Strip| {
+                    strip.setting == Setting { element, method: MethodKind::Newton, ..Setting::of(&column) }
+                };
                 let strip = limits.strips.iter().find(is_own).unwrap();
                 let piece = strip.pieces(RANGE).into_iter().find(|piece| factor < piece.range[1]).unwrap();
                 let stated = if piece.rating == Rating::Good { GOOD } else { USABLE };

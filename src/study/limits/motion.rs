@@ -15,6 +15,7 @@ use crate::study::motion::{MotionReference, REFERENCE_STEPS, Samples, fine_path,
 use crate::study::parallel::{self, lock};
 use crate::study::progress::{Extent, StudyError};
 use crate::study::reference::system_of;
+use crate::study::{Setting, Stepping};
 
 /// Powers of two of the shortest and the longest time step, relative to the scene's.
 const POWERS: [i32; 2] = [-4, 3];
@@ -36,7 +37,8 @@ pub(super) fn limits(
     let (Some(&(first, _)), Some(&(last, _))) = (factors.first(), factors.last()) else {
         return Err(StudyError::NoReference);
     };
-    let strip = |integrator| Strip { integrator: Some(integrator), ..Strip::new(scene) };
+    let stepping = |integrator| Some(Stepping { integrator, time_step: scene.dynamics.time_step });
+    let strip = |integrator| Strip::new(Setting { stepping: stepping(integrator), ..Setting::of(scene) });
     let limits = MethodLimits {
         range: [first, last],
         duration: Some(motions.samples.duration()),

@@ -19,6 +19,7 @@ use crate::plot::{ScaledAxis, rating_color};
 use crate::scene::{Analysis, Beam, Load, Scene};
 use crate::sentence::sentence;
 use crate::simulation::Simulation;
+use crate::study::Setting;
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
 
@@ -376,18 +377,16 @@ impl<'a> StripChart<'a> {
         let right = strips.right() + self.ends;
         let rect = Rect::from_min_max(pos2(strips.left() - self.names, top), pos2(right, top + self.row));
         let name = strip.name(|id| tr(id).to_owned());
-        let is_used = match strip.integrator {
-            Some(integrator) => scene.dynamics.integrator == integrator,
-            None => {
-                let used = (scene.element(), scene.solver.method, scene.solver.accept_after);
-                used == (strip.element, strip.method, strip.accept_after)
-            }
+        let Setting { element, method, iterations, stepping, .. } = strip.setting;
+        let is_used = match stepping {
+            Some(stepping) => scene.dynamics.integrator == stepping.integrator,
+            None => (scene.element(), scene.solver.method, scene.solver.accept_after) == (element, method, iterations),
         };
         let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
         let text = match strip.done < 1.0 {
             true => fill!("%{name}: %{done} of the loads are solved", name, done = done.clone()),
-            false if strip.integrator.is_some() => fill!(
+            false if stepping.is_some() => fill!(
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
                 name,
                 good,
@@ -409,8 +408,7 @@ impl<'a> StripChart<'a> {
         let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };
         let fill = if is_used { palette.chosen } else { Color32::TRANSPARENT };
         ui.painter().rect(rect, 3.0, fill, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
-        let own =
-            strip.integrator.map_or_else(|| palette.method(strip.method), |integrator| palette.integrator(integrator));
+        let own = stepping.map_or_else(|| palette.method(method), |stepping| palette.integrator(stepping.integrator));
         let ink = if is_used { palette.text } else { own };
         self.text(ui, pos2(strips.left() - 10.0, rect.center().y), Align2::RIGHT_CENTER, &name, ink);
         let bar = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to, top + 1.0..=top + self.row - 2.0);
@@ -436,12 +434,12 @@ impl<'a> StripChart<'a> {
         }
         let tip = if is_used { text } else { format!("{text}\n{}", tr("Click to use it")) };
         if response.on_hover_text(tip).clicked() && !is_used {
-            let label = if strip.integrator.is_some() { "Integrator" } else { "Method" };
-            actions.push(Action::edit(label, scene, |scene| match strip.integrator {
-                Some(integrator) => scene.dynamics.integrator = integrator,
+            let label = if stepping.is_some() { "Integrator" } else { "Method" };
+            actions.push(Action::edit(label, scene, |scene| match stepping {
+                Some(stepping) => scene.dynamics.integrator = stepping.integrator,
                 None => {
-                    (scene.solver.method, scene.solver.accept_after) = (strip.method, strip.accept_after);
-                    scene.set_element(strip.element);
+                    (scene.solver.method, scene.solver.accept_after) = (method, iterations);
+                    scene.set_element(element);
                 }
             }));
         }
