@@ -1,11 +1,9 @@
 //! Measurement of the settings of a body at rest. A solve starts from rest, which is the hardest case; data computed once
 //! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
 
-use nalgebra::Vector2;
-
 use super::fine::{Effort, finest_element};
 use super::progress::{Extent, StudyError, check};
-use super::reference::{ProbeReference, Reference, first_probe};
+use super::reference::{Reference, first_probe};
 use super::setting::{Setting, mesh_text};
 use super::timing::times_from_rest;
 use super::trade::{Measurement, Meshed, Study, StudyReference};
@@ -64,53 +62,51 @@ impl Study {
         observe: Observer<'_>,
         partial: &mut dyn FnMut(&Self),
     ) -> Result<Self, StudyError> {
-        match scene.analysis {
-            Analysis::Static => at_rest(scene, extent, observe, partial),
-            Analysis::Dynamic => motion::study(scene, extent, observe, partial),
-        }
+        let moves = scene.analysis == Analysis::Dynamic;
+        // Fractions of the time when the reference is known, and when the timing starts.
+        let (known, begun) = if moves { motion::SHARES } else { (0.0, ENDS_SHARE) };
+        let (meshes, study) = {
+            let observe =
+                &|progress: Progress<'_>| observe(Progress { fraction: known * progress.fraction, ..progress });
+            match moves {
+                true => (motion::meshes(scene, extent), motion::begin(scene, extent, observe)?),
+                false => (meshes(scene, extent), begin(scene, observe)?),
+            }
+        };
+        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
+        let now = if moves { sentence!("the motion on every mesh") } else { sentence!("end state of every method") };
+        let meshed =
+            parallel::all(&meshes, observe, [known, begun], &now, |(mesh, _), observe| match &study.reference {
+                StudyReference::Rest(_) => meshed(scene, *mesh, observe),
+                StudyReference::Motion(reference) => motion::meshed(scene, *mesh, (reference, extent), observe),
+            })?;
+        let mut order: Vec<_> = meshed.iter().zip(meshes.iter().map(|(_, weight)| *weight)).collect();
+        // At rest, start with the element that converges fastest, which is likely to give the best results.
+        order.sort_by_key(|(meshed, _)| !moves && meshed.mesh.element != finest_element(scene));
+        study.measure_meshes(begun, &order, observe, partial, |study, meshed, observe| {
+            match moves {
+                true => motion::measure(study, scene, extent, meshed, observe)?,
+                false => measure(study, scene, meshed, observe)?,
+            }
+            study.measurements.sort_by_key(|m| {
+                let of = |mesh: &Setting| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
+                meshes.iter().position(|(mesh, _)| of(mesh))
+            });
+            Ok(())
+        })
     }
 }
 
-/// Measures a scene at rest: see [`Study::with_partial`].
-fn at_rest(
-    scene: &Scene,
-    extent: Extent,
-    observe: Observer<'_>,
-    partial: &mut dyn FnMut(&Study),
-) -> Result<Study, StudyError> {
-    let meshes = meshes(scene, extent);
-    let (study, against) = begin(scene, observe)?;
-    // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-    let now = sentence!("end state of every method");
-    let meshed =
-        parallel::all(&meshes, observe, [0.0, ENDS_SHARE], &now, |(mesh, _), observe| meshed(scene, *mesh, observe))?;
-    // Start with the element that converges fastest, which is likely to give the best results.
-    let mut order: Vec<_> = meshed.iter().zip(meshes.iter().map(|(_, weight)| *weight)).collect();
-    order.sort_by_key(|(meshed, _)| meshed.mesh.element != finest_element(scene));
-    study.measure_meshes(ENDS_SHARE, &order, observe, partial, |study, meshed, observe| {
-        measure(study, against, scene, meshed, observe)?;
-        study.measurements.sort_by_key(|m| {
-            let of = |mesh: &Setting| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
-            meshes.iter().position(|(mesh, _)| of(mesh))
-        });
-        Ok(())
-    })
-}
-
-/// Returns a study with its reference solution and no measurements, and the reference of the first probe.
-pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<(Study, ProbeReference), StudyError> {
-    let begin = &|progress: Progress<'_>| observe(Progress { fraction: 0.0, ..progress });
-    let reference = Reference::find(scene, None, Effort::Bounded, begin)?;
-    let against = reference.first().ok_or(StudyError::NoBound)?;
-    Ok((Study::begin(scene, StudyReference::Rest(reference), against.own_error_percent), against))
+/// Returns a study of a scene at rest with its reference solution and no measurements.
+pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Study, StudyError> {
+    Study::begin(scene, StudyReference::Rest(Reference::find(scene, None, Effort::Bounded, observe)?))
 }
 
 /// Measures every method on a mesh. A cancelled measurement leaves the study unchanged.
 pub(super) fn measure(
     study: &mut Study,
-    reference: ProbeReference,
     scene: &Scene,
-    meshed: &Meshed<Vector2<f64>>,
+    meshed: &Meshed,
     observe: Observer<'_>,
 ) -> Result<(), StudyError> {
     let Meshed { mesh, system, .. } = meshed;
@@ -133,9 +129,7 @@ pub(super) fn measure(
             if !ended && (method == MethodKind::Auto || !ITERATIONS.contains(&iterations)) {
                 continue;
             }
-            let tip = first_probe(&simulation)?;
-            let percent = |a: &Vector2<f64>, b: &Vector2<f64>| reference.percent(*a, *b);
-            let error = meshed.error(&tip, simulation.is_linear(), &reference.displacement, percent);
+            let error = meshed.error(&[first_probe(&simulation)?], simulation.is_linear(), &study.reference);
             measurements.push(Measurement {
                 setting: Setting { iterations, ..setting },
                 dofs: simulation.system().dofs(),
@@ -153,14 +147,14 @@ pub(super) fn measure(
 }
 
 /// Meshes a scene, and computes the displacements of its first probe on that mesh, m.
-pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed<Vector2<f64>>, StudyError> {
+pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed, StudyError> {
     Meshed::new(scene, mesh, |mut scene, system| {
         scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
         let mut simulation = Simulation::with_system(&scene, system.clone())?;
         check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
         match *simulation.status() != Status::Converged && scene.solver.method == MethodKind::Newton {
             true => Err(StudyError::NoReference),
-            false => first_probe(&simulation),
+            false => Ok(vec![first_probe(&simulation)?]),
         }
     })
 }

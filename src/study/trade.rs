@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use super::motion::MotionReference;
 use super::progress::StudyError;
 use super::reference::{Reference, system_of};
@@ -38,23 +40,25 @@ impl ErrorSplit {
     }
 }
 
-/// Mesh with the results of both theories on it, without an error of iterations or time steps: displacements of the first
-/// probe, m, or its paths.
+/// Path of the first probe, m; at rest its displacement alone.
+pub(super) type ProbePath = Vec<Vector2<f64>>;
+
+/// Mesh with the results of both theories on it, without an error of iterations or time steps.
 #[derive(Clone, Debug)]
-pub(super) struct Meshed<R> {
+pub(super) struct Meshed {
     pub mesh: Setting,
     pub system: Arc<System>,
     /// Result of corotated theory.
-    exact: R,
-    linear: R,
+    exact: ProbePath,
+    linear: ProbePath,
 }
 
-impl<R> Meshed<R> {
+impl Meshed {
     /// Meshes a scene; `result` computes the result of the scene's method on this mesh.
     pub fn new(
         scene: &Scene,
         mesh: Setting,
-        result: impl Fn(Scene, &Arc<System>) -> Result<R, StudyError>,
+        result: impl Fn(Scene, &Arc<System>) -> Result<ProbePath, StudyError>,
     ) -> Result<Self, StudyError> {
         let scene = mesh.apply(scene);
         let system = system_of(&scene)?;
@@ -63,14 +67,15 @@ impl<R> Meshed<R> {
         Ok(Self { mesh, system, exact, linear })
     }
 
-    /// Splits the error of a result of one of the theories; `distance` is in percent.
-    pub fn error(&self, result: &R, is_linear: bool, reference: &R, distance: impl Fn(&R, &R) -> f64) -> ErrorSplit {
+    /// Splits the error of a result of one of the theories.
+    pub fn error(&self, result: &[Vector2<f64>], is_linear: bool, reference: &StudyReference) -> ErrorSplit {
         let own = if is_linear { &self.linear } else { &self.exact };
+        let largest = |path: &[Vector2<f64>], from| reference.distance(path, from)[0];
         ErrorSplit {
-            total: distance(result, reference),
-            discretization: distance(&self.exact, reference),
-            iteration: distance(result, own),
-            model: distance(own, &self.exact),
+            total: largest(result, None),
+            discretization: largest(&self.exact, None),
+            iteration: largest(result, Some(own)),
+            model: largest(own, Some(&self.exact)),
         }
     }
 }
@@ -176,7 +181,6 @@ impl Measurement {
         self.error.map_or(f64::INFINITY, |error| error.bound())
     }
 
-    /// Formats the computing time.
     pub(super) fn time_text(&self) -> String {
         match self.motion {
             None => format!("{:.4} ms", self.milliseconds),
@@ -192,6 +196,19 @@ pub enum StudyReference {
     Rest(Reference),
     /// Path of a motion.
     Motion(MotionReference),
+}
+
+impl StudyReference {
+    /// Returns the largest and the root mean square distance of a path from another one, or from the reference, percent of
+    /// the size of the reference.
+    pub(super) fn distance(&self, path: &[Vector2<f64>], from: Option<&[Vector2<f64>]>) -> [f64; 2] {
+        match self {
+            Self::Rest(reference) => reference.first().zip(path.first()).map_or([f64::NAN; 2], |(own, end)| {
+                [own.percent(*end, from.and_then(<[_]>::first).copied().unwrap_or(own.displacement)); 2]
+            }),
+            Self::Motion(reference) => reference.distance(path, from.unwrap_or(&reference.path)),
+        }
+    }
 }
 
 displayed!(StudyReference);
@@ -229,15 +246,13 @@ impl Study {
     pub(crate) const MAX_ITERATIONS: u32 = 20;
 
     /// Returns a study without measurements.
-    pub(super) fn begin(scene: &Scene, reference: StudyReference, own_error_percent: f64) -> Self {
-        Self {
-            scene: scene.name.clone(),
-            reference,
-            own_error_percent,
-            asked_percent: scene.solver.max_error_percent,
-            measurements: Vec::new(),
-            is_partial: true,
-        }
+    pub(super) fn begin(scene: &Scene, reference: StudyReference) -> Result<Self, StudyError> {
+        let own_error_percent = match &reference {
+            StudyReference::Rest(reference) => reference.first().ok_or(StudyError::NoBound)?.own_error_percent,
+            StudyReference::Motion(reference) => reference.error_percent,
+        };
+        let (scene, asked_percent) = (scene.name.clone(), scene.solver.max_error_percent);
+        Ok(Self { scene, reference, own_error_percent, asked_percent, measurements: Vec::new(), is_partial: true })
     }
 
     /// Calls `measure` with each mesh, and `partial` with the study so far; a cancelled study keeps its measurements.

@@ -43,7 +43,7 @@ impl Tuning {
         let mut meshes = meshes(scene, Extent::Full);
         meshes.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let meshes: Vec<_> = meshes.into_iter().map(|(mesh, weight)| ((mesh, weight), weight)).collect();
-        let (study, against) = begin(scene, observe)?;
+        let study = begin(scene, &|progress| observe(Progress { fraction: 0.0, ..progress }))?;
         if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_decide(demand)) {
             return Err(StudyError::NotKnown { own_percent: study.own_error_percent, asked_percent });
         }
@@ -56,7 +56,7 @@ impl Tuning {
             let meshed = meshed(scene, mesh, &|progress| {
                 observe(Progress { now: Some(&sentence!("end state of every method")), ..progress })
             })?;
-            measure(study, against, scene, &meshed, observe)?;
+            measure(study, scene, &meshed, observe)?;
             let added = &study.measurements[before..];
             let met = demand.max_error_percent.is_some() && added.iter().any(|m| m.converged && study.meets(m, demand));
             let fastest = added.iter().map(|m| m.milliseconds).fold(f64::INFINITY, f64::min);

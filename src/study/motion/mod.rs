@@ -3,11 +3,10 @@
 
 use std::time::Duration;
 
-use nalgebra::Vector2;
 use web_time::Instant;
 
-use self::plan::{MOST_STEPS, TIMING, meshes, settings};
-pub(super) use self::plan::{REFERENCE_STEPS, Samples};
+use self::plan::{MOST_STEPS, TIMING, settings};
+pub(super) use self::plan::{REFERENCE_STEPS, Samples, meshes};
 pub use self::reference::MotionReference;
 use self::reference::run;
 pub(super) use self::reference::{fine_path, path};
@@ -39,122 +38,103 @@ const MIN_STEPS_OF_LARGE: f64 = 4.0;
 /// Number of steps after which a measured motion asks if it goes on: to ask takes time, too.
 const STEPS_BETWEEN_QUESTIONS: u32 = 16;
 
-/// Approximate fraction of a study's time spent on the reference solution.
-const REFERENCE_SHARE: f64 = 0.1;
-/// Approximate fraction of a study's time spent on the reference motion of every mesh.
-const OWN_SHARE: f64 = 0.1;
+/// Approximate fractions of a study's time when the reference solution is known, and the reference motion of every mesh.
+pub(super) const SHARES: (f64, f64) = (0.1, 0.2);
 /// Approximate fraction of a mesh's time spent before its settings are timed.
 const FIRST_RUNS_SHARE: f64 = 0.35;
 
-/// Measures a dynamic scene: see [`Study::with_partial`].
-pub(super) fn study(
+/// Returns a study of a motion with its reference path and no measurements.
+pub(super) fn begin(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Study, StudyError> {
+    Study::begin(scene, StudyReference::Motion(MotionReference::new(scene, extent, observe)?))
+}
+
+/// Meshes a scene, and computes the paths of its first probe on that mesh with the reference's steps.
+pub(super) fn meshed(
+    scene: &Scene,
+    mesh: Setting,
+    (reference, extent): (&MotionReference, Extent),
+    observe: Observer<'_>,
+) -> Result<Meshed, StudyError> {
+    let (samples, steps) = (reference.samples(), extent.pick(REFERENCE_STEPS));
+    Meshed::new(scene, mesh, |scene, system| fine_path(scene, system, samples, steps, observe))
+}
+
+/// Measures every setting on a mesh. A cancelled measurement keeps its results.
+pub(super) fn measure(
+    study: &mut Study,
     scene: &Scene,
     extent: Extent,
+    meshed: &Meshed,
     observe: Observer<'_>,
-    partial: &mut dyn FnMut(&Study),
-) -> Result<Study, StudyError> {
-    let reference = MotionReference::new(scene, extent, &|progress| {
-        observe(Progress { fraction: REFERENCE_SHARE * progress.fraction, ..progress })
+) -> Result<(), StudyError> {
+    let StudyReference::Motion(reference) = &study.reference else { return Err(StudyError::AtRest) };
+    let (Meshed { mesh, system, .. }, samples) = (meshed, reference.samples());
+    let of_mesh = mesh.apply(scene);
+    let simulation = Simulation::with_system(&of_mesh, system.clone())?;
+    let mass = Mass::new(system, of_mesh.material.area_density());
+    let critical = critical_step(simulation.problem(), &mass, of_mesh.dynamics.damping);
+    let settings = &settings(*mesh, critical, samples, extent);
+    // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
+    let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
+    let first = parallel::all(settings, observe, [0.0, FIRST_RUNS_SHARE], &now, |setting, observe| {
+        first_run((&*study, samples, extent), scene, meshed, *setting, observe)
     })?;
-    let study = Study::begin(scene, StudyReference::Motion(reference.clone()), reference.error_percent);
-    let studied = Studied { scene, extent, reference };
-    let (begun, now) = (REFERENCE_SHARE + OWN_SHARE, sentence!("the motion on every mesh"));
-    let meshed = parallel::all(&meshes(scene, extent), observe, [REFERENCE_SHARE, begun], &now, |mesh, observe| {
-        let (samples, steps) = (studied.reference.samples(), extent.pick(REFERENCE_STEPS));
-        Meshed::new(scene, *mesh, |scene, system| fine_path(scene, system, samples, steps, observe))
-    })?;
-    // Every mesh has the same settings.
-    let weighted: Vec<_> = meshed.iter().map(|mesh| (mesh, 1.0)).collect();
-    study.measure_meshes(begun, &weighted, observe, partial, |study, mesh, observe| {
-        studied.measure(study, mesh, observe)
-    })
+    for (done, ((_, steps_of_sample), (mut measurement, steps))) in settings.iter().zip(first).enumerate() {
+        let part = done as f64 / settings.len() as f64;
+        let fraction = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * part;
+        let now = (&measurement.setting).into();
+        check(observe(Progress { fraction, now: Some(&now) }))?;
+        let scene = measurement.setting.apply(scene);
+        let mut simulation = Simulation::with_system(&scene, system.clone())?;
+        let (timing, warm_up) = (extent.pick(TIMING), steps.min(*steps_of_sample));
+        measurement.milliseconds = milliseconds_per_second(&mut simulation, warm_up, steps, timing, &|| true);
+        study.measurements.push(measurement);
+    }
+    Ok(())
 }
 
-/// Mesh with the paths of the first probe on it, with the reference's steps.
-type MeshedPath = Meshed<Vec<Vector2<f64>>>;
-
-/// Scene with the reference and the extent of its study.
-struct Studied<'a> {
-    scene: &'a Scene,
-    extent: Extent,
-    reference: MotionReference,
-}
-
-impl Studied<'_> {
-    /// Measures every setting on a mesh. A cancelled measurement keeps its results.
-    fn measure(&self, study: &mut Study, meshed: &MeshedPath, observe: Observer<'_>) -> Result<(), StudyError> {
-        let Meshed { mesh, system, .. } = meshed;
-        let scene = mesh.apply(self.scene);
-        let simulation = Simulation::with_system(&scene, system.clone())?;
-        let mass = Mass::new(system, scene.material.area_density());
-        let critical = critical_step(simulation.problem(), &mass, scene.dynamics.damping);
-        let settings = &settings(*mesh, critical, self.reference.samples(), self.extent);
-        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
-        let first = parallel::all(settings, observe, [0.0, FIRST_RUNS_SHARE], &now, |setting, observe| {
-            self.first_run(meshed, *setting, observe)
-        })?;
-        for (done, ((_, steps_of_sample), (mut measurement, steps))) in settings.iter().zip(first).enumerate() {
-            let part = done as f64 / settings.len() as f64;
-            let fraction = FIRST_RUNS_SHARE + (1.0 - FIRST_RUNS_SHARE) * part;
-            let now = (&measurement.setting).into();
-            check(observe(Progress { fraction, now: Some(&now) }))?;
-            let scene = measurement.setting.apply(self.scene);
-            let mut simulation = Simulation::with_system(&scene, system.clone())?;
-            let timing = self.extent.pick(TIMING);
-            let warm_up = steps.min(*steps_of_sample);
-            measurement.milliseconds = milliseconds_per_second(&mut simulation, warm_up, steps, timing, &|| true);
-            study.measurements.push(measurement);
-        }
-        Ok(())
-    }
-
-    /// Runs a setting without timing it, and records path, energy and counts. Returns its measurement without the time, and
-    /// the number of its steps: a long motion is shortened.
-    fn first_run(
-        &self,
-        meshed: &MeshedPath,
-        (setting, steps_of_sample): (Setting, u32),
-        observe: Observer<'_>,
-    ) -> Result<(Measurement, u32), StudyError> {
-        let Self { scene, reference, .. } = self;
-        let samples = reference.samples();
-        let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
-        let steps = u64::from(steps_of_sample) * u64::from(samples.count);
-        let is_cut = steps > u64::from(self.extent.pick(MOST_STEPS));
-        let (steps, path) = if is_cut {
-            run(&mut simulation, MIN_STEPS);
-            (MIN_STEPS, Vec::new())
-        } else {
-            (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
-        };
-        let ending = match simulation.status() {
-            Status::Stopped(_) => Ending::Stopped,
-            _ if is_cut => Ending::CutShort,
-            _ => Ending::Finished,
-        };
-        let converged = ending == Ending::Finished;
-        let [_, rms_percent] = reference.distance(&path, &reference.path);
-        let is_linear = setting.method.moves_linearly();
-        let error = || meshed.error(&path, is_linear, &reference.path, |a, b| reference.distance(a, b)[0]);
-        let of_motion = simulation.motion().map(|motion| {
-            let ledger = motion.ledger();
-            (motion.counts(), 100.0 * ledger.drift(), 100.0 * ledger.drift_of_input())
-        });
-        let (counts, drift_percent, drift_of_input_percent) = of_motion.unwrap_or_default();
-        let motion = MotionFigures { ending, rms_percent, drift_percent, drift_of_input_percent, counts };
-        let measurement = Measurement {
-            setting,
-            dofs: meshed.system.dofs(),
-            converged,
-            milliseconds: 0.0,
-            error: converged.then(error),
-            time: Timings::default(),
-            motion: Some(motion),
-            pareto: false,
-        };
-        Ok((measurement, steps))
-    }
+/// Runs a setting without timing it, and records path, energy and counts. Returns its measurement without the time, and the
+/// number of its steps: a long motion is shortened.
+fn first_run(
+    (study, samples, extent): (&Study, Samples, Extent),
+    scene: &Scene,
+    meshed: &Meshed,
+    (setting, steps_of_sample): (Setting, u32),
+    observe: Observer<'_>,
+) -> Result<(Measurement, u32), StudyError> {
+    let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
+    let steps = u64::from(steps_of_sample) * u64::from(samples.count);
+    let is_cut = steps > u64::from(extent.pick(MOST_STEPS));
+    let (steps, path) = if is_cut {
+        run(&mut simulation, MIN_STEPS);
+        (MIN_STEPS, Vec::new())
+    } else {
+        (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
+    };
+    let ending = match simulation.status() {
+        Status::Stopped(_) => Ending::Stopped,
+        _ if is_cut => Ending::CutShort,
+        _ => Ending::Finished,
+    };
+    let converged = ending == Ending::Finished;
+    let [_, rms_percent] = study.reference.distance(&path, None);
+    let is_linear = setting.method.moves_linearly();
+    let of_motion = simulation.motion().map(|motion| {
+        let ledger = motion.ledger();
+        (motion.counts(), 100.0 * ledger.drift(), 100.0 * ledger.drift_of_input())
+    });
+    let (counts, drift_percent, drift_of_input_percent) = of_motion.unwrap_or_default();
+    let measurement = Measurement {
+        setting,
+        dofs: meshed.system.dofs(),
+        converged,
+        milliseconds: 0.0,
+        error: converged.then(|| meshed.error(&path, is_linear, &study.reference)),
+        time: Timings::default(),
+        motion: Some(MotionFigures { ending, rms_percent, drift_percent, drift_of_input_percent, counts }),
+        pareto: false,
+    };
+    Ok((measurement, steps))
 }
 
 /// Returns the computing time per simulated second of a scene's motion from its start, ms, measured over the time that a

@@ -111,12 +111,12 @@ pub(super) fn cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<
     Some(own.map(|n| (n * factor / pieces(element)).round().max(1.0) as u32))
 }
 
-/// Returns every mesh of a scene, from coarse to fine for each element.
-pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<Setting> {
+/// Returns every mesh of a scene, from coarse to fine for each element. Each has the same settings, and the weight 1.
+pub(in crate::study) fn meshes(scene: &Scene, extent: Extent) -> Vec<(Setting, f64)> {
     let of = |element| {
-        extent.pick(MESHES).iter().map(move |&factor| Setting::newton(element, cells(scene, element, factor)))
+        extent.pick(MESHES).iter().map(move |&factor| (Setting::newton(element, cells(scene, element, factor)), 1.0))
     };
-    let mut meshes: Vec<Setting> = scene.elements().flat_map(of).collect();
+    let mut meshes: Vec<(Setting, f64)> = scene.elements().flat_map(of).collect();
     meshes.dedup();
     meshes
 }
