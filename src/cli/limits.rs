@@ -16,7 +16,6 @@ use crate::study::figure::LoadAxis;
 use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::{Setting, moved_points};
 
-/// Runs the command.
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let LimitsArgs { scene, json, outputs } = args;
     let source = scene::Source::from(scene);

@@ -4,7 +4,6 @@ use super::drawing::{Anchor, Drawing, Text};
 use crate::scene::ElementKind;
 use crate::study::extremes::{Case, Entry, Outcome, counts, labels};
 
-/// Size of a cell.
 const CELL: [f64; 2] = [52.0, 20.0];
 
 /// Draws an atlas: a panel for every element and method or integrator, one of each element in a row. A cell's bar is

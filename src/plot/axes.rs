@@ -3,7 +3,6 @@
 use super::drawing::{Anchor, Drawing, GRID, Text, solid};
 use crate::scene::ElementKind;
 
-/// Size of a drawing.
 pub(super) const SIZE: [f64; 2] = [860.0, 560.0];
 /// Height of a row of a legend.
 pub(super) const ROW: f64 = 22.0;

@@ -35,7 +35,6 @@ pub(super) struct Stroke {
     pub dashes: &'static [f64],
 }
 
-/// A solid line.
 pub(super) fn solid(width: f64) -> Stroke {
     Stroke { width, dashes: &[] }
 }
@@ -73,7 +72,6 @@ impl Drawing {
         self.rect([[0.0; 2], size], WHITE);
     }
 
-    /// Draws points joined by lines.
     pub(super) fn line(&mut self, points: &[[f64; 2]], color: Color, stroke: Stroke) {
         let line = match *points {
             [from, to] => {

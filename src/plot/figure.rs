@@ -6,7 +6,6 @@ use crate::format::{number, prefix, rounded, ticks};
 use crate::study::color;
 use crate::study::figure::{Figure, Ink, Mark};
 
-/// Width of the table.
 const TABLE: f64 = 330.0;
 const MARGINS: PlotMargins =
     PlotMargins { width: SIZE[0] + TABLE, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0 };

@@ -9,7 +9,6 @@ use crate::study::limits::{MethodLimits, Rating, axis_text, load_text};
 
 /// Left and right ends of the strips, pixels.
 const ACROSS: [f64; 2] = [150.0, 760.0];
-/// Width of the drawing.
 const WIDTH: f64 = 1010.0;
 /// Upper and lower ends of the load curve.
 const CURVE: [f64; 2] = [56.0, 216.0];
@@ -19,7 +18,6 @@ const ROW: f64 = 26.0;
 /// Width by which bars overlap, so that no gap shows between those of one colour.
 const OVERLAP: f64 = 0.5;
 
-/// Returns the colour of a rating.
 pub(crate) fn rating_color(rating: Rating) -> Color {
     match rating {
         Rating::Good => [0x3a, 0x9d, 0x5d],

@@ -13,7 +13,6 @@ use crate::study::{Measurement, Study, StudyReference, color};
 pub const SMALLEST_ERROR: f64 = 1e-3;
 /// Errors above this are drawn at it: those of an iteration that diverges are off the picture.
 pub const LARGEST_ERROR: f64 = 1e3;
-/// Width of a line.
 const WIDTH: f64 = 1.5;
 
 const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };

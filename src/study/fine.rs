@@ -61,7 +61,6 @@ const MIN_SOLVES_LEFT: f64 = 4.0;
 const FOLD_SHARE: f64 = 1.5;
 /// Distance of the folds on still finer meshes, relative to that of the first: a fold has no limit, and grows with them.
 const FARTHER_FOLD: f64 = 1.5;
-/// Tolerance of the solutions.
 const TOLERANCE: f64 = 1e-11;
 
 impl Reference {

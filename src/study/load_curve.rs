@@ -28,6 +28,18 @@ impl Sample {
     pub fn linear_error_percent(&self) -> f64 {
         error_percent(self.linear, self.exact).unwrap_or(0.0)
     }
+
+    /// Returns the sample at a fraction of the way to another one.
+    fn towards(&self, to: &Self, t: f64) -> Self {
+        let between = |a: f64, b: f64| a + t * (b - a);
+        Self {
+            factor: between(self.factor, to.factor),
+            linear: self.linear + (to.linear - self.linear) * t,
+            exact: self.exact + (to.exact - self.exact) * t,
+            rotation: between(self.rotation, to.rotation),
+            strain: between(self.strain, to.strain),
+        }
+    }
 }
 
 /// Load at which the error of linear theory exceeds a limit.
@@ -108,7 +120,9 @@ impl LoadCurve {
                 let Some(end) = samples.get(first + 1).filter(|_| first < MIN_BELOW) else { break };
                 samples = from_rest(&beam.path(end.factor, SAMPLES));
             }
-            departure(&samples, percent)
+            let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
+            let [from, to] = [0, 1].map(|i| pair[i].linear_error_percent());
+            Some(Departure { percent, at: pair[0].towards(&pair[1], ((percent - from) / (to - from)).clamp(0.0, 1.0)) })
         };
         let departures = DEPARTURES.into_iter().filter_map(departure).collect();
         let mut methods = Vec::new();
@@ -125,21 +139,4 @@ impl LoadCurve {
         }
         Some(Self { samples, buckles_at, departures, methods })
     }
-}
-
-/// Returns the load at which the error of linear theory first exceeds `percent`.
-fn departure(samples: &[Sample], percent: f64) -> Option<Departure> {
-    let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
-    let [a, b] = [pair[0], pair[1]];
-    let (from, to) = (a.linear_error_percent(), b.linear_error_percent());
-    let t = ((percent - from) / (to - from)).clamp(0.0, 1.0);
-    let between = |a: f64, b: f64| a + t * (b - a);
-    let at = Sample {
-        factor: between(a.factor, b.factor),
-        linear: a.linear + (b.linear - a.linear) * t,
-        exact: a.exact + (b.exact - a.exact) * t,
-        rotation: between(a.rotation, b.rotation),
-        strain: between(a.strain, b.strain),
-    };
-    Some(Departure { percent, at })
 }

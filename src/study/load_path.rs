@@ -127,9 +127,10 @@ impl From<&Elsewhere> for Sentence {
 }
 
 impl PathSummary {
-    fn of(jump: Option<Jump>, bifurcations: &[Bifurcation]) -> Self {
-        let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0).copied();
-        Self { jump, buckling, ..Self::default() }
+    /// Returns the critical points up to a load factor.
+    fn of(jump: Option<Jump>, bifurcations: &[Bifurcation], most: f64) -> Self {
+        let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0 && b.factor <= most).copied();
+        Self { jump: jump.filter(|jump| jump.factor <= most), buckling, ..Self::default() }
     }
 
     /// Returns the load factor at which the path first jumps or buckles.
@@ -241,7 +242,7 @@ impl LoadPath {
         };
         let mut summary = match is_small && is_taken_for_path(simulation) {
             true => Self::followed(simulation, false, observe)?.to(simulation.displacement()),
-            false => PathSummary::of(events.jump, &events.bifurcations),
+            false => PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY),
         };
         if is_small && summary.elsewhere.is_none() {
             summary.critical = summary.critical_load(simulation, observe);
@@ -271,10 +272,7 @@ impl LoadPath {
     /// `None` if the path cannot be followed to the full load, or is cancelled.
     fn traced(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
         let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
-        let within = |most: f64| {
-            let below: Vec<Bifurcation> = path.bifurcations.iter().filter(|b| b.factor <= most).copied().collect();
-            PathSummary::of(path.jump.filter(|jump| jump.factor <= most), &below)
-        };
+        let within = |most: f64| PathSummary::of(path.jump, &path.bifurcations, most);
         let (summary, drive) = (within(1.0), Drive::of(simulation.problem()));
         let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
         let critical = critical.map(|factor| CriticalLoad { factor, drive });
@@ -302,7 +300,7 @@ impl LoadPath {
             return Self::followed(&follower, false, observe);
         }
         let events = follower.equilibrium()?.path_events()?;
-        let summary = PathSummary::of(events.jump, &events.bifurcations);
+        let summary = PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY);
         Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
     }
 
@@ -321,7 +319,7 @@ impl LoadPath {
         let events = follower.take_events();
         let is_at_end = matches!(progress, PathProgress::Reached);
         let end = is_at_end.then(|| follower.last.state.displacement.to_vec());
-        let summary = PathSummary::of(events.jump, &events.bifurcations);
+        let summary = PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY);
         (to_jump || is_at_end).then_some(PathFromRest { summary, end })
     }
 

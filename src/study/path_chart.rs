@@ -48,18 +48,16 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
         (Ordinate::Usual, None) => [0, 1 + dominant_axis(path.states.iter().map(displacement))],
         (Ordinate::Usual | Ordinate::Reaction(_) | Ordinate::Probe(_), _) => [0, 3],
     };
-    quantities.extend(match (ordinate, path.driven) {
-        (Ordinate::Reaction(i), _) => {
-            Some(FigureQuantity::new(format!("reaction of {}", support_text(scene, *i)), "N"))
+    quantities.extend(
+        match (ordinate, path.driven) {
+            (Ordinate::Reaction(i), _) => Some((format!("reaction of {}", support_text(scene, *i)), "N")),
+            (Ordinate::Probe(_), _) => Some((format!("displacement of {name}"), "m")),
+            // The other axis names the support.
+            (_, Some(_)) => Some((render(&sentence!("reaction in this direction")), if turns { "N m" } else { "N" })),
+            _ => None,
         }
-        (Ordinate::Probe(_), _) => Some(FigureQuantity::new(format!("displacement of {name}"), "m")),
-        // The other axis names the support.
-        (_, Some(_)) => {
-            let name = render(&sentence!("reaction in this direction"));
-            Some(FigureQuantity::new(name, if turns { "N m" } else { "N" }))
-        }
-        _ => None,
-    });
+        .map(|(name, unit)| FigureQuantity::new(name, unit)),
+    );
     let point = |s: &PathState| {
         let u = displacement(s);
         let driven = path.driven_pair(scene, s);

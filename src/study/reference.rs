@@ -333,7 +333,6 @@ fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Opt
     (own_error_percent <= LARGEST_OWN_ERROR).then_some(ProbeReference { displacement, own_error_percent, source })
 }
 
-/// Returns the equations of a scene.
 pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
     Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
 }

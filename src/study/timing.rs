@@ -15,7 +15,6 @@ use crate::timings::Timings;
 
 /// Repetitions that warm up caches, branch predictors and clocks.
 const WARM_UP: usize = 2;
-/// Number of measured repetitions.
 const REPETITIONS: usize = 9;
 /// Number of measured repetitions if they take long, because long times vary less.
 const MIN_REPETITIONS: usize = 3;

@@ -11,22 +11,22 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 25_703),
-    ("study", &["src/study"], 6_947),
+    ("study", &["src/study"], 6_936),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_551),
     ("assembly", &["src/assembly"], 2_993),
-    ("cli", &["src/cli"], 2_316),
+    ("cli", &["src/cli"], 2_315),
     ("dynamics", &["src/dynamics"], 1_931),
     ("render", &["src/render"], 1_915),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_936),
-    ("plot", &["src/plot"], 717),
+    ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_064),
     ("tests", &["tests"], 21_444),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 60_529;
+const SRC: usize = 60_509;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

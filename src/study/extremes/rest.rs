@@ -111,7 +111,6 @@ pub fn cases(extent: Extent) -> Vec<RestCase> {
     cases
 }
 
-/// Returns the built-in scene with this name.
 fn built_in(id: &str) -> Option<Scene> {
     open(&Source { name: id.into(), assignments: Vec::new() }).ok()
 }
