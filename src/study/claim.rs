@@ -2,10 +2,9 @@
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
 use super::load_path::{CriticalLoad, Elsewhere, LoadPath, PathEnd, PathSummary};
-use super::ranking::Demand;
+use super::ranking::{Demand, Tuning};
 use super::reference::{ProbeReference, Reference};
 use super::trade::{Measurement, Study};
-use super::tune::Tuning;
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
 use crate::method::{Bifurcation, Drive, Jump};

@@ -20,11 +20,6 @@ impl FigureQuantity {
     pub fn new(name: impl Into<String>, unit: &'static str) -> Self {
         Self { name: name.into(), unit }
     }
-
-    /// Returns the name with the unit in brackets, the head of a column.
-    fn heading(&self) -> String {
-        if self.unit.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, self.unit) }
-    }
 }
 
 /// Colour of a series, by its meaning.
@@ -191,7 +186,10 @@ impl Figure {
     pub fn csv(&self) -> String {
         let has_states = self.series.iter().flat_map(|series| &series.points).any(|p| !p.state.is_empty());
         let mut head = vec!["series".to_owned()];
-        head.extend(self.quantities.iter().map(FigureQuantity::heading));
+        head.extend(self.quantities.iter().map(|FigureQuantity { name, unit }| match *unit {
+            "" => name.clone(),
+            unit => format!("{name} ({unit})"),
+        }));
         head.extend(has_states.then(|| "state".to_owned()));
         let mut text = csv_row(&head);
         // Adding 0 turns −0 into 0.

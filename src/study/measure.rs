@@ -2,12 +2,13 @@
 //! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
 
 use super::fine::{Effort, finest_element};
+use super::motion::{self, MotionReference};
+use super::parallel;
 use super::progress::{Extent, StudyError, check};
 use super::reference::{Reference, first_probe};
 use super::setting::{Setting, mesh_text};
 use super::timing::times_from_rest;
 use super::trade::{Measurement, Meshed, Study, StudyReference};
-use super::{motion, parallel};
 use crate::method::METHODS;
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Scene};
@@ -69,7 +70,10 @@ impl Study {
             let observe =
                 &|progress: Progress<'_>| observe(Progress { fraction: known * progress.fraction, ..progress });
             match moves {
-                true => (motion::meshes(scene, extent), motion::begin(scene, extent, observe)?),
+                true => {
+                    let reference = StudyReference::Motion(MotionReference::new(scene, extent, observe)?);
+                    (motion::meshes(scene, extent), Self::begin(scene, reference)?)
+                }
                 false => (meshes(scene, extent), begin(scene, observe)?),
             }
         };
@@ -78,7 +82,10 @@ impl Study {
         let meshed =
             parallel::all(&meshes, observe, [known, begun], &now, |(mesh, _), observe| match &study.reference {
                 StudyReference::Rest(_) => meshed(scene, *mesh, observe),
-                StudyReference::Motion(reference) => motion::meshed(scene, *mesh, (reference, extent), observe),
+                StudyReference::Motion(reference) => Meshed::new(scene, *mesh, |scene, system| {
+                    let steps = extent.pick(motion::REFERENCE_STEPS);
+                    motion::fine_path(scene, system, reference.samples(), steps, observe)
+                }),
             })?;
         let mut order: Vec<_> = meshed.iter().zip(meshes.iter().map(|(_, weight)| *weight)).collect();
         // At rest, start with the element that converges fastest, which is likely to give the best results.

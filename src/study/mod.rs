@@ -24,7 +24,6 @@ pub mod section_chart;
 mod setting;
 mod timing;
 mod trade;
-mod tune;
 
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
@@ -40,7 +39,7 @@ pub use load_path::{
 };
 pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};
-pub use ranking::Demand;
+pub use ranking::{Demand, Tuning};
 #[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
 pub(crate) use reference::MAX_CERTIFIED;
 #[cfg(feature = "app")]
@@ -49,4 +48,3 @@ pub use reference::{MovedPoint, ProbeReference, Reference, ReferenceSource};
 pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
 pub use trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
-pub use tune::Tuning;

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::claim::Claim;
 use super::motion::{MotionReference, REAL_TIME};
+use super::ranking::Tuning;
 use super::setting::{Setting, Stepping, mesh_text, step_text};
 use super::trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
-use super::tune::Tuning;
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number};
 use crate::method::METHODS;

@@ -231,14 +231,10 @@ impl Strip {
     /// Returns the part of the load up to which the error is at most `percent`: 0 if it is larger at the smallest load, and
     /// `None` if it is not larger up to [`Self::last_known`].
     pub fn within(&self, percent: f64) -> Option<f64> {
-        match self.answers(Property::Within(percent)).next()? {
-            (_, None) => None,
-            (_, Some(false)) => Some(0.0),
-            (_, Some(true)) => {
-                let end = self.runs(Property::Within(percent)).first()?.range[1];
-                (self.last_known() != Some(end)).then_some(end)
-            }
-        }
+        let property = Property::Within(percent);
+        let is_within = self.answers(property).next()?.1?;
+        let end = if is_within { self.runs(property).first()?.range[1] } else { 0.0 };
+        (self.last_known() != Some(end)).then_some(end)
     }
 
     /// Returns the largest part of the load up to which the error is known at every load; `None` if it is not known at the
@@ -324,7 +320,6 @@ impl Strip {
         let found = [GOOD, USABLE].map(|percent| Some((percent, self.first_run(Property::Within(percent))?.0)));
         let is_far = |(_, run): &(f64, LoadRange)| run.before.is_none() && run.range[1] > NEAR * range[0];
         let best = found.iter().copied().flatten().find(is_far).or(found[1]);
-        let own = || first.reference_percent;
         Some(match (best, self.runs(Property::Converges).first()) {
             (Some((limit, run)), _) => {
                 let ([from, to], percent) = (run.range.map(load), number(limit));
@@ -338,7 +333,7 @@ impl Strip {
             (None, None) => sentence!("not at %{load}", load = load(range[0])),
             (None, Some(_))
                 if first.rating() == Some(Rating::Unknown)
-                    && let Some(own) = own() =>
+                    && let Some(own) = first.reference_percent =>
             {
                 sentence!("reference \u{b1} %{own}", own = percent(own))
             }

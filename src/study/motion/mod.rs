@@ -43,22 +43,6 @@ pub(super) const SHARES: (f64, f64) = (0.1, 0.2);
 /// Approximate fraction of a mesh's time spent before its settings are timed.
 const FIRST_RUNS_SHARE: f64 = 0.35;
 
-/// Returns a study of a motion with its reference path and no measurements.
-pub(super) fn begin(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Study, StudyError> {
-    Study::begin(scene, StudyReference::Motion(MotionReference::new(scene, extent, observe)?))
-}
-
-/// Meshes a scene, and computes the paths of its first probe on that mesh with the reference's steps.
-pub(super) fn meshed(
-    scene: &Scene,
-    mesh: Setting,
-    (reference, extent): (&MotionReference, Extent),
-    observe: Observer<'_>,
-) -> Result<Meshed, StudyError> {
-    let (samples, steps) = (reference.samples(), extent.pick(REFERENCE_STEPS));
-    Meshed::new(scene, mesh, |scene, system| fine_path(scene, system, samples, steps, observe))
-}
-
 /// Measures every setting on a mesh. A cancelled measurement keeps its results.
 pub(super) fn measure(
     study: &mut Study,
