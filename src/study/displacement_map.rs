@@ -40,55 +40,34 @@ impl DisplacementMap {
     pub(crate) fn at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
         /// Largest distance outside a triangle, relative to its height.
         const OUTSIDE: f64 = 0.5;
-        let bounds = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
-            let infinity = Vector2::repeat(f64::INFINITY);
-            points.fold([infinity, -infinity], |[low, high], x| [low.inf(x), high.sup(x)])
-        };
-        let [low, high] = bounds(&mut self.rest.iter());
-        // A point is compared with the triangles whose bounding boxes meet its cell of a grid. Cells are about as many as
-        // triangles, and about square.
-        let size = (high - low).map(|v| if v > 0.0 { v } else { 1.0 });
-        let side = (size.x * size.y / self.triangles.len().max(1) as f64).sqrt();
-        let [columns, rows] = [size.x, size.y].map(|v| (v / side).ceil().clamp(1.0, 2000.0) as usize);
-        let cell = Vector2::new(size.x / columns as f64, size.y / rows as f64);
-        // Column and row of the cell at a point, or of the nearest one; `None` if the point is not finite.
-        let place = |at: &Vector2<f64>| {
-            let place = (at - low).component_div(&cell);
-            let one = |v: f64, count: usize| v.is_finite().then(|| (v.max(0.0) as usize).min(count - 1));
-            Some([one(place.x, columns)?, one(place.y, rows)?])
-        };
-        let mut candidates: Vec<Vec<&[u32; 3]>> = vec![Vec::new(); columns * rows];
+        // A triangle is compared with the points around it, which are found by x.
+        let mut by_x: Vec<(usize, &Vector2<f64>)> = points.iter().enumerate().collect();
+        by_x.sort_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
+        let mut found = vec![(-OUTSIDE, None); points.len()];
         for triangle in &self.triangles {
-            let [first, last] = bounds(&mut triangle.iter().filter_map(|&corner| self.rest.get(corner as usize)));
-            // A point outside the body finds the triangles of the neighbouring cell.
-            let (Some(first), Some(last)) = (place(&(first - cell * 0.5)), place(&(last + cell * 0.5))) else {
-                continue;
-            };
-            for row in first[1]..=last[1] {
-                let cells = row * columns + first[0]..=row * columns + last[0];
-                candidates[cells].iter_mut().for_each(|own| own.push(triangle));
+            let [Some((a, u)), Some((b, v)), Some((c, w))] = triangle.map(|corner| self.corner(corner)) else { continue };
+            // Barycentric coordinates; a triangle without area has none.
+            let Some(inverse) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { continue };
+            // Points at the largest distance are as far away as the triangle is large.
+            let [low, high] = [a.inf(b).inf(c), a.sup(b).sup(c)];
+            let [low, high] = [low * 2.0 - high, high * 2.0 - low];
+            let first = by_x.partition_point(|(_, at)| at.x < low.x);
+            let around = by_x[first..].iter().take_while(|(_, at)| at.x <= high.x);
+            for &(point, at) in around.filter(|(_, at)| (low.y..=high.y).contains(&at.y)) {
+                let part = inverse * (at - a);
+                let weights = [1.0 - part.x - part.y, part.x, part.y];
+                let depth = weights.into_iter().fold(f64::INFINITY, f64::min);
+                if depth.total_cmp(&found[point].0).is_ge() {
+                    found[point] = (depth, Some([u, v, w].into_iter().zip(weights).map(|(u, weight)| u * weight).sum()));
+                }
             }
         }
-        let value = |at: &Vector2<f64>| {
-            let [column, row] = place(at)?;
-            let inside = candidates[row * columns + column].iter().filter_map(|&triangle| {
-                let weights = self.weights(triangle, at)?;
-                Some((weights.into_iter().fold(f64::INFINITY, f64::min), triangle, weights))
-            });
-            let (depth, triangle, weights) = inside.max_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
-            let corners = triangle.iter().map(|&corner| self.displacements.get(corner as usize));
-            let sum = corners.zip(weights).map(|(u, weight)| Some(u? * weight)).sum::<Option<Vector2<f64>>>();
-            sum.filter(|_| depth >= -OUTSIDE)
-        };
-        points.iter().map(value).collect()
+        found.into_iter().map(|(_, u)| u).collect()
     }
 
-    /// Returns the barycentric coordinates of a point in a triangle; `None` for a triangle without area.
-    fn weights(&self, triangle: &[u32; 3], at: &Vector2<f64>) -> Option<[f64; 3]> {
-        let [a, b, c] = triangle.map(|corner| self.rest.get(corner as usize));
-        let (a, b, c) = (a?, b?, c?);
-        let part = Matrix2::from_columns(&[b - a, c - a]).try_inverse()? * (at - a);
-        Some([1.0 - part.x - part.y, part.x, part.y])
+    /// Returns rest position and displacement of a corner.
+    fn corner(&self, corner: u32) -> Option<(&Vector2<f64>, &Vector2<f64>)> {
+        Some((self.rest.get(corner as usize)?, self.displacements.get(corner as usize)?))
     }
 }
 

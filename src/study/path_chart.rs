@@ -110,29 +110,23 @@ fn abscissa(path: &LoadPath, scene: &Scene) -> LoadAxis {
 
 /// Name, colour and mark of the lines of a path.
 type PathLine = (&'static str, Ink, Mark);
-/// Equilibria that are stable with the supports held.
-const STABLE: PathLine = ("stable", Ink::Method(MethodKind::Newton), Mark::Line);
-/// Equilibria that are unstable.
-const UNSTABLE: PathLine = ("unstable", Ink::Unstable, Mark::Dashes);
-/// No equilibria: from where the body jumps to where it comes to rest.
-const JUMP: PathLine = ("it jumps", Ink::Unstable, Mark::Dots);
 
 /// Joins neighbouring points of a path to lines of one kind, which share their ends; a jump comes last.
 fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, PathLine)> {
     let mut pieces: Vec<(Vec<FigurePoint>, PathLine)> = Vec::new();
     for (i, (pair, states)) in points.windows(2).zip(path.states.windows(2)).enumerate() {
-        // A piece is stable where both of its ends are.
+        // A piece is stable where both of its ends are, with the supports held. A jump has no equilibria.
         let is_stable = states.iter().all(|s| s.unstable_modes == 0);
         let line = match path.states_before_jump == Some(i + 1) {
-            true => JUMP,
-            false if is_stable => STABLE,
-            false => UNSTABLE,
+            true => ("it jumps", Ink::Unstable, Mark::Dots),
+            false if is_stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
+            false => ("unstable", Ink::Unstable, Mark::Dashes),
         };
         match pieces.last_mut().filter(|(_, last)| *last == line) {
             Some((points, _)) => points.push(pair[1].clone()),
             None => pieces.push((pair.to_vec(), line)),
         }
     }
-    pieces.sort_by_key(|(_, line)| *line == JUMP);
+    pieces.sort_by_key(|(_, (_, _, mark))| *mark == Mark::Dots);
     pieces
 }
