@@ -100,10 +100,10 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
             _ => ErrorSource::Mesh,
         }
     });
-    let linear = behind.map_or_else(|| input.linear.and_then(first_probe), |behind| behind.linear);
+    let linear = behind.map_or_else(|| input.session.linear().and_then(first_probe), |behind| behind.linear);
     let linear = percent_of(linear).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
-    let accepted = input.from_rest.filter(|_| *simulation.status() == Status::Accepted);
+    let accepted = input.session.timed_from_rest().filter(|_| *simulation.status() == Status::Accepted);
     let from_rest = accepted.and_then(|solve| error_percent(solve.displacement?, first.displacement));
     let from_rest = from_rest.filter(|error| own.is_some_and(|own| percent(own) != percent(*error)));
     Errors { own, bound: own.map(|error| first.error_bound(error)), linear, from_rest, source }
@@ -135,11 +135,12 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
     if !input.simulation.status().is_success() || input.simulation.motion().is_some() {
         return None;
     }
-    if input.quality.is_inside_out(input.simulation) {
+    let quality = input.session.quality();
+    if quality.is_inside_out(input.simulation) {
         // The status has it too.
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
-    let strain = input.quality.max_strain;
+    let strain = quality.max_strain;
     let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
     let known = errors.own.zip(input.reference.and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
@@ -198,7 +199,7 @@ pub(crate) fn status_text(input: &Readout<'_>) -> (String, bool) {
     let simulation = input.simulation;
     let moves = simulation.motion().is_some();
     match simulation.status() {
-        Status::Running | Status::Finished if !input.running => (tr("Paused").to_owned(), false),
+        Status::Running | Status::Finished if !input.session.is_running() => (tr("Paused").to_owned(), false),
         // The duration applies to runs without a window; in the window a motion continues.
         Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
@@ -227,7 +228,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
             text.push_str(&part);
         }
     };
-    let inside_out = input.quality.is_inside_out(simulation);
+    let inside_out = input.session.quality().is_inside_out(simulation);
     if inside_out {
         add(tr("inverted elements").to_owned());
     }
@@ -238,7 +239,9 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
-    match input.from_rest.filter(|_| simulation.status().is_success()) {
+    // The solve from rest is without the pull of a grab.
+    let is_found = simulation.status().is_success() && simulation.mouse_spring().is_none();
+    match input.session.timed_from_rest().filter(|_| is_found) {
         Some(solve) if !solve.is_solved => add(tr("not reached from rest").to_owned()),
         // From a state under another load, fewer or more may have been needed.
         Some(solve) if solve.iterations > 0 => add(count(solve.iterations, "iteration")),
@@ -271,7 +274,7 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
 /// Returns the spectral radius ρ of the warped iteration at the equilibrium; `None` if that is not known.
 pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
     let own = || input.simulation.equilibrium().filter(|_| input.simulation.status().is_success());
-    input.equilibrium_rho.or_else(|| own()?.certificate()?.fixed_point_rho)
+    input.session.facts().rho.get(input.scene).copied().or_else(|| own()?.certificate()?.fixed_point_rho)
 }
 
 /// Returns `true` if a result was accepted of a warped iteration that diverges if it runs on.
@@ -335,7 +338,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         let reason = error_tip(input.reference, input.reference_failure);
         lines.push(fill!("The error is not known. %{reason}", reason = reason));
     }
-    if is_solved && input.quality.is_inside_out(simulation) {
+    if is_solved && input.session.quality().is_inside_out(simulation) {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
                     equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());
@@ -358,7 +361,8 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     if *simulation.status() == Status::Accepted {
         let residual = number(two_digits(simulation.residual()));
         let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));
-        let is_from_rest = input.from_rest.is_some_and(|solve| solve.displacement == first_probe(simulation));
+        let is_from_rest =
+            input.session.timed_from_rest().is_some_and(|solve| solve.displacement == first_probe(simulation));
         lines.push(if is_from_rest {
             fill!(
                 "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
@@ -441,7 +445,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action });
     }
     let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
-    if is_free && input.quality.is_inside_out(simulation) {
+    if is_free && input.session.quality().is_inside_out(simulation) {
         let text = sentence(tr("inverted elements"));
         return Some(Remedy { text, offer: tr("Reset").to_owned(), action: Action::Reset });
     }

@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
         let mut button = |speed: f64, word: &str, tip: &str| {
-            let chosen = (input.playback.clock.speed() - speed).abs() < 1e-9;
+            let chosen = (input.session.playback().clock.speed() - speed).abs() < 1e-9;
             if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 panel.actions.push(Action::Speed(speed));
             }
@@ -63,7 +63,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         for (speed, word) in SPEEDS {
             button(speed, word, tr("Simulated seconds per second: 1 is real time, less is slow motion"));
         }
-        if let Some((frequency, speed)) = input.frequency.and_then(|f| Some((f, speed_of_period(f)?))) {
+        if let Some((frequency, speed)) =
+            input.session.facts().frequency.latest().and_then(|&f| Some((f, speed_of_period(f)?)))
+        {
             let frequency = engineering(three_digits(frequency), "Hz");
             let tip = fill!("One period of the lowest natural frequency, %{frequency}, per second", frequency);
             button(speed, &fraction(speed), &tip);
@@ -76,7 +78,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         ui.label(tr("Compare integrators"))
             .on_hover_text(tr("The same motion with other integrators: outlines in the view, lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
-            let is_shown = input.playback.companions().iter().any(|c| c.integrator == entry.kind);
+            let is_shown = input.session.playback().companions().iter().any(|c| c.integrator == entry.kind);
             if ui.add(option_button(is_shown, tr(entry.id))).on_hover_text(tr(entry.about)).clicked() {
                 panel.actions.push(Action::Compare(entry.kind));
             }

@@ -134,7 +134,7 @@ fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
-    let quality = input.quality;
+    let quality = input.session.quality();
     let known = input.shown.status().is_success() && quality.is_of(input.shown);
     let error = quality.mesh_error_percent.filter(|_| known);
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
@@ -168,14 +168,14 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
 
 fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, (name, what): (&str, &str)) {
     let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
-    let time = engineering(three_digits(input.timings.total().as_secs_f64()), "s");
+    let time = engineering(three_digits(input.session.timings().total().as_secs_f64()), "s");
     row(name, joined([time, unknowns]), what);
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.
 fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
-    let clock = &input.playback.clock;
+    let clock = &input.session.playback().clock;
     let factor = match clock.factor() {
         Some(factor) if clock.lags() => fill!("%{factor} of real time: slower than asked", factor = fraction(factor)),
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),

@@ -124,7 +124,7 @@ impl Gallery {
             for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {
                     for entry in row {
-                        let is_present = entry.0.id == input.scene_name;
+                        let is_present = entry.0.id == input.session.document().source.name.as_os_str();
                         let response = self.entry(ui, &palette, entry, width, is_present);
                         if is_present && !self.is_open && by_key {
                             response.scroll_to_me(Some(Align::Center));

@@ -208,7 +208,7 @@ impl Lab {
             let Desk { session, motions, .. } = &mut self.desk;
             session.poll();
             session.rest();
-            motions.advance_motions(session.scene(), &session.equations(), now, session.is_running());
+            motions.advance_motions(session, now);
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
@@ -258,7 +258,7 @@ impl Lab {
             lesson.learn.wait(session.scene());
         }
         if view.mode == Mode::Compare {
-            compare.solve_to_end(session.scene(), &session.equations(), view.bars);
+            compare.solve_to_end(session, view.bars);
         }
         if has_search {
             self.show_last_line();
@@ -291,46 +291,30 @@ impl Lab {
     /// Returns the state that bars, panel and cards show.
     pub(super) fn readout(&self) -> Readout<'_> {
         let Desk { session, viewport, view, .. } = &self.desk;
-        let (facts, reference) = (session.facts(), session.reference());
-        // The solve from rest is without the pull of a grab.
-        let is_free = session.simulation().mouse_spring().is_none();
+        let reference = session.reference();
         Readout {
+            session,
             reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
             live: session.live(),
             reference_failure: reference.and_then(Result::err),
             // Only an equilibrium is the end of a path, or of another one.
-            path: (facts.path.get(session.scene()))
+            path: (session.facts().path.get(session.scene()))
                 .filter(|_| {
                     let simulation = session.simulation();
                     *simulation.status() == Status::Converged && simulation.mouse_spring().is_none()
                 })
                 .map(|path| path.to(session.simulation().displacement())),
-            equilibrium_rho: facts.rho.get(session.scene()).copied(),
-            is_computing_rho: facts.rho.is_pending(session.scene()),
-            quality: session.quality(),
-            reference_progress: facts.reference.progress().map(|(done, _)| done),
             value_range: viewport.body().value_range(),
             is_fallback: session.fallback().is_some(),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),
-            scene_name: session.document().source.name.to_str().unwrap_or_default(),
             simulation: session.simulation(),
             shown: session.drawn(),
-            linear: session.linear(),
-            running: session.is_running(),
             ended: match view.mode {
                 Mode::Compare => !self.desk.comparison().goes_on(),
                 _ => session.has_ended(),
             },
-            playback: session.playback(),
-            frequency: facts.frequency.latest().copied(),
-            timings: session.timings(),
-            from_rest: session.timed_from_rest().filter(|_| is_free),
-            last_from_rest: session.last_from_rest().filter(|_| is_free),
-            residuals: session.residuals(),
-            can_undo: session.can_undo(),
-            can_redo: session.can_redo(),
             language: self.settings.language,
         }
     }

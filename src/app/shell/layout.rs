@@ -19,7 +19,6 @@ use crate::app::task::thread::POLL;
 use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::menu;
 use crate::app::viewport::{overlay, time_line};
-use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{self, Palette};
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
@@ -229,18 +228,13 @@ impl Lab {
         let is_motion = session.is_motion();
         let live = session.live().filter(|_| !is_motion);
         let input = CompareInput {
+            session,
             scene: session.scene(),
             view,
             direction: panel.force_direction(),
-            opening: OpeningLoads::of(&session.document().opened),
             eases: viewport.eases(),
-            last: session.fallback(),
-            own: session.equations(),
             reference: session.facts().reference.get(session.scene()).or(live.map(|live| &live.reference)),
             live,
-            reference_failure: session.facts().reference.failure(session.scene()),
-            from_rest: session.timed_from_rest(),
-            running: session.is_running(),
             chosen: measure.budget.chosen(session.scene()),
         };
         (if is_motion { motions } else { compare }, input)

@@ -89,14 +89,16 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
     let simulation = input.simulation;
-    let solve = input.from_rest.filter(|_| simulation.status().is_success());
+    // The solve from rest is without the pull of a grab.
+    let is_free = simulation.mouse_spring().is_none();
+    let solve = input.session.timed_from_rest().filter(|_| simulation.status().is_success() && is_free);
     // While a load is dragged, a longer solve is not repeated.
     let is_last = solve.is_none() && simulation.status().is_success();
-    let shown = if is_last { input.last_from_rest } else { solve };
+    let shown = if is_last { input.session.last_from_rest().filter(|_| is_free) } else { solve };
     let time = shown.filter(|solve| solve.is_solved);
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
-    let sought = input.reference_progress.filter(|_| errors.own.is_none());
+    let sought = input.session.facts().reference.progress().filter(|_| errors.own.is_none());
     let doubt = doubt(input, errors);
     let is_without_reference = is_without_reference(input);
     // The error from rest is in the colour, and is no doubt if it is small.
@@ -122,7 +124,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
             (Some(doubt), _) if sought.is_none() => doubt.into(),
             (_, Some(source)) => tr(source.word()).into(),
             (None, None) if is_without_reference => tr("no reference").into(),
-            (_, None) => sought.map_or(Cow::default(), |done| {
+            (_, None) => sought.map_or(Cow::default(), |(done, _)| {
                 let percent = format!("{:.0}", 100.0 * done);
                 fill!("computing the reference: %{percent} %", percent).into()
             }),
@@ -165,20 +167,20 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
 }
 
 fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
-    let cost = input.timings.total().as_secs_f64();
+    let cost = input.session.timings().total().as_secs_f64();
     let step = input.scene.dynamics.time_step;
     let tip = fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s"));
     let value = if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() };
     let color = if cost > step { palette.error } else { palette.text };
     let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new("STEP", value, tip, color) };
-    let clock = &input.playback.clock;
+    let clock = &input.session.playback().clock;
     let (word, color) = match clock.lags() {
         true => (tr("slower than asked").into(), palette.error),
         false => (Cow::default(), palette.text),
     };
     let value = match clock.factor() {
         Some(factor) => format!("× {}", fraction(factor)),
-        None if input.running => UNKNOWN.to_owned(),
+        None if input.session.is_running() => UNKNOWN.to_owned(),
         None => tr("paused").to_owned(),
     };
     let tip = "Simulated seconds per second; fewer than requested if the machine cannot keep up";

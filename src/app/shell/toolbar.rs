@@ -78,7 +78,7 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
 /// Shows the buttons that run the solution, and those that undo and redo edits; with words where there is room.
 fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
     let (moves, ended) = (input.simulation.motion().is_some(), input.ended);
-    let run = match (input.running, ended) {
+    let run = match (input.session.is_running(), ended) {
         (true, false) => (Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
         (false, _) => (Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
         (true, true) => (Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
@@ -93,8 +93,8 @@ fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>
         run,
         (Icon::Step, "Step", step, !(moves && ended), Action::Step),
         (Icon::Reset, "Reset", reset, true, Action::Reset),
-        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.can_undo, Action::Undo),
-        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.can_redo, Action::Redo),
+        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.session.can_undo(), Action::Undo),
+        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.session.can_redo(), Action::Redo),
     ] {
         let word = (wide && matches!(icon, Icon::Play | Icon::Pause | Icon::Step)).then_some(tr(name));
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), word, false));

@@ -95,7 +95,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     } else if run.is_away() {
         (false, fill!("solving: %{iterations}", iterations = iterations))
     } else {
-        (false, if input.running { iterations } else { tr("paused").to_owned() })
+        (false, if input.session.is_running() { iterations } else { tr("paused").to_owned() })
     };
     let error = pane.error.filter(|_| !bad);
     let judged = error.zip(input.reference.and_then(Reference::first));
@@ -134,7 +134,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
     let spoken = format!("{name}: {}: {error}{text}", setting.text());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let error_tip = error_tip(input.reference, input.reference_failure);
+    let error_tip = error_tip(input.reference, input.session.facts().reference.failure(input.scene));
     response.on_hover_text(format!("{text}\n{error_tip}\n{}", tr("Time and iterations: of a solve from rest")));
 }
 

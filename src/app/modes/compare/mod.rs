@@ -8,6 +8,7 @@ use web_time::{Duration, Instant};
 use self::grid::{Grid, grow};
 use self::setting::PANES;
 use crate::app::language::{fill, tr};
+use crate::app::session::Session;
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::live::Live;
 use crate::app::session::run::{FrameConditions, Run};
@@ -19,15 +20,12 @@ use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::load_scale::OpeningLoads;
 use crate::dynamics::INTEGRATORS;
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
 use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::sentence::Sentence;
-use crate::simulation::Simulation;
 use crate::state::largest;
-use crate::study::{Reference, Setting, SolveFromRest};
+use crate::study::{Reference, Setting};
 
 mod grid;
 mod header;
@@ -42,27 +40,18 @@ const WORK: Duration = Duration::from_millis(12);
 
 /// Input of a comparison.
 pub(crate) struct CompareInput<'a> {
+    /// Session of the panel.
+    pub session: &'a Session,
     pub scene: &'a Scene,
     pub view: &'a ViewOptions,
     /// Direction of the arrow of a zero force, degrees.
     pub direction: f64,
-    /// Loads that the scene opens with.
-    pub opening: OpeningLoads,
     /// `true` if camera movements are animated.
     pub eases: bool,
-    /// Body that the panel describes in place of a search that has found no equilibrium.
-    pub last: Option<&'a Simulation>,
-    /// Equations of the body in Explore, which panes share if their mesh is the same.
-    pub own: Equations,
     /// Reference solution of the load, or the one that follows it.
     pub reference: Option<&'a Reference>,
     /// Reference solution that follows the load, if errors are measured against it.
     pub live: Option<&'a Live>,
-    /// Reason why it could not be computed.
-    pub reference_failure: Option<&'a Sentence>,
-    /// Time of a solve from rest with the panel's settings; `None` until it has been measured.
-    pub from_rest: Option<&'a SolveFromRest>,
-    pub running: bool,
     /// Fastest measured setting within the limits.
     pub chosen: Option<Setting>,
 }
@@ -198,16 +187,16 @@ impl Compare {
         self.panes.iter().any(goes_on)
     }
 
-    /// Returns the existing equations that the panes can share.
-    fn equations(&self, own: &Equations) -> Vec<Equations> {
-        std::iter::once(own.clone()).chain(self.panes.iter().filter_map(Pane::equations)).collect()
+    /// Returns the existing equations that the panes can share: those of the body in Explore, and their own.
+    fn equations(&self, session: &Session) -> Vec<Equations> {
+        std::iter::once(session.equations()).chain(self.panes.iter().filter_map(Pane::equations)).collect()
     }
 
     /// Solves all panes, and waits for them; `times` them, too.
-    pub(crate) fn solve_to_end(&mut self, scene: &Scene, own: &Equations, times: bool) {
-        let mut equations = self.equations(own);
+    pub(crate) fn solve_to_end(&mut self, session: &Session, times: bool) {
+        let mut equations = self.equations(session);
         for pane in &mut self.panes {
-            pane.run.solve_to_end(pane.setting.apply(scene), &equations);
+            pane.run.solve_to_end(pane.setting.apply(session.scene()), &equations);
             equations.extend(pane.equations());
             if times {
                 pane.wait_for_time();
@@ -216,11 +205,10 @@ impl Compare {
     }
 
     /// Applies the scene, and makes the time steps of the motions that are due at `now`, s. All panes are at the same time:
-    /// a slow one slows all of them down, and they wait for those that are being set up or timed. `own` are the equations
-    /// of the body in Explore.
-    pub(crate) fn advance_motions(&mut self, scene: &Scene, own: &Equations, now: f64, running: bool) {
-        let mut starts_over = false;
-        let mut equations = self.equations(own);
+    /// a slow one slows all of them down, and they wait for those that are being set up or timed.
+    pub(crate) fn advance_motions(&mut self, session: &Session, now: f64) {
+        let (scene, mut starts_over) = (session.scene(), false);
+        let mut equations = self.equations(session);
         for pane in &mut self.panes {
             starts_over |= pane.run.turn_to(pane.setting.apply(scene), &equations);
             equations.extend(pane.equations());
@@ -229,7 +217,7 @@ impl Compare {
             self.reset();
         }
         let is_setting_up = self.panes.iter().any(|pane| pane.run.is_away());
-        if !running || is_setting_up || self.is_timing || !self.goes_on() {
+        if !session.is_running() || is_setting_up || self.is_timing || !self.goes_on() {
             return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
@@ -243,18 +231,18 @@ impl Compare {
     /// Applies the scene at rest, and iterates.
     fn advance(&mut self, ctx: &Context, input: &CompareInput<'_>) {
         let holds = ctx.input(|i| i.pointer.any_down());
-        let equations = self.equations(&input.own);
+        let (equations, runs) = (self.equations(input.session), input.session.is_running());
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
-            let frame = FrameConditions { holds, runs: input.running, until: Instant::now() + share };
+            let frame = FrameConditions { holds, runs, until: Instant::now() + share };
             pane.run.advance(pane.setting.apply(input.scene), &equations, frame);
-            pane.is_dragged = holds && input.running;
+            pane.is_dragged = holds && runs;
             pane.update_error(input);
         }
-        let mut runs = self.panes.iter().map(|pane| &pane.run);
-        if input.running && runs.clone().any(|run| !run.is_settled() && !run.is_away() && !run.waits()) {
+        let mut of_panes = self.panes.iter().map(|pane| &pane.run);
+        if runs && of_panes.clone().any(|run| !run.is_settled() && !run.is_away() && !run.waits()) {
             ctx.request_repaint();
-        } else if runs.any(Run::is_away) {
+        } else if of_panes.any(Run::is_away) {
             ctx.request_repaint_after(POLL);
         } else if !holds {
             self.request_times(ctx);
@@ -360,7 +348,7 @@ impl Compare {
         for pane in &mut self.panes {
             if !self.in_motion {
                 let is_own = pane.setting.apply(input.scene) == *input.scene;
-                pane.keep_equilibrium(input.last.filter(|_| is_own));
+                pane.keep_equilibrium(input.session.fallback().filter(|_| is_own));
             }
             let played = self.in_motion.then_some(self.played);
             pane.update_display((input.view, reference), self.magnification, played, ui.visuals());
@@ -445,7 +433,8 @@ impl Compare {
         let results = sound.filter_map(|pane| pane.run.displayed());
         let now = results.map(|model| largest(model.simulation.displacement())).fold(0.0, f64::max);
         self.largest_displacement = if self.in_motion { self.largest_displacement.max(now) } else { now };
-        let factor = input.view.magnification.factor(input.own.system.size(), self.largest_displacement);
+        let factor =
+            input.view.magnification.factor(input.session.simulation().system().size(), self.largest_displacement);
         if self.magnification != factor {
             (self.magnification, self.swept) = (factor, None);
         }
@@ -464,7 +453,7 @@ impl Compare {
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
         let Some(size) = grid::common_size(self.panes.iter().filter_map(|pane| pane.place)) else { return };
-        let rest: [Vector2<f64>; 2] = input.own.system.mesh().bounds().into();
+        let rest: [Vector2<f64>; 2] = input.session.simulation().mesh().bounds().into();
         let (whole, margins) = match self.in_motion {
             true => (self.sweep(rest), Margins { sides: 40.0, top: 40.0, bottom: 44.0 }),
             false => (self.bounds(rest, input, exact), self.margins(input, size)),

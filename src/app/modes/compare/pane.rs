@@ -26,6 +26,7 @@ use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::{Projection, viewport};
+use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::palette::{BODY, Palette};
 use crate::assembly::System;
 use crate::exact_beam::error_percent;
@@ -143,7 +144,8 @@ impl Pane {
     /// Returns the time of the solve from rest to show, s: that of the status bar for the panel's settings.
     pub(super) fn shown_seconds(&self, input: &CompareInput<'_>) -> Option<f64> {
         let is_own = || self.timed_scene().as_ref() == Some(input.scene);
-        let of_panel = input.from_rest.filter(|_| is_own()).map(|solve| solve.timings.total().as_secs_f64());
+        let of_panel =
+            input.session.timed_from_rest().filter(|_| is_own()).map(|solve| solve.timings.total().as_secs_f64());
         of_panel.or_else(|| self.seconds())
     }
 
@@ -282,7 +284,8 @@ impl Pane {
         input: &CompareInput<'_>,
     ) -> Option<ForceArrows<'a>> {
         let (system, positions) = (self.system.as_ref()?, &self.body_mesh.nodes);
-        Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening: input.opening })
+        let opening = OpeningLoads::of(&input.session.document().opened);
+        Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening })
     }
 
     /// Computes the error of the result, if the reference solution is known. One that follows the load may be of a load
@@ -371,7 +374,7 @@ impl Pane {
                 areas: [None; 2],
                 time,
                 direction: input.direction,
-                opening: input.opening,
+                opening: OpeningLoads::of(&input.session.document().opened),
                 hot: pointer.hot_handle(),
                 mouse_spring: None,
                 reactions: &[],

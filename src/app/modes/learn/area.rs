@@ -22,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     ui.add_space(4.0);
     let method = shown.scene.solver.method;
     let palette = Palette::new(ui.visuals());
-    let linear = shown.linear.filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
+    let linear = shown.session.linear().filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
     for (body, method) in [(shown.simulation, method)].into_iter().chain(linear) {
         row(ui, &palette, method.id(), Some(body.area_change()), palette.method(method));
     }
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0
     });
     row(ui, &palette, "reference", exact, palette.exact);
-    let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.linear);
+    let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.session.linear());
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
         let text = fill!(
             "largest element: \u{3b8} = %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",

@@ -319,7 +319,7 @@ impl Learn {
 
 /// Shows the buttons that step (name, tooltip, and `true` if it can), return to rest, and iterate to the end.
 fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
-    let goes_on = *shown.simulation.status() == Status::Running && !shown.running;
+    let goes_on = *shown.simulation.status() == Status::Running && !shown.session.is_running();
     for (name, tip, on, action) in [
         (step.0, step.1, step.2, Action::Step),
         ("From rest", "Back to rest (R)", true, Action::Reset),

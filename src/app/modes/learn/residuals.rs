@@ -19,7 +19,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>)
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.simulation.status() != Status::Running;
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
-        if let Some(ratio) = last_ratio(shown.residuals) {
+        if let Some(ratio) = last_ratio(shown.session.residuals()) {
             let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
             ui.add(egui::Label::new(text).extend());
         }
@@ -65,12 +65,12 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     let palette = Palette::new(ui.visuals());
     // The residuals of other methods do not follow it.
     let is_warped = shown.scene.solver.method == MethodKind::Warped;
-    let rho = shown.equilibrium_rho.filter(|_| is_warped);
+    let rho = shown.session.facts().rho.get(shown.scene).copied().filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
     let asked = shown.scene.solver.tolerance.max(1e-300).log10();
-    let residuals = shown.residuals;
+    let residuals = shown.session.residuals();
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
     let most = residuals.len().max(MIN_ITERATIONS) as f64;
@@ -115,7 +115,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if is_warped && shown.is_computing_rho {
+    if is_warped && shown.session.facts().rho.is_pending(shown.scene) {
         ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
     }
 }
