@@ -213,7 +213,7 @@ mod tests {
     fn the_curve_of_a_very_large_body_is_refused() {
         let scene = Scene::beam(10.0, 1.0).with_cells(4000, 40).clamp("left").force("right", [0.0, -1.0]);
         let refused =
-            CurveFact::compute(&scene.probe("tip", "right"), &|_| ControlFlow::Continue(()), &|_| ()).unwrap_err();
+            (CurveFact::COMPUTE)(&scene.probe("tip", "right"), &|_| ControlFlow::Continue(()), &|_| ()).unwrap_err();
         assert!(refused.to_string().contains("`warpbeam curve`"), "{refused}");
     }
 
@@ -226,7 +226,7 @@ mod tests {
                 asked.fetch_add(1, Ordering::Relaxed);
                 ControlFlow::Break(())
             };
-            let _ = F::compute(scene, &observe, &|_| ());
+            let _ = (F::COMPUTE)(scene, &observe, &|_| ());
             asked.into_inner()
         }
         for id in ["cantilever", "snap"] {

@@ -14,19 +14,18 @@ use crate::sentence::{Sentence, sentence};
 /// Result of a computation: a value, or `None` if the scene has none, or the reason why the computation failed.
 pub(crate) type Computed<V> = Result<Option<V>, Sentence>;
 
+/// Function that computes the value of a scene; its last argument receives the value so far each time a part of it is
+/// known.
+pub(crate) type Compute<V> = fn(&Scene, Observer<'_>, &(dyn Fn(V) + Sync)) -> Computed<V>;
+
 /// Kind of value of a scene that is computed in the background.
 pub(crate) trait Fact: Debug + 'static {
     /// Name of the computation.
     const NAME: &'static str;
     type Value: Data + Debug;
-
     /// Returns the part of a scene that the value depends on: scenes with the same key have the same value.
-    fn key(scene: &Scene) -> Scene {
-        scene.clone()
-    }
-
-    /// Computes the value of a scene; `partial` receives the value so far each time a part of it is known.
-    fn compute(scene: &Scene, observe: Observer<'_>, partial: &(dyn Fn(Self::Value) + Sync)) -> Computed<Self::Value>;
+    const KEY: fn(&Scene) -> Scene = Scene::clone;
+    const COMPUTE: Compute<Self::Value>;
 }
 
 /// Progress report of a computation.
@@ -49,23 +48,8 @@ macro_rules! facts {
         impl $crate::app::task::keyed::Fact for $kind {
             const NAME: &'static str = $name;
             type Value = $value;
-
-            $(fn key(scene: &$crate::scene::Scene) -> $crate::scene::Scene {
-                $key(scene)
-            })?
-
-            fn compute(
-                scene: &$crate::scene::Scene,
-                observe: $crate::progress::Observer<'_>,
-                partial: &(dyn Fn($value) + Sync),
-            ) -> $crate::app::task::keyed::Computed<$value> {
-                let compute: fn(
-                    &$crate::scene::Scene,
-                    $crate::progress::Observer<'_>,
-                    &(dyn Fn($value) + Sync),
-                ) -> $crate::app::task::keyed::Computed<$value> = $compute;
-                compute(scene, observe, partial)
-            }
+            $(const KEY: fn(&$crate::scene::Scene) -> $crate::scene::Scene = $key;)?
+            const COMPUTE: $crate::app::task::keyed::Compute<$value> = $compute;
         }
     )*};
 }
@@ -78,7 +62,7 @@ pub(crate) fn work<F: Fact>(
 ) -> Computed<F::Value> {
     let observe = |progress: Progress<'_>| reporter.report(FactProgress::Now(progress.fraction, progress.now.cloned()));
     // A cancellation is seen by the next report of progress.
-    F::compute(&scene.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
+    (F::COMPUTE)(&scene.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
 }
 
 /// Running computation of a value.
@@ -116,7 +100,7 @@ impl<F: Fact> Default for Keyed<F> {
 impl<F: Fact> Keyed<F> {
     /// Returns the key of a scene, whose sections only read results.
     fn key(scene: &Scene) -> Scene {
-        F::key(&Scene { sections: Vec::new(), ..scene.clone() })
+        (F::KEY)(&Scene { sections: Vec::new(), ..scene.clone() })
     }
 
     /// Turns to a scene: if its key is another one, the computation for the scene before is cancelled.
@@ -206,7 +190,7 @@ impl<F: Fact> Keyed<F> {
     pub(crate) fn wait(&mut self, scene: &Scene) {
         self.turn_to(scene);
         if self.computed.is_none() {
-            self.computed = Some(F::compute(scene, &|_| ControlFlow::Continue(()), &|_| ()));
+            self.computed = Some((F::COMPUTE)(scene, &|_| ControlFlow::Continue(()), &|_| ()));
             (self.running, self.so_far) = (None, None);
         }
     }
