@@ -10,6 +10,7 @@ use crate::app::task::solve::{
     BackgroundSolve, MAX_PANE_UNKNOWNS, MAX_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
 };
 use crate::scene::{Analysis, Scene};
+use crate::sentence::sentence;
 use crate::simulation::Status;
 
 /// Time after which the meshing of a body that is solved between two frames is shown.
@@ -198,7 +199,7 @@ impl Session {
                 self.roll_back();
                 // Repeating the same solve would fail in the same way.
                 self.running = false;
-                self.notices.push(Notice::SolveDied);
+                self.notices.push(Notice { label: None, message: sentence!("The solve ended unexpectedly") });
             }
         }
         true
@@ -212,7 +213,7 @@ impl Session {
             Err(error) if *solve.scene() == self.scene => {
                 let label = self.background.before.as_ref().and_then(|before| before.label);
                 self.roll_back();
-                self.notices.push(Notice::Rejected { label, message: (&error).into() });
+                self.notices.push(Notice { label, message: (&error).into() });
             }
             Ok(_) | Err(_) => {}
         }
@@ -274,7 +275,8 @@ impl Session {
             Err(error) => {
                 self.roll_back();
                 self.running = false;
-                self.notices.push(Notice::NoThread(error));
+                let message = sentence!("Could not start the solve: %{error}", error = error.to_string());
+                self.notices.push(Notice { label: None, message });
             }
         }
     }

@@ -15,7 +15,6 @@ pub(crate) mod run;
 mod tests;
 pub(crate) mod undo;
 
-use std::io;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
@@ -77,14 +76,10 @@ pub(crate) struct Changed {
 
 /// Message for the user about background work.
 #[derive(Debug)]
-pub(crate) enum Notice {
-    /// The scene of the last background solve could not be set up; `label` names the control that was edited.
-    Rejected {
-        label: Option<&'static str>,
-        message: Sentence,
-    },
-    SolveDied,
-    NoThread(io::Error),
+pub(crate) struct Notice {
+    /// Control that was edited, if its scene could not be set up.
+    pub label: Option<&'static str>,
+    pub message: Sentence,
 }
 
 /// Grab of the body with the pointer during one frame. The fields are applied in this order.
@@ -109,9 +104,9 @@ pub(crate) struct Session {
     background: Background,
     running: bool,
     /// `true` if a displayed frame makes one iteration: slow motion of the method.
-    is_slow: bool,
+    pub is_slow: bool,
     /// Time of iterations after which a displayed frame makes no more.
-    frame_work: Duration,
+    pub frame_work: Duration,
     /// Part of this time that is left in the current frame.
     frame_left: Duration,
     /// `true` while the pointer is pressed.
@@ -124,7 +119,7 @@ pub(crate) struct Session {
     is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
     timings: Timings,
-    playback: Playback,
+    pub playback: Playback,
     /// Certification of a copy of the displayed body.
     certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Bodies drawn in place of a search that has found no equilibrium.
@@ -138,7 +133,7 @@ pub(crate) struct Session {
     /// `true` if the scene's file has changed on disk since it was read or saved.
     is_outdated: bool,
     changed: Changed,
-    notices: Vec<Notice>,
+    pub notices: Vec<Notice>,
 }
 
 /// Relative residual above which the iterate of a dragged body is not drawn.
@@ -207,10 +202,6 @@ impl Session {
         self.model.equations()
     }
 
-    pub(crate) fn playback(&self) -> &Playback {
-        &self.playback
-    }
-
     pub(crate) fn quality(&self) -> &Quality {
         &self.model.quality
     }
@@ -256,21 +247,6 @@ impl Session {
     /// Returns the residual after every iteration since the last change.
     pub(crate) fn residuals(&self) -> &[f64] {
         &self.model.residuals
-    }
-
-    /// Returns `true` if a displayed frame makes one iteration.
-    pub(crate) fn is_slow(&self) -> bool {
-        self.is_slow
-    }
-
-    /// Makes one iteration per displayed frame, or as many as the frame has time for.
-    pub(crate) fn set_slow(&mut self, is_slow: bool) {
-        self.is_slow = is_slow;
-    }
-
-    /// Sets the time of iterations after which a displayed frame makes no more.
-    pub(crate) fn set_frame_work(&mut self, time: Duration) {
-        self.frame_work = time;
     }
 
     pub(crate) fn can_undo(&self) -> bool {
@@ -328,16 +304,6 @@ impl Session {
     /// Returns the parts that have changed since the last call.
     pub(crate) fn take_changed(&mut self) -> Changed {
         std::mem::take(&mut self.changed)
-    }
-
-    /// Adds a message for the user.
-    pub(crate) fn notify(&mut self, notice: Notice) {
-        self.notices.push(notice);
-    }
-
-    /// Returns the messages added since the last call.
-    pub(crate) fn take_notices(&mut self) -> Vec<Notice> {
-        std::mem::take(&mut self.notices)
     }
 
     /// Records the presses of the pointer: edits during one press are one undo step.
@@ -564,7 +530,7 @@ impl Session {
         self.poll();
         self.frame_left = self.frame_work;
         if self.is_in_background() || !self.iterates() {
-            self.rest();
+            self.playback.clock.rest();
             return false;
         }
         if self.is_motion() {
@@ -602,11 +568,6 @@ impl Session {
             self.search();
         }
         has_news
-    }
-
-    /// Stops the clock of a motion until the next [`Self::advance`].
-    pub(crate) fn rest(&mut self) {
-        self.playback.clock.rest();
     }
 
     /// Makes one iteration or time step.
@@ -841,8 +802,9 @@ impl Session {
             && self.model.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
         {
             // Pulling fails only for a position that is not finite; the pointer's is.
-            let _ = self.model.simulation.pull_to(target);
-            self.playback.pull_to(target);
+            let pull = |body: &mut Simulation| _ = body.pull_to(target);
+            pull(&mut self.model.simulation);
+            self.playback.each(pull);
             self.is_edited_now = true;
         }
         if grab.release {
@@ -862,7 +824,7 @@ impl Session {
             }
             None => {
                 if self.model.simulation.grab(point) {
-                    self.playback.grab(point);
+                    self.playback.each(|companion| _ = companion.grab(point));
                 }
             }
         }
@@ -875,7 +837,7 @@ impl Session {
             return;
         }
         self.model.simulation.release();
-        self.playback.release();
+        self.playback.each(Simulation::release);
     }
 
     /// Displays the recorded moment of a motion that is closest to `time`, s, and pauses there.
@@ -894,21 +856,11 @@ impl Session {
         }
     }
 
-    /// Sets the speed of a motion, simulated seconds per second.
-    pub(crate) fn set_speed(&mut self, speed: f64) {
-        self.playback.clock.set_speed(speed);
-    }
-
     /// Adds the same motion under another integrator, or removes it.
     pub(crate) fn toggle_companion(&mut self, integrator: IntegratorKind) {
         if self.is_motion() && integrator != self.scene.dynamics.integrator {
             self.playback.toggle(integrator, &self.model.simulation);
         }
-    }
-
-    /// Returns the integrators that became unstable since the last call, with their longest stable step, s.
-    pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
-        self.playback.take_unstable()
     }
 }
 

@@ -1,10 +1,7 @@
 //! Playback of a motion: clock, recorded past, and the same motion under other integrators.
 
-use nalgebra::Vector2;
-
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::history::History;
-use crate::mesh::MaterialPoint;
 use crate::scene::{Analysis, IntegratorKind, Scene};
 use crate::simulation::{Motion, Simulation, Status};
 
@@ -35,9 +32,9 @@ pub(crate) struct Playback {
     /// Playing time at which the last moment was recorded, s.
     kept: f64,
     companions: Vec<Companion>,
-    /// Integrators that became unstable and were removed from the comparison since the last [`Self::take_unstable`],
-    /// with their longest stable step, s, if they have one.
-    unstable: Vec<(IntegratorKind, Option<f64>)>,
+    /// Integrators that became unstable and were removed from the comparison, until they are reported, with their longest
+    /// stable step, s, if they have one.
+    pub unstable: Vec<(IntegratorKind, Option<f64>)>,
 }
 
 impl Playback {
@@ -140,7 +137,7 @@ impl Playback {
     fn show_exactly(&mut self, time: f64, simulation: &mut Simulation) {
         // The grabbed state is another moment.
         simulation.release();
-        self.release();
+        self.each(Simulation::release);
         let Some(moment) = self.history.at(time) else { return };
         if simulation.return_to(moment).is_err() {
             return;
@@ -176,11 +173,6 @@ impl Playback {
         (self.shown, self.kept) = (None, self.played);
     }
 
-    /// Returns the integrators that became unstable since the last call, with their longest stable step, s.
-    pub(crate) fn take_unstable(&mut self) -> Vec<(IntegratorKind, Option<f64>)> {
-        std::mem::take(&mut self.unstable)
-    }
-
     /// Returns the same motion under other integrators.
     pub(crate) fn companions(&self) -> &[Companion] {
         &self.companions
@@ -193,8 +185,8 @@ impl Playback {
 
     /// Returns to the start of the scene.
     pub(crate) fn reset(&mut self, simulation: &mut Simulation) {
-        let bodies = std::iter::once(simulation).chain(self.companions.iter_mut().map(|c| &mut c.simulation));
-        bodies.for_each(Simulation::reset);
+        simulation.reset();
+        self.each(Simulation::reset);
         self.restart();
     }
 
@@ -247,24 +239,9 @@ impl Playback {
         }
     }
 
-    /// Grabs the same point of every companion.
-    pub(crate) fn grab(&mut self, point: MaterialPoint) {
-        for companion in &mut self.companions {
-            companion.simulation.grab(point);
-        }
-    }
-
-    /// Pulls every companion to the same position.
-    pub(crate) fn pull_to(&mut self, place: Vector2<f64>) {
-        for companion in &mut self.companions {
-            // Pulling fails only for a position that is not finite; the pointer's is.
-            let _ = companion.simulation.pull_to(place);
-        }
-    }
-
-    /// Releases every companion.
-    pub(crate) fn release(&mut self) {
-        self.companions.iter_mut().for_each(|c| c.simulation.release());
+    /// Grabs, pulls or releases every companion.
+    pub(crate) fn each(&mut self, change: impl Fn(&mut Simulation)) {
+        self.companions.iter_mut().for_each(|companion| change(&mut companion.simulation));
     }
 }
 

@@ -146,8 +146,8 @@ fn a_model_that_is_refused_in_the_background_is_reported() {
     (wrong.beam, wrong.mesh) = (None, Some(crate::scene::MeshFile { file, element: None, scale: None, text: None }));
     let edited = session.apply(Edit::Scene("Mesh", Box::new(wrong)));
     wait(&mut session);
-    let notices = session.take_notices();
-    let is_reported = matches!(notices.as_slice(), [Notice::Rejected { label: Some("Mesh"), .. }]);
+    let notices = std::mem::take(&mut session.notices);
+    let is_reported = matches!(notices.as_slice(), [Notice { label: Some("Mesh"), .. }]);
     assert!(edited.is_err() || is_reported, "{notices:?}");
     assert_eq!(*session.scene(), first);
 }

@@ -112,7 +112,7 @@ impl Lab {
 
     /// Sets the time of iterations after which a displayed frame makes no more.
     pub fn set_frame_work(&mut self, time: Duration) {
-        self.desk.session.set_frame_work(time);
+        self.desk.session.frame_work = time;
     }
 
     /// Displays a state; returns `false` if it does not fit the mesh.

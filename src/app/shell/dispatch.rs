@@ -128,7 +128,7 @@ impl Lab {
                 }
             }
             Action::Speed(speed) => {
-                self.desk.session.set_speed(speed);
+                self.desk.session.playback.clock.set_speed(speed);
                 self.desk.motions.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),

@@ -187,7 +187,7 @@ impl Lab {
         let mut lab = Self::new(own, meanwhile, simulation);
         let session = &mut lab.desk.session;
         if let Err(error) = session.replace(Document::new(source, scene.clone()), scene) {
-            session.notify(Notice::Rejected { label: None, message: (&error).into() });
+            session.notices.push(Notice { label: None, message: (&error).into() });
         }
         Some(lab)
     }
@@ -207,7 +207,7 @@ impl Lab {
         if self.compares_motions() {
             let Desk { session, motions, .. } = &mut self.desk;
             session.poll();
-            session.rest();
+            session.playback.clock.rest();
             motions.advance_motions(session, now);
         } else if self.desk.session.advance(now) {
             self.show_last_line();

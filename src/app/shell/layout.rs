@@ -197,7 +197,7 @@ impl Lab {
             }
             Drawer::Motion => {
                 let integrator = session.scene().dynamics.integrator;
-                motion_plot::show(ui, &mut view.motion_plot, session.playback(), integrator);
+                motion_plot::show(ui, &mut view.motion_plot, &session.playback, integrator);
             }
         });
     }
@@ -294,7 +294,7 @@ impl Lab {
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
             let taken = (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend(rect.size()));
             let now = self.simulation().state().time();
-            time_line::show(ui, rect, taken, (self.desk.session.playback(), now), actions);
+            time_line::show(ui, rect, taken, (&self.desk.session.playback, now), actions);
         }
         if let Some(lesson) = &mut self.lesson {
             let Desk { session, viewport, .. } = &self.desk;

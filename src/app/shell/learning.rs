@@ -76,7 +76,7 @@ impl Lab {
         }
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
-        session.set_slow(setup.waits);
+        session.is_slow = setup.waits;
         *panel = PanelState::default();
         view.color_with(setup.field);
         view.fixed_range = None;

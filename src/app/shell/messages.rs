@@ -64,7 +64,7 @@ impl Lab {
     /// Shows the notices of the session.
     pub(super) fn show_notices(&mut self, ctx: &egui::Context) {
         self.apply_session_changes();
-        for (integrator, step) in self.desk.session.take_unstable() {
+        for (integrator, step) in std::mem::take(&mut self.desk.session.playback.unstable) {
             let integrator = tr(integrator.id());
             let text = match step {
                 Some(step) => fill!(
@@ -76,12 +76,10 @@ impl Lab {
             };
             self.say(ctx, text);
         }
-        for notice in self.desk.session.take_notices() {
-            match notice {
-                Notice::Rejected { label: Some(label), message } => self.refuse(ctx, label, message),
-                Notice::Rejected { label: None, message } => self.say(ctx, said(&message)),
-                Notice::SolveDied => self.say(ctx, tr("The solve ended unexpectedly").to_owned()),
-                Notice::NoThread(error) => self.say(ctx, fill!("Could not start the solve: %{error}", error)),
+        for Notice { label, message } in std::mem::take(&mut self.desk.session.notices) {
+            match label {
+                Some(label) => self.refuse(ctx, label, message),
+                None => self.say(ctx, said(&message)),
             }
         }
     }

@@ -173,7 +173,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
     let value = if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() };
     let color = if cost > step { palette.error } else { palette.text };
     let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new("STEP", value, tip, color) };
-    let clock = &input.session.playback().clock;
+    let clock = &input.session.playback.clock;
     let (word, color) = match clock.lags() {
         true => (tr("slower than asked").into(), palette.error),
         false => (Cow::default(), palette.text),

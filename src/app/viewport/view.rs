@@ -259,7 +259,7 @@ impl BodyView {
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
         let simulation = content.drawn();
         // A colour range that changed with every frame would hide the motion.
-        let played = self.swept.is_some().then(|| content.session.playback().played());
+        let played = self.swept.is_some().then(|| content.session.playback.played());
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
             self.swept = None;
         }
@@ -468,7 +468,7 @@ impl BodyView {
         let (session, is_motion) = (content.session, content.session.is_motion());
         let status = session.drawn().status();
         let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
-        let is_stepped = !is_motion && (session.is_slow() || !session.is_running());
+        let is_stepped = !is_motion && (session.is_slow || !session.is_running());
         if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
             let (mut low, mut high) = content.mesh().bounds();
             let before = if drags { Some(self.camera.whole()) } else { self.swept.filter(|_| is_motion) };
@@ -623,7 +623,7 @@ impl BodyView {
             hot: self.pointer.hot_handle(),
             // The force of a paused motion would be that of the pointer's velocity alone.
             mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
-            playback: session.playback(),
+            playback: &session.playback,
             sections: &sections,
             reactions: &reactions,
             color_range: self.body.range,
