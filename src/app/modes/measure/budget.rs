@@ -10,49 +10,39 @@ use egui_plot::{
 };
 
 use crate::app::action::Action;
-use crate::app::language::{bound_percent, fill, joined, percent, said, tr};
-use crate::app::modes::measure::measured::{choices, fastest, frame_ms, meeting, nearest, parts};
+use crate::app::diagnosis::drift_text;
+use crate::app::language::{bound_percent, count, fill, joined, percent, said, tr};
+use crate::app::session::clock::FRAMES;
 use crate::app::task::thread::POLL;
 use crate::app::widgets::number_field::{Messages, NumberField};
 use crate::app::widgets::palette::Palette;
 use crate::dynamics::INTEGRATORS;
 use crate::element::ELEMENTS;
-use crate::format::{engineering, number, two_digits};
+use crate::format::{engineering, number, three_digits, two_digits};
 use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::scene::{Analysis, Scene, keys, limits};
 use crate::sentence::Sentence;
-use crate::study::{Demand, Measurement, Setting, Study, StudyReference};
+use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};
 
 /// The study of the scene, and the largest error and time that a setting may have.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Budget {
     study: Keyed<StudyFact>,
     /// Scene that is being measured.
     measured: Option<Scene>,
     /// `true` if the study is that of a scene which was open before.
     is_hidden: bool,
-    limits: Limits,
+    /// Limits of error and time; of a motion, of the time of a frame at 60 Hz.
+    demand: Demand,
     messages: Messages,
 }
 
-/// Limits for a solve.
-#[derive(Clone, Copy, Debug)]
-struct Limits {
-    error_percent: f64,
-    time_ms: f64,
-}
-
-impl Default for Limits {
+impl Default for Budget {
     fn default() -> Self {
         // About the time of one frame at 60 Hz, ms.
-        Self { error_percent: 1.0, time_ms: 16.0 }
-    }
-}
-
-impl From<Limits> for Demand {
-    fn from(limits: Limits) -> Self {
-        Self { max_error_percent: Some(limits.error_percent), max_time_ms: Some(limits.time_ms) }
+        let demand = Demand { max_error_percent: Some(1.0), max_time_ms: Some(16.0) };
+        Self { study: Keyed::default(), measured: None, is_hidden: false, demand, messages: Messages::default() }
     }
 }
 
@@ -92,7 +82,7 @@ impl Budget {
     /// Returns the fastest setting that was measured of a scene at rest, meets the limits, and whose iteration converges.
     pub(crate) fn chosen(&self, scene: &Scene) -> Option<Setting> {
         let study = self.study.so_far(scene)?;
-        let setting = fastest(study, &meeting(study, self.limits.into()))?.setting;
+        let setting = fastest(study, &meeting(study, self.demand))?.setting;
         setting.stepping.is_none().then_some(setting)
     }
 
@@ -112,30 +102,30 @@ impl Budget {
 
     /// Shows limits and plot for the lab's scene.
     pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
-        let (mut limits, mut messages) = (self.limits, std::mem::take(&mut self.messages));
-        let demand = Demand::from(limits);
-        let moves = scene.analysis == Analysis::Dynamic;
-        let study = self.study();
-        let meeting = study.map(|study| meeting(study, demand)).unwrap_or_default();
+        let Self { study: fact, measured, is_hidden, demand, messages } = self;
+        let study = fact.known().filter(|_| !*is_hidden).map(|(_, study)| study);
+        let meeting = study.map(|study| meeting(study, *demand)).unwrap_or_default();
         let budget = BudgetView {
             scene,
             study,
             choices: study.map(choices).unwrap_or_default(),
-            limits,
+            demand: *demand,
             best: study.and_then(|study| fastest(study, &meeting)),
-            nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, demand)).unwrap_or_default(),
+            nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, *demand)).unwrap_or_default(),
             meeting,
-            current: self.study.is_of(scene),
-            progress: self.study.progress().filter(|_| self.measured.is_some()),
-            error: self.study.failure(scene),
+            current: fact.is_of(scene),
+            progress: fact.progress().filter(|_| measured.is_some()),
+            error: fact.failure(scene),
         };
         ui.add_space(4.0);
-        let width = ui.available_width();
-        let kind = usize::from(moves);
+        let whole = ui.available_width();
+        let moves = scene.analysis == Analysis::Dynamic;
+        // The settings of a motion have longer names.
+        let (width, share) = if moves { (600.0_f32, 0.6) } else { (480.0, 0.58) };
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
-                ui.set_width(LIST_WIDTH[kind].min(LIST_SHARE[kind] * width));
-                settings(ui, &budget, &mut limits, &mut messages, actions);
+                ui.set_width(width.min(share * whole));
+                settings(ui, &budget, demand, messages, actions);
                 list(ui, &budget, actions);
             });
             ui.vertical(|ui| {
@@ -143,7 +133,6 @@ impl Budget {
                 plot(ui, &budget, actions);
             });
         });
-        (self.limits, self.messages) = (limits, messages);
     }
 }
 
@@ -151,15 +140,15 @@ impl Budget {
 struct BudgetView<'a> {
     scene: &'a Scene,
     study: Option<&'a Study>,
-    /// All measured settings.
-    choices: Vec<Measurement>,
-    limits: Limits,
-    /// Settings that meet the limits, fastest first.
-    meeting: Vec<Measurement>,
+    /// Settings whose error was measured.
+    choices: Vec<&'a Measurement>,
+    demand: Demand,
+    /// Settings that meet the demand, fastest first.
+    meeting: Vec<&'a Measurement>,
     /// Fastest of them whose iteration converges when it runs on.
-    best: Option<Measurement>,
+    best: Option<&'a Measurement>,
     /// Settings listed if none meets the demand: see [`nearest`].
-    nearest: Vec<Measurement>,
+    nearest: Vec<&'a Measurement>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
     /// Fraction done and current measurement, while a study is in progress.
@@ -186,18 +175,84 @@ impl BudgetView<'_> {
     }
 }
 
-/// Width of the list, points, of a body at rest and of a motion, whose settings have longer names, and its largest fraction
-/// of the width shared with the plot.
-const LIST_WIDTH: [f32; 2] = [480.0, 600.0];
-const LIST_SHARE: [f32; 2] = [0.58, 0.6];
+/// Returns every setting whose error was measured.
+fn choices(study: &Study) -> Vec<&Measurement> {
+    study.measurements.iter().filter(|m| m.error.is_some()).collect()
+}
+
+/// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
+fn frame_ms(m: &Measurement) -> f64 {
+    if m.motion.is_some() { m.milliseconds / FRAMES } else { m.milliseconds }
+}
+
+/// Returns the settings that meet a demand, fastest first. For a motion, the time is that of a frame.
+fn meeting(study: &Study, demand: Demand) -> Vec<&Measurement> {
+    let frames = if matches!(study.reference, StudyReference::Motion(_)) { FRAMES } else { 1.0 };
+    study.meeting(Demand { max_time_ms: demand.max_time_ms.map(|most| most * frames), ..demand })
+}
+
+/// Returns the settings nearest to a demand that none meets: the most accurate one within the time, and the fastest one
+/// within the error. None if the reference's own error is too large to tell.
+fn nearest(study: &Study, demand: Demand) -> Vec<&Measurement> {
+    if !study.can_decide(demand) {
+        return Vec::new();
+    }
+    let in_time = meeting(study, Demand { max_error_percent: None, ..demand }).into_iter();
+    let accurate = in_time.min_by(|a, b| a.error_percent().total_cmp(&b.error_percent()));
+    let fast = meeting(study, Demand { max_time_ms: None, ..demand }).into_iter().next();
+    accurate.filter(|m| m.error.is_some()).into_iter().chain(fast).collect()
+}
+
+/// Returns the fastest of these settings whose iteration converges when it runs on.
+fn fastest<'a>(study: &Study, choices: &[&'a Measurement]) -> Option<&'a Measurement> {
+    choices.iter().find(|m| study.converges(m)).copied()
+}
+
+/// Describes the unknowns and the parts of the error of a setting, and warns of one that stops an iteration which does not
+/// converge when it runs on.
+fn parts(study: &Study, m: &Measurement) -> String {
+    let unknowns = count(m.dofs as u64, "unknown");
+    // A part that a setting does not have is 0.
+    let text = |part: f64| if part == 0.0 { "0 %".to_owned() } else { percent(part) };
+    let of = |part: fn(&ErrorSplit) -> f64| text(m.error.as_ref().map_or(0.0, part));
+    let (mesh, iteration, theory) = (of(|e| e.discretization), of(|e| e.iteration), of(|e| e.model));
+    if let (StudyReference::Motion(reference), Some(motion)) = (&study.reference, m.motion) {
+        return fill!(
+            "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the energy put in.",
+            unknowns,
+            mesh,
+            steps = iteration,
+            theory,
+            duration = engineering(three_digits(reference.duration()), "s"),
+            drift = drift_text(0.01 * motion.drift_of_input_percent)
+        );
+    }
+    let parts = fill!(
+        "Click to apply. %{unknowns}. Error: mesh %{mesh}, stopped early %{iteration}, linear theory %{theory}.",
+        unknowns,
+        mesh,
+        iteration,
+        theory
+    );
+    if study.converges(m) {
+        return parts;
+    }
+    let warning = fill!(
+        "%{method} does not converge here in %{n} iterations: other loads need another number of them.",
+        method = tr(m.setting.method.id()),
+        n = Study::MAX_ITERATIONS
+    );
+    format!("{parts} {warning}")
+}
 
 fn settings(
     ui: &mut Ui,
     budget: &BudgetView<'_>,
-    limits: &mut Limits,
+    demand: &mut Demand,
     messages: &mut Messages,
     actions: &mut Vec<Action>,
 ) {
+    let moves = budget.scene.analysis == Analysis::Dynamic;
     ui.horizontal(|ui| {
         if let Some((fraction, now)) = budget.progress {
             if ui.button(tr("Cancel")).on_hover_text(tr("Stop measuring; what has been measured stays")).clicked() {
@@ -206,37 +261,27 @@ fn settings(
             ui.add(ProgressBar::new(fraction as f32).desired_width(120.0).show_percentage());
             ui.add(egui::Label::new(RichText::new(said(now)).small()).truncate());
         } else {
-            let tip = match budget.scene.analysis {
-                Analysis::Static => {
-                    "Measure error and time of every element, mesh, method and number of iterations, on this machine"
-                }
-                Analysis::Dynamic => {
-                    "Measure error and time of the integrators on coarse meshes, on this machine; `warpbeam study` \
-                     measures finer ones too"
-                }
+            let tip = if moves {
+                "Measure error and time of the integrators on coarse meshes, on this machine; `warpbeam study` measures \
+                 finer ones too"
+            } else {
+                "Measure error and time of every element, mesh, method and number of iterations, on this machine"
             };
             if ui.button(tr("Measure on this machine")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
-            let visuals = ui.visuals();
+            let (warning, failure) = (Some(ui.visuals().warn_fg_color), Some(ui.visuals().error_fg_color));
             let (text, color) = match (budget.error, budget.study) {
-                (Some(error), _) => (said(error), Some(visuals.error_fg_color)),
+                (Some(error), _) => (said(error), failure),
                 (None, None) => (tr("Not measured yet: about a minute.").to_owned(), None),
-                (None, Some(_)) if !budget.current => {
-                    (tr("The body or its load has changed since.").to_owned(), Some(visuals.warn_fg_color))
-                }
+                (None, Some(_)) if !budget.current => (tr("The body or its load has changed since.").to_owned(), warning),
                 (None, Some(study)) if study.is_partial => {
-                    (tr("Cancelled: not everything has been measured.").to_owned(), Some(visuals.warn_fg_color))
+                    (tr("Cancelled: not everything has been measured.").to_owned(), warning)
                 }
                 (None, Some(study)) => {
                     let against = fill!("Error against %{reference}.", reference = said(&study.reference));
-                    let extent = match study.reference {
-                        StudyReference::Rest(_) => String::new(),
-                        StudyReference::Motion(_) => {
-                            format!("{} ", tr("Coarse meshes only: `warpbeam study` measures all."))
-                        }
-                    };
-                    (format!("{extent}{against}"), None)
+                    let coarse = tr("Coarse meshes only: `warpbeam study` measures all.");
+                    (if moves { format!("{coarse} {against}") } else { against }, None)
                 }
             };
             let text = RichText::new(text).small();
@@ -251,11 +296,9 @@ fn settings(
         .logarithmic(1e-3)
         .tip("Largest error, percent of the reference displacement.");
     ui.columns_const(|[left, right]| {
-        if let Some(time_ms) = time.show(left, messages, limits.time_ms, None) {
-            limits.time_ms = time_ms;
-        }
-        if let Some(error_percent) = error.show(right, messages, limits.error_percent, None) {
-            limits.error_percent = error_percent;
+        for (ui, field, limit) in [(left, time, &mut demand.max_time_ms), (right, error, &mut demand.max_error_percent)]
+        {
+            *limit = field.show(ui, messages, limit.unwrap_or_default(), None).or(*limit);
         }
     });
     let meeting = &budget.meeting;
@@ -269,10 +312,10 @@ fn settings(
                 (Some(_), false) => "The body or its load has changed since.",
             }));
         if let (true, Some(best)) = (apply.clicked(), budget.best) {
-            actions.push(budget.apply(&best));
+            actions.push(budget.apply(best));
         }
         let measured = budget.choices.len();
-        let count = match budget.study.filter(|study| !study.can_decide(budget.limits.into())) {
+        let count = match budget.study.filter(|study| !study.can_decide(budget.demand)) {
             Some(study) => {
                 let own = percent(study.own_error_percent);
                 fill!("Not known: the reference's own error may be %{own}", own)
@@ -392,10 +435,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         let [low, high] = places.fold(usual, |[low, high], v| [low.min(v), high.max(v)]);
         [low - EDGE, high + EDGE]
     });
-    let time = match budget.scene.analysis {
-        Analysis::Static => "time of a solve, ms",
-        Analysis::Dynamic => "time of a frame at 60 Hz, ms",
-    };
+    let moves = budget.scene.analysis == Analysis::Dynamic;
+    let time = if moves { "time of a frame at 60 Hz, ms" } else { "time of a solve, ms" };
     let room = (ui.available_width() - BUDGET_Y_AXIS).max(LABEL);
     // Decades from one label to the next.
     let step =
@@ -425,7 +466,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             // Settings with the same colour and shape.
             let group = |m: &Measurement| (m.setting.series(), m.setting.element);
             let mut groups = Vec::new();
-            for group in budget.choices.iter().map(group) {
+            for group in budget.choices.iter().copied().map(group) {
                 if !groups.contains(&group) {
                     groups.push(group);
                 }
@@ -437,7 +478,8 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             let is_off = |m: &Measurement| budget.error(m) > LARGEST_ERROR;
             for (series, element) in groups {
                 for off in [false, true] {
-                    let own = budget.choices.iter().filter(|m| group(m) == (series, element) && is_off(m) == off);
+                    let own =
+                        budget.choices.iter().copied().filter(|m| group(m) == (series, element) && is_off(m) == off);
                     let (shape, _) = marker(element);
                     let name = format!("{} {}", element.id(), tr(series));
                     let points = Points::new(name, own.map(place).collect::<Vec<_>>());
@@ -450,14 +492,16 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             }
             let limit = palette.secondary;
             let style = LineStyle::dashed_dense();
-            plot.vline(VLine::new(tr("at most"), budget.limits.time_ms.log10()).color(limit).style(style));
-            plot.hline(HLine::new(tr("at most"), budget.limits.error_percent.log10()).color(limit).style(style));
+            let [most_time, most_error] = [budget.demand.max_time_ms, budget.demand.max_error_percent]
+                .map(|most| most.unwrap_or_default().log10());
+            plot.vline(VLine::new(tr("at most"), most_time).color(limit).style(style));
+            plot.hline(HLine::new(tr("at most"), most_error).color(limit).style(style));
             if let Some(own) = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)) {
                 let cross = Points::new(tr("current"), vec![place(own)]).shape(MarkerShape::Plus);
                 plot.points(cross.color(text).radius(9.0));
             }
             if let Some(best) = budget.best {
-                let ring = Points::new(tr("fastest"), vec![place(&best)]).color(text).filled(false).radius(8.0);
+                let ring = Points::new(tr("fastest"), vec![place(best)]).color(text).filled(false).radius(8.0);
                 plot.points(ring);
             }
         });
@@ -512,12 +556,12 @@ mod tests {
             assert_eq!(budget.measured.as_ref(), Some(base));
         }
         // Where no setting meets a demand, the nearest ones each meet one of its halves.
-        let least = |of: &dyn Fn(&Measurement) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+        let least = |of: &dyn Fn(&Measurement) -> f64| all.iter().copied().map(of).fold(f64::INFINITY, f64::min);
         let [time, error] = [least(&frame_ms), least(&|m| measured.error_bound(m))].map(|v| 1.01 * v);
         let demand = Demand { max_error_percent: Some(error), max_time_ms: Some(time) };
         assert!(meeting(&measured, demand).is_empty());
         let nearest = nearest(&measured, demand);
         assert_eq!(nearest.len(), 2);
-        assert!(frame_ms(&nearest[0]) <= time && measured.error_bound(&nearest[1]) <= error);
+        assert!(frame_ms(nearest[0]) <= time && measured.error_bound(nearest[1]) <= error);
     }
 }

@@ -3,7 +3,6 @@
 pub(crate) mod budget;
 pub(crate) mod limits;
 pub(crate) mod load_curve;
-pub(crate) mod measured;
 
 use egui::{Button, Ui};
 use nalgebra::Vector2;
