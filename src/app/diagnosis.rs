@@ -336,7 +336,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     };
     if is_without_reference(input) && simulation.motion().is_none() {
         let reason = error_tip(input.reference, input.reference_failure);
-        lines.push(fill!("The error is not known. %{reason}", reason = reason));
+        lines.push(fill!("The error is not known. %{reason}", reason));
     }
     if is_solved && input.session.quality().is_inside_out(simulation) {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
@@ -346,70 +346,50 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     if let Some(motion) = simulation.motion() {
         let counts = motion.counts();
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "back substitution"));
-        lines.push(fill!("%{steps} so far, with %{solves}.", steps = steps, solves = solves));
-        let is_explicit = input.scene.dynamics.integrator.entry().is_explicit();
-        lines.push(match is_explicit {
-            true => tr(EXPLICIT).into(),
-            false => {
-                tr("A time step that does not converge is halved. The drift is the energy that the integrator adds.")
-                    .into()
-            }
-        });
+        lines.push(fill!("%{steps} so far, with %{solves}.", steps, solves));
+        lines.push(
+            tr(match input.scene.dynamics.integrator.entry().is_explicit() {
+                true => EXPLICIT,
+                false => {
+                    "A time step that does not converge is halved. The drift is the energy that the integrator adds."
+                }
+            })
+            .to_owned(),
+        );
         return lines;
     }
     lines.extend(notes_on_mesh(simulation).iter().map(|note| sentence(&said(note))));
+    let (residual, asked) = (number(two_digits(simulation.residual())), number(input.scene.solver.tolerance));
     if *simulation.status() == Status::Accepted {
-        let residual = number(two_digits(simulation.residual()));
-        let (iterations, asked) = (count(simulation.iterations(), "iteration"), number(input.scene.solver.tolerance));
         let is_from_rest =
             input.session.timed_from_rest().is_some_and(|solve| solve.displacement == first_probe(simulation));
-        lines.push(if is_from_rest {
-            fill!(
-                "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
-                 tolerance is %{asked}.",
-                iterations = iterations,
-                residual = residual,
-                asked = asked
-            )
+        let text = if is_from_rest {
+            "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
+             tolerance is %{asked}."
         } else {
-            fill!(
-                "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is \
-                 %{residual}, the tolerance is %{asked}. Reset begins at rest.",
-                iterations = iterations,
-                residual = residual,
-                asked = asked
-            )
-        });
+            "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is \
+             %{residual}, the tolerance is %{asked}. Reset begins at rest."
+        };
+        lines.push(fill!(text, iterations = count(simulation.iterations(), "iteration"), residual, asked));
     }
     let part = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0);
     if let Some(part) = part.filter(|_| simulation.residual() <= input.scene.solver.tolerance) {
-        let part = percent(100.0 * part);
-        lines.push(fill!(
-            "The last iterate balances %{part} of the load; the next step of the load is not reached.",
-            part = part
-        ));
+        let text = "The last iterate balances %{part} of the load; the next step of the load is not reached.";
+        lines.push(fill!(text, part = percent(100.0 * part)));
     } else if !simulation.status().is_success() {
-        lines.push(fill!(
-            "The forces of the last iterate do not balance: the relative residual is %{residual}, the tolerance is %{asked}.",
-            residual = number(two_digits(simulation.residual())),
-            asked = number(input.scene.solver.tolerance)
-        ));
+        let text = "The forces of the last iterate do not balance: the relative residual is %{residual}, the tolerance \
+                    is %{asked}.";
+        lines.push(fill!(text, residual, asked));
     }
     let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
     if let Some(rho) = rho.filter(|_| !simulation.status().is_success() || runs_away(input)) {
-        let n = rho_number(rho);
-        lines.push(if rho > 1.0 {
-            fill!(
-                "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}: it grows.",
-                rho = n
-            )
+        let text = if rho > 1.0 {
+            "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}: it grows."
         } else {
-            fill!(
-                "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}, but the \
-                 iteration from rest does not come near it.",
-                rho = n
-            )
-        });
+            "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}, but the \
+             iteration from rest does not come near it."
+        };
+        lines.push(fill!(text, rho = rho_number(rho)));
     }
     let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
     // The status has the others.
@@ -444,13 +424,12 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         let offer = fill!("Use %{integrator}", integrator = IntegratorKind::TrBdf2.id());
         return Some(Remedy { text: tr(EXPLICIT).to_owned(), offer, action });
     }
-    let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
-    if is_free && input.session.quality().is_inside_out(simulation) {
-        let text = sentence(tr("inverted elements"));
-        return Some(Remedy { text, offer: tr("Reset").to_owned(), action: Action::Reset });
-    }
+    let restart =
+        |text: &str, offer| Some(Remedy { text: sentence(text), offer: tr(offer).to_owned(), action: Action::Reset });
     if simulation.motion().is_some() || !simulation.is_at_rest() {
-        return None;
+        let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
+        let is_inverted = is_free && input.session.quality().is_inside_out(simulation);
+        return if is_inverted { restart(tr("inverted elements"), "Reset") } else { None };
     }
     let with_newton = |text: String| {
         let action = Action::edit("Method", scene, |scene| scene.solver.method = MethodKind::Newton);
@@ -466,25 +445,23 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     // Loading from rest would lead to an unstable equilibrium if the path buckles.
     let elsewhere = input.path.and_then(|path| path.elsewhere).filter(|elsewhere| elsewhere.buckling.is_none());
     if let Some(elsewhere) = elsewhere {
-        let (text, offer) = (sentence(&said(&elsewhere)), tr("Load from rest").to_owned());
-        return Some(Remedy { text, offer, action: Action::Reset });
+        return restart(&said(&elsewhere), "Load from rest");
     }
     let own = errors.own.filter(|&error| is_large(error));
     let from_rest = errors.from_rest.filter(|&error| is_large(error) && own.is_none_or(|own| error > own));
     let off = percent(from_rest.or(own)?);
     if from_rest.is_some() || errors.source == Some(ErrorSource::MeshOrIteration) {
         let text = match from_rest {
-            Some(_) => fill!("%{error} error from rest: the iteration is stopped early.", error = off),
-            None => fill!("%{error} error: the iteration is stopped early.", error = off),
+            Some(_) => "%{error} error from rest: the iteration is stopped early.",
+            None => "%{error} error: the iteration is stopped early.",
         };
         let (offer, label, method) = match runs_away(input) {
-            true => (tr("Use newton"), "Method", MethodKind::Newton),
-            false => (tr("Iterate to the tolerance"), "Accept after", scene.solver.method),
+            true => ("Use newton", "Method", MethodKind::Newton),
+            false => ("Iterate to the tolerance", "Accept after", scene.solver.method),
         };
-        let action = Action::edit(label, scene, |scene| {
-            (scene.solver.accept_after, scene.solver.method) = (0, method);
-        });
-        return Some(Remedy { text, offer: offer.to_owned(), action });
+        let edit = |scene: &mut Scene| (scene.solver.accept_after, scene.solver.method) = (0, method);
+        let action = Action::edit(label, scene, edit);
+        return Some(Remedy { text: fill!(text, error = off), offer: tr(offer).to_owned(), action });
     }
     if errors.source == Some(ErrorSource::Theory) {
         return Some(with_newton(fill!("%{error} error of linear theory.", error = off)));
@@ -532,9 +509,6 @@ pub(crate) fn error_tip(reference: Option<&Reference>, failure: Option<&Sentence
     }
     let folds = reference.is_some_and(|reference| reference.folds).then(|| format!("\n{}", sentence(tr(FOLDS))));
     let reference = reference.map_or_else(|| tr("the reference solution (not known yet)").to_owned(), said);
-    let tip = fill!(
-        "Distance of the first probe, in x and y, from %{reference}; relative to its displacement",
-        reference = reference
-    );
-    tip + &folds.unwrap_or_default()
+    let tip = "Distance of the first probe, in x and y, from %{reference}; relative to its displacement";
+    fill!(tip, reference) + &folds.unwrap_or_default()
 }

@@ -82,7 +82,7 @@ where
 /// Translates a sentence and inserts values for its placeholders `%{name}`, each written `name = value`, or `name` for a
 /// variable of that name.
 macro_rules! fill {
-    ($english:literal, $($name:ident $(= $value:expr)?),+ $(,)?) => {
+    ($english:expr, $($name:ident $(= $value:expr)?),+ $(,)?) => {
         $crate::app::language::filled($english, &[$(stringify!($name)),+], &[$(fill!(@text $name $($value)?)),+])
     };
     (@text $name:ident) => {

@@ -70,21 +70,18 @@ impl LimitMap {
         let scene = session.scene();
         let facts = &session.facts().limits;
         let Some((base, part)) = &self.base else { return };
-        let limits = facts.so_far(base);
         let progress = facts.progress().map(|(done, _)| done as f32);
         if let Some(reason) = facts.failure(base) {
             ui.centered_and_justified(|ui| ui.weak(said(reason)));
             return;
         }
-        let Some(limits) = limits else {
+        let Some(limits) = facts.so_far(base) else {
             ui.add_space(0.3 * ui.available_height());
             ui.vertical_centered(|ui| {
-                ui.weak(match scene.analysis {
-                    Analysis::Static => {
-                        tr("Solving with every method and element, from a hundredth to ten times the load")
-                    }
-                    Analysis::Dynamic => tr("Computing the reference solution, and the motion with every integrator"),
-                });
+                ui.weak(tr(match scene.analysis {
+                    Analysis::Static => "Solving with every method and element, from a hundredth to ten times the load",
+                    Analysis::Dynamic => "Computing the reference solution, and the motion with every integrator",
+                }));
                 ui.add(ProgressBar::new(progress.unwrap_or_default()).show_percentage().desired_width(240.0));
             });
             return;
@@ -106,12 +103,8 @@ impl LimitMap {
             let (below, _) = ui.allocate_exact_size(size, Sense::hover());
             let chart = StripChart::new(ui, below, limits, &axis);
             let placed = chart.handle(ui, *part);
-            if let Some(factor) = placed {
-                let placed = with_part(base, scene, &axis, factor);
-                if placed != *scene {
-                    actions.push(Action::Edit(chart.label(), Box::new(placed)));
-                }
-            }
+            let edited = placed.map(|factor| with_part(base, scene, &axis, factor)).filter(|edited| edited != scene);
+            actions.extend(edited.map(|edited| Action::Edit(chart.label(), Box::new(edited))));
             chart.curve(ui);
             for (row, strip) in limits.strips.iter().enumerate() {
                 chart.strip(ui, row, strip, scene, actions);
@@ -384,25 +377,16 @@ impl<'a> StripChart<'a> {
         };
         let [good, usable, converges, law] = strip.words(self.axis, self.limits.range).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
-        let text = match strip.done < 1.0 {
-            true => fill!("%{name}: %{done} of the loads are solved", name, done = done.clone()),
-            false if stepping.is_some() => fill!(
-                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}",
-                name,
-                good,
-                usable,
-                finishes = converges,
-                law
-            ),
-            false => fill!(
-                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}",
-                name,
-                good,
-                usable,
-                converges,
-                law
-            ),
+        let text = match stepping {
+            _ if strip.done < 1.0 => "%{name}: %{done} of the loads are solved",
+            Some(_) => {
+                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; finishes: %{finishes}; strains above 10 %: %{law}"
+            }
+            None => {
+                "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}"
+            }
         };
+        let text = fill!(text, name, done = done.clone(), good, usable, finishes = converges, converges, law);
         let response = ui.interact(rect, ui.scope_id().with(("strip", row)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, &text));
         let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };
