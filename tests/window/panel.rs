@@ -817,7 +817,7 @@ fn integrators_are_compared_in_panes() {
     let all = times(ui.state());
     assert!(all.len() == 3 && all.iter().all(|t| (t - all[0]).abs() < 1e-9), "one clock: {all:?}");
     // The motions wait while their times are measured.
-    assert!(ui.state().motion_panes().iter().all(|pane| pane.frame_seconds().is_some_and(|time| time > 0.0)));
+    assert!(ui.state().motion_panes().iter().all(|pane| pane.seconds().is_some_and(|time| time > 0.0)));
     let drift = |kind: IntegratorKind| {
         let pane = ui.state().motion_panes().iter().find(|pane| pane.setting().integrator == Some(kind)).unwrap();
         pane.simulation().unwrap().motion().unwrap().ledger().drift()

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::session::clock::FRAMES;
 use crate::app::task::keyed::{Computed, Keyed, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
@@ -50,8 +51,11 @@ facts! {
     RhoFact by without_solver = "rho": f64, |scene, observe, _| Ok(fixed_point_rho(scene, observe));
     /// Time and result of a solve from rest.
     TimeFact = "time": SolveFromRest, |scene, observe, _| Ok(time_from_rest(scene, observe));
-    /// Computing time per simulated second of a motion, ms.
-    MotionTimeFact = "motion-time": f64, |scene, observe, _| Ok(time_of_motion(scene, observe));
+    /// Computing time of a solve from rest, or of a motion's frame at 60 Hz, s.
+    CostFact = "cost": f64, |scene, observe, _| Ok(match scene.analysis {
+        Analysis::Static => time_from_rest(scene, observe).map(|solve| solve.timings.total().as_secs_f64()),
+        Analysis::Dynamic => time_of_motion(scene, observe).map(|per_second| per_second / 1e3 / FRAMES),
+    });
     /// Lowest natural frequency, Hz.
     FrequencyFact = "frequency": f64, |scene, observe, _| Ok(natural_frequency(scene, observe));
 }

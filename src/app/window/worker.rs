@@ -3,7 +3,7 @@
 use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
 use crate::app::session::facts::{
-    CurveFact, FrequencyFact, LimitsFact, MotionTimeFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
+    CostFact, CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
 };
 use crate::app::task::keyed::{Fact, work};
 use crate::app::task::thread::serve;
@@ -21,7 +21,7 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<LimitsFact>(),
     entry::<PathFact>(),
     entry::<TimeFact>(),
-    entry::<MotionTimeFact>(),
+    entry::<CostFact>(),
     entry::<FrequencyFact>(),
     entry::<RhoFact>(),
     entry::<ElementErrors>(),

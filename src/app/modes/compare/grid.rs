@@ -10,7 +10,7 @@ use crate::app::viewport::overlay;
 use crate::app::widgets::buttons::choice;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, prefix, three_digits};
-use crate::scene::{ElementKind, Scene};
+use crate::scene::Scene;
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;
@@ -135,7 +135,7 @@ pub(super) fn pick<T: Copy + PartialEq>(
     palette: &Palette,
     (pane, what): (&str, &str),
     width: f32,
-    (value, (panels, of_panel)): (&mut Option<T>, (&str, &str)),
+    (value, panels): (&mut Option<T>, &str),
     entries: impl Iterator<Item = (T, &'static str, &'static str)> + Clone,
 ) {
     let id = value.and_then(|own| entries.clone().find(|entry| entry.0 == own)).map_or(panels, |entry| entry.1);
@@ -147,7 +147,7 @@ pub(super) fn pick<T: Copy + PartialEq>(
             }
         }
         let about = fill!("Follows the panel, now %{setting}", setting = tr(panels));
-        if choice(ui, palette, value.is_none(), of_panel, &about).clicked() {
+        if choice(ui, palette, value.is_none(), "as in the panel", &about).clicked() {
             *value = None;
         }
     };
@@ -166,19 +166,6 @@ fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut
         info.current_text_value = Some(text.to_owned());
         info
     });
-}
-
-/// Shows a picker of the elements that the scene's mesh can have.
-pub(super) fn element_picker(
-    ui: &mut Ui,
-    palette: &Palette,
-    pane: &str,
-    width: f32,
-    element: &mut Option<ElementKind>,
-    scene: &Scene,
-) {
-    let entries = scene.elements().map(|e| (e, e.id(), e.entry().about));
-    pick(ui, palette, (pane, "element"), width, (element, (scene.element().id(), "as in the panel")), entries);
 }
 
 /// Shows a picker of meshes that are finer or coarser than the panel's.

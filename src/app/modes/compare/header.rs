@@ -34,15 +34,15 @@ pub(super) fn show(ui: &mut Ui, panes: &[Pane], number: usize, input: &CompareIn
         let (shares, widest) = if in_motion { ([0.5, 0.2, 0.3], 190.0) } else { ([0.38, 0.25, 0.37], 120.0) };
         let widths = shares.map(|share: f32| (share * room).clamp(30.0, widest));
         if in_motion {
-            let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
-            let panels = (scene.dynamics.integrator.id(), "as in the panel");
+            let (entries, panels) =
+                (INTEGRATORS.iter().map(|e| (e.kind, e.id, e.about)), scene.dynamics.integrator.id());
             grid::pick(ui, &palette, (name, "integrator"), widths[0], (&mut setting.integrator, panels), entries);
         } else {
-            let entries = METHODS.iter().map(|entry| (entry.kind, entry.id, entry.about));
-            let panels = (scene.solver.method.id(), "as in the panel");
+            let (entries, panels) = (METHODS.iter().map(|e| (e.kind, e.id, e.about)), scene.solver.method.id());
             grid::pick(ui, &palette, (name, "method"), widths[0], (&mut setting.method, panels), entries);
         }
-        grid::element_picker(ui, &palette, name, widths[1], &mut setting.element, scene);
+        let (entries, panels) = (scene.elements().map(|e| (e, e.id(), e.entry().about)), scene.element().id());
+        grid::pick(ui, &palette, (name, "element"), widths[1], (&mut setting.element, panels), entries);
         grid::mesh_picker(ui, &palette, name, widths[2], &mut setting.cells, scene);
         is_closed = close && grid::close_button(ui, number);
     });
@@ -156,7 +156,7 @@ fn motion_result(ui: &mut Ui, name: &str, pane: &Pane, first: Option<&Pane>) {
 }
 
 fn numbers(pane: &Pane, first: Option<&Pane>) -> String {
-    let cost = pane.frame_seconds().map(|frame| fill!("%{time} a frame", time = engineering(two_digits(frame), "s")));
+    let cost = pane.seconds().map(|frame| fill!("%{time} a frame", time = engineering(two_digits(frame), "s")));
     let drift = pane
         .simulation()
         .and_then(Simulation::motion)

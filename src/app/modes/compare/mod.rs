@@ -70,7 +70,7 @@ struct Preset {
 type PaneChange = Option<Option<PaneSetting>>;
 
 /// Panes with equilibria or with motions of one scene.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Compare {
     /// `true` if the panes show motions.
     in_motion: bool,
@@ -97,12 +97,14 @@ pub(crate) struct Compare {
 /// Returns settings with all methods or integrators; the first three are a preset.
 fn settings(in_motion: bool) -> Vec<PaneSetting> {
     if !in_motion {
-        return METHODS.iter().map(|entry| PaneSetting::of_method(entry.kind)).collect();
+        let of_method = |kind| PaneSetting { method: Some(kind), ..PaneSetting::default() };
+        return METHODS.iter().map(|entry| of_method(entry.kind)).collect();
     }
     // An explicit integrator may explode at the time step of the others.
     let mut integrators: Vec<_> = INTEGRATORS.iter().collect();
     integrators.sort_by_key(|entry| entry.is_explicit());
-    integrators.into_iter().map(|entry| PaneSetting::of_integrator(entry.kind)).collect()
+    let of_integrator = |kind| PaneSetting { integrator: Some(kind), ..PaneSetting::default() };
+    integrators.into_iter().map(|entry| of_integrator(entry.kind)).collect()
 }
 
 impl Compare {
@@ -111,14 +113,8 @@ impl Compare {
         Self {
             in_motion,
             panes: settings(in_motion).into_iter().take(3).map(Pane::new).collect(),
-            controller: None,
             magnification: 1.0,
-            largest_displacement: 0.0,
-            clock: RealTimeClock::default(),
-            swept: None,
-            sound: 0,
-            played: 0.0,
-            is_timing: false,
+            ..Self::default()
         }
     }
 
@@ -295,21 +291,19 @@ impl Compare {
         let elements: Vec<ElementKind> = input.scene.elements().collect();
         let join = |names: Vec<&str>| names.join(" | ");
         let method = (!self.in_motion && input.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
-        let of_element = |&element: &ElementKind| PaneSetting { method, ..PaneSetting::of_element(element) };
+        let of_element = |&kind: &ElementKind| PaneSetting { method, element: Some(kind), ..PaneSetting::default() };
         let first: Vec<PaneSetting> = settings(self.in_motion).into_iter().take(3).collect();
         let mut presets = vec![
             Preset {
-                name: if self.in_motion {
-                    tr("integrators").to_owned()
-                } else {
-                    join(first.iter().filter_map(|setting| Some(tr(setting.method?.id()))).collect())
+                name: match self.in_motion {
+                    true => tr("integrators").to_owned(),
+                    false => join(first.iter().filter_map(|setting| Some(tr(setting.method?.id()))).collect()),
                 },
                 settings: first,
                 enabled: true,
-                tip: if self.in_motion {
-                    "Three integrators on the panel's mesh"
-                } else {
-                    "Three methods on the panel's mesh"
+                tip: match self.in_motion {
+                    true => "Three integrators on the panel's mesh",
+                    false => "Three methods on the panel's mesh",
                 },
                 unless: "",
             },
@@ -317,11 +311,12 @@ impl Compare {
                 name: join(elements.iter().map(|element| element.id()).collect()),
                 settings: elements.iter().map(of_element).collect(),
                 enabled: elements.len() > 1,
-                tip: if self.in_motion {
-                    "All elements that the mesh can have, with the panel's integrator"
-                } else {
-                    "All elements that the mesh can have, with the panel's method; newton in place of warped, which \
-                     may diverge"
+                tip: match self.in_motion {
+                    true => "All elements that the mesh can have, with the panel's integrator",
+                    false => {
+                        "All elements that the mesh can have, with the panel's method; newton in place of warped, which \
+                         may diverge"
+                    }
                 },
                 unless: "The mesh of this file can have one element only",
             },

@@ -11,8 +11,7 @@ use super::setting::PaneSetting;
 use crate::app::diagnosis::{Errors, equilibrium_text};
 use crate::app::language::tr;
 use crate::app::session::WILD;
-use crate::app::session::clock::FRAMES;
-use crate::app::session::facts::{MotionTimeFact, TimeFact};
+use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
 use crate::app::session::playback::Playback;
 use crate::app::session::run::{PaneEnd, Run};
@@ -37,7 +36,7 @@ use crate::simulation::Simulation;
 use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Pane {
     pub(super) setting: PaneSetting,
     pub(super) run: Run,
@@ -48,9 +47,7 @@ pub struct Pane {
     fallback: Fallback,
     /// `true` while the load is dragged, and the pane iterates as fast as it can.
     pub(super) is_dragged: bool,
-    /// Time of the solve from rest, and computing time per simulated second of a motion, ms.
-    time: Keyed<TimeFact>,
-    motion_time: Keyed<MotionTimeFact>,
+    cost: Keyed<CostFact>,
     /// Equations of the displayed body, and its mesh.
     system: Option<Arc<System>>,
     geometry: Arc<DisplayGeometry>,
@@ -77,22 +74,7 @@ pub(super) enum Condition {
 
 impl Pane {
     pub(super) fn new(setting: PaneSetting) -> Self {
-        Self {
-            setting,
-            run: Run::new(setting.iterations),
-            error: None,
-            recent: VecDeque::new(),
-            fallback: Fallback::default(),
-            is_dragged: false,
-            time: Keyed::default(),
-            motion_time: Keyed::default(),
-            system: None,
-            geometry: Arc::default(),
-            body_mesh: BodyMesh::default(),
-            range: None,
-            place: None,
-            pointer: Pointer::default(),
-        }
+        Self { setting, run: Run::new(setting.iterations), ..Self::default() }
     }
 
     /// Returns the settings of the pane.
@@ -120,16 +102,11 @@ impl Pane {
         self.error
     }
 
-    /// Returns the time of the solve from rest, s; `None` until it has been measured.
+    /// Returns the computing time of the solve from rest, or of a motion's frame at 60 Hz, s; `None` until it has been
+    /// measured.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
-        Some(self.time.get(&self.timed_scene()?)?.timings.total().as_secs_f64())
-    }
-
-    /// Returns the computing time of a motion's frame at 60 Hz, s; `None` until it has been measured.
-    #[must_use]
-    pub fn frame_seconds(&self) -> Option<f64> {
-        Some(self.motion_time.get(&self.timed_scene()?)? / 1e3 / FRAMES)
+        self.cost.get(&self.timed_scene()?).copied()
     }
 
     /// Returns the scene whose solve, which ends after the setting's number of iterations, or whose motion is timed; `None`
@@ -151,15 +128,12 @@ impl Pane {
 
     /// Requests the computing time; returns `true` while it is pending.
     pub(super) fn request_time(&mut self) -> bool {
-        self.timed_scene().is_some_and(|scene| match scene.analysis {
-            Analysis::Static => self.time.request(&scene),
-            Analysis::Dynamic => self.motion_time.request(&scene),
-        })
+        self.timed_scene().is_some_and(|scene| self.cost.request(&scene))
     }
 
     /// Measures the time of the solve from rest, and waits for it.
     pub(super) fn wait_for_time(&mut self) {
-        self.timed_scene().iter().for_each(|scene| self.time.wait(scene));
+        self.timed_scene().iter().for_each(|scene| self.cost.wait(scene));
     }
 
     /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].

@@ -59,21 +59,6 @@ pub enum PaneSettingError {
 }
 
 impl PaneSetting {
-    /// Returns settings that change the method only.
-    pub(super) fn of_method(method: MethodKind) -> Self {
-        Self { method: Some(method), ..Self::default() }
-    }
-
-    /// Returns settings that change the element only.
-    pub(super) fn of_element(element: ElementKind) -> Self {
-        Self { element: Some(element), ..Self::default() }
-    }
-
-    /// Returns settings that change the integrator only.
-    pub(super) fn of_integrator(integrator: IntegratorKind) -> Self {
-        Self { integrator: Some(integrator), ..Self::default() }
-    }
-
     /// Returns the settings with the scene's own values filled in.
     #[must_use]
     pub fn of(&self, scene: &Scene) -> Self {
@@ -154,14 +139,13 @@ impl FromStr for PaneSetting {
             let element = ELEMENTS.iter().find(|entry| entry.id == part).map(|entry| entry.kind);
             let cells = part.split_once(['x', 'X', '×']).and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
             let iterations = part.parse().ok().filter(|&n| n > 0);
-            let is_again = method.is_some() && setting.method.is_some()
-                || element.is_some() && setting.element.is_some()
-                || cells.is_some() && setting.cells.is_some()
-                || iterations.is_some() && setting.iterations.is_some();
-            if is_again {
+            let own = Self { method, element, cells, iterations, integrator: None };
+            let given =
+                |of: &Self| [of.method.is_some(), of.element.is_some(), of.cells.is_some(), of.iterations.is_some()];
+            if given(&own).iter().zip(given(&setting)).any(|(now, before)| *now && before) {
                 return Err(PaneSettingError::Twice { part: part.to_owned() });
             }
-            if method.is_none() && element.is_none() && cells.is_none() && iterations.is_none() {
+            if own == Self::default() {
                 return Err(PaneSettingError::Unknown { part: part.to_owned() });
             }
             setting = Self {
@@ -169,7 +153,7 @@ impl FromStr for PaneSetting {
                 element: element.or(setting.element),
                 cells: cells.or(setting.cells),
                 iterations: iterations.or(setting.iterations),
-                ..setting
+                integrator: None,
             };
         }
         Ok(setting)
@@ -202,8 +186,8 @@ mod tests {
             assert_eq!(text.parse(), Ok(all), "{text}");
         }
         assert_eq!(all.to_string(), "warped t6 10×2 4 iterations");
-        assert_eq!("newton".parse(), Ok(PaneSetting::of_method(MethodKind::Newton)));
-        assert_eq!("t3".parse(), Ok(PaneSetting::of_element(ElementKind::T3)));
+        assert_eq!("newton".parse(), Ok(PaneSetting { method: Some(MethodKind::Newton), ..PaneSetting::default() }));
+        assert_eq!("t3".parse(), Ok(PaneSetting { element: Some(ElementKind::T3), ..PaneSetting::default() }));
         assert_eq!("scene".parse(), Ok(PaneSetting::default()));
         assert_eq!(parse_panes("linear,warped,newton").map(|panes| panes.len()), Ok(3));
     }
