@@ -79,10 +79,10 @@ impl Session {
     /// Returns the scene of the background solve, its current phase, and the time since the edit, s.
     pub(crate) fn work(&self) -> Option<(&Scene, Phase, u64)> {
         let (solve, before) = self.background.solve.as_ref().zip(self.background.before.as_ref())?;
-        let (scene, since) = (solve.scene(), before.since.elapsed());
+        let (scene, since) = (&solve.scene, before.since.elapsed());
         // A mesh is usually made within this time.
         let is_soon_over = scene.unknowns() <= self.background.most_unknowns && since < SOON;
-        (!is_soon_over).then(|| (scene, solve.phase(), since.as_secs()))
+        (!is_soon_over).then(|| (scene, solve.phase, since.as_secs()))
     }
 
     /// Returns `true` if `scene` is set up in the background: it is large, and has a new mesh or is static. Time steps
@@ -208,9 +208,9 @@ impl Session {
     fn receive(&mut self, outcome: SolveOutcome) {
         let Some(solve) = self.background.solve.take() else { return };
         match outcome {
-            Ok(model) if *solve.scene() == self.scene => self.display(*model),
-            Ok(model) if has_mesh_of(&self.scene, solve.scene()) => self.background.returned = Some(model),
-            Err(error) if *solve.scene() == self.scene => {
+            Ok(model) if solve.scene == self.scene => self.display(*model),
+            Ok(model) if has_mesh_of(&self.scene, &solve.scene) => self.background.returned = Some(model),
+            Err(error) if solve.scene == self.scene => {
                 let label = self.background.before.as_ref().and_then(|before| before.label);
                 self.roll_back();
                 self.notices.push(Notice { label, message: (&error).into() });

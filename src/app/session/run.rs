@@ -122,7 +122,7 @@ impl Run {
     pub(crate) fn iterations(&self) -> u32 {
         match &self.place {
             RunPlace::Here(model) => model.simulation.iterations(),
-            RunPlace::Away(solve) => match solve.phase() {
+            RunPlace::Away(solve) => match solve.phase {
                 Phase::Iterating(iterations) => iterations,
                 _ => 0,
             },

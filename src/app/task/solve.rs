@@ -139,19 +139,9 @@ pub(crate) enum Phase {
 #[derive(Debug)]
 pub(crate) enum SolveProgress {
     Phase(Phase),
-    Snapshot(Box<Model>, Receipt),
-}
-
-/// Receipt of a snapshot, dropped when the snapshot has been received: until then no other one is made, so that those of
-/// a hidden window, which receives none, do not pile up.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Receipt(Arc<()>);
-
-impl Receipt {
-    /// Returns `true` if no copy is left.
-    fn is_received(&self) -> bool {
-        Arc::strong_count(&self.0) == 1
-    }
+    /// Snapshot, and a copy of its receipt, dropped when the snapshot has been received: until then no other one is made, so
+    /// that those of a hidden window, which receives none, do not pile up.
+    Snapshot(Box<Model>, Arc<()>),
 }
 
 /// Solved model, or the error of a scene that has none.
@@ -164,8 +154,9 @@ pub(crate) type SolveUpdate = Update<Box<Model>, SolveOutcome>;
 #[derive(Debug)]
 pub(crate) struct BackgroundSolve {
     task: Task<SolveProgress, SolveOutcome>,
-    scene: Scene,
-    phase: Phase,
+    /// Scene that is solved.
+    pub scene: Scene,
+    pub phase: Phase,
 }
 
 impl BackgroundSolve {
@@ -178,15 +169,6 @@ impl BackgroundSolve {
         let scene = request.scene.clone();
         let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
         Ok(Self { task: Task::start("solve", work)?, scene, phase })
-    }
-
-    /// Returns the scene that is solved.
-    pub(crate) fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    pub(crate) fn phase(&self) -> Phase {
-        self.phase
     }
 
     /// Cancels the solve; it ends with the model that it has.
@@ -299,7 +281,7 @@ fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>)
         }
     }
     let is_search = model.simulation.motion().is_none();
-    let (mut made, mut shown, receipt) = (0, None::<Instant>, Receipt::default());
+    let (mut made, mut shown, receipt) = (0, None::<Instant>, Arc::new(()));
     while is_search
         && *model.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
@@ -310,7 +292,7 @@ fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>)
         made += 1;
         if is_displayed
             && shown.is_none_or(|shown| shown.elapsed() >= SNAPSHOT)
-            && receipt.is_received()
+            && Arc::strong_count(&receipt) == 1
             && let Some(snapshot) = model.snapshot()
         {
             let _ = report(SolveProgress::Snapshot(Box::new(snapshot), receipt.clone()));
