@@ -3,11 +3,10 @@
 
 use web_time::{Duration, Instant};
 
-use crate::app::session::document::Document;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::solve::{
-    BackgroundSolve, MAX_PANE_UNKNOWNS, MAX_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
+    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
 };
 use crate::scene::{Analysis, Scene};
 use crate::sentence::sentence;
@@ -17,20 +16,15 @@ use crate::simulation::Status;
 const SOON: Duration = Duration::from_millis(500);
 
 /// Background work of a session.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Background {
-    /// Models with more unknowns than this are solved in the background.
-    most_unknowns: u64,
-    /// `true` if the requested scene has more unknowns than `most_unknowns`. Stored, because counting those of a mesh
-    /// file takes too long for every frame.
-    is_large: bool,
     solve: Option<Box<BackgroundSolve>>,
     /// Session before the first edit whose result is incomplete.
     pub before: Option<Box<Before>>,
     /// Model of a solve that an edit has superseded: the next one continues with it.
     returned: Option<Box<Model>>,
     /// `true` if the next solve starts from rest.
-    from_rest: bool,
+    pub from_rest: bool,
     /// Largest number of iterations of the next solve; `None` for no limit.
     iterations: Option<u32>,
 }
@@ -50,24 +44,10 @@ pub(super) struct Before {
     model: Option<Model>,
 }
 
-impl Default for Background {
-    fn default() -> Self {
-        Self {
-            most_unknowns: MAX_UNKNOWNS,
-            is_large: false,
-            solve: None,
-            before: None,
-            returned: None,
-            from_rest: false,
-            iterations: None,
-        }
-    }
-}
-
 impl Session {
     /// Sets the number of unknowns above which a model is meshed and solved in the background.
     pub(crate) fn set_most_unknowns(&mut self, most: u64) {
-        self.background.most_unknowns = most;
+        self.most_unknowns = most;
         self.note_size();
     }
 
@@ -81,7 +61,7 @@ impl Session {
         let (solve, before) = self.background.solve.as_ref().zip(self.background.before.as_ref())?;
         let (scene, since) = (&solve.scene, before.since.elapsed());
         // A mesh is usually made within this time.
-        let is_soon_over = scene.unknowns() <= self.background.most_unknowns && since < SOON;
+        let is_soon_over = scene.unknowns() <= self.most_unknowns && since < SOON;
         (!is_soon_over).then(|| (scene, solve.phase, since.as_secs()))
     }
 
@@ -93,13 +73,13 @@ impl Session {
 
     /// Returns `true` if the requested scene is set up in the background.
     fn is_wanted_in_background(&self) -> bool {
-        self.background.is_large && self.needs_work(&self.scene)
+        self.is_large && self.needs_work(&self.scene)
     }
 
     /// Returns `true` if a scene takes too long for the time between two frames: a new mesh takes longer than an
     /// iteration.
     fn is_large(&self, scene: &Scene) -> bool {
-        let most = self.background.most_unknowns;
+        let most = self.most_unknowns;
         let is_new = !has_mesh_of(scene, self.model.simulation.scene());
         scene.unknowns() > if is_new { most.min(MAX_PANE_UNKNOWNS) } else { most }
     }
@@ -116,7 +96,7 @@ impl Session {
 
     /// Notes whether the wanted scene is large.
     pub(super) fn note_size(&mut self) {
-        self.background.is_large = self.is_large(&self.scene);
+        self.is_large = self.is_large(&self.scene);
     }
 
     /// Requests a scene, which the next background solve uses.
@@ -126,17 +106,6 @@ impl Session {
         self.note_size();
         self.changed.scene = true;
         self.stop_solve();
-    }
-
-    /// Records that the requested scene belongs to another document.
-    pub(super) fn request_document(&mut self, document: Document) {
-        self.document = document;
-        self.check_file();
-        self.background.from_rest = true;
-        if let Some(before) = &mut self.background.before {
-            before.is_another_document = true;
-        }
-        self.poll();
     }
 
     /// Solves again in the background, from rest or from the current state, without limit or for a number of iterations.
@@ -168,28 +137,14 @@ impl Session {
         self.background.solve.iter().for_each(|solve| solve.cancel());
     }
 
-    /// Drops the background work.
-    pub(super) fn drop_background(&mut self) {
-        let Background { most_unknowns, is_large, .. } = self.background;
-        self.background = Background { most_unknowns, is_large, ..Background::default() };
-    }
-
     /// Handles the updates of the background solve, and starts the next solve if one is needed.
     pub(crate) fn poll(&mut self) {
         while self.take_update(false) {}
         self.start_solve();
     }
 
-    /// Waits until the background work is done.
-    pub(super) fn wait_for_background(&mut self) {
-        self.poll();
-        while self.take_update(true) {
-            self.poll();
-        }
-    }
-
     /// Handles an update of the background solve, or `waits` for it; returns `false` if there is none.
-    fn take_update(&mut self, waits: bool) -> bool {
+    pub(super) fn take_update(&mut self, waits: bool) -> bool {
         let Some(solve) = &mut self.background.solve else { return false };
         match solve.next(waits) {
             SolveUpdate::None => return false,
@@ -258,11 +213,14 @@ impl Session {
         let base = match returned {
             _ if is_new => Some(ModelBase::None),
             Some(model) => Some(ModelBase::Model(model)),
-            None => self.take_model(),
+            // A copy stays on display.
+            None => {
+                (self.model.snapshot()).map(|copy| ModelBase::Model(Box::new(std::mem::replace(&mut self.model, copy))))
+            }
         };
         let Some(base) = base else { return };
         // Iterations of a body that is not that large are made between two frames.
-        let is_made_here = !self.running || self.scene.unknowns() <= self.background.most_unknowns;
+        let is_made_here = !self.running || self.scene.unknowns() <= self.most_unknowns;
         let request = SolveRequest {
             scene: self.scene.clone(),
             base,
@@ -281,12 +239,6 @@ impl Session {
         }
     }
 
-    /// Takes the displayed model for a solve; a copy stays on display.
-    fn take_model(&mut self) -> Option<ModelBase> {
-        let copy = self.model.snapshot()?;
-        Some(ModelBase::Model(Box::new(std::mem::replace(&mut self.model, copy))))
-    }
-
     /// Cancels the background solve, and restores the session before the edit.
     pub(crate) fn cancel(&mut self) {
         self.roll_back();
@@ -296,9 +248,7 @@ impl Session {
 
     /// Drops the background solve, and restores the session before the edit.
     fn roll_back(&mut self) {
-        let before = self.background.before.take();
-        self.drop_background();
-        let Some(before) = before else { return };
+        let Some(before) = std::mem::take(&mut self.background).before else { return };
         let Before { version, depth, model, .. } = *before;
         self.undo.take_back(depth);
         Version { document: self.document, scene: self.scene } = version;

@@ -30,7 +30,7 @@ use crate::app::session::live::{Compared, Follower, Live, first_probe};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::quality::Quality;
-use crate::app::task::solve::{Equations, Model, note_residual, solve_linear};
+use crate::app::task::solve::{Equations, MAX_UNKNOWNS, Model, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
@@ -101,6 +101,11 @@ pub(crate) struct Session {
     undo: UndoHistory,
     /// Displayed model; a copy of it while it is solved in the background.
     model: Model,
+    /// Models with more unknowns than this are solved in the background.
+    most_unknowns: u64,
+    /// `true` if the requested scene has more unknowns. Stored, because counting those of a mesh file takes too long for
+    /// every frame.
+    is_large: bool,
     background: Background,
     running: bool,
     /// `true` if a displayed frame makes one iteration: slow motion of the method.
@@ -149,6 +154,8 @@ impl Session {
             scene,
             undo: UndoHistory::default(),
             model,
+            most_unknowns: MAX_UNKNOWNS,
+            is_large: false,
             background: Background::default(),
             running: true,
             is_slow: false,
@@ -395,7 +402,7 @@ impl Session {
         let before = self.model.simulation.scene().clone();
         self.model.simulation.change_scene(&scene)?;
         let is_another_document = self.background.before.as_ref().is_some_and(|before| before.is_another_document);
-        self.drop_background();
+        self.background = Background::default();
         if !has_mesh_of(&scene, &before) {
             self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
         }
@@ -438,7 +445,11 @@ impl Session {
         if self.is_for_background(&scene) {
             scene.validate()?;
             self.request_scene(scene);
-            self.request_document(document);
+            self.document = document;
+            self.check_file();
+            self.background.from_rest = true;
+            self.background.before.iter_mut().for_each(|before| before.is_another_document = true);
+            self.poll();
             return Ok(());
         }
         self.set_scene(scene)?;
@@ -619,7 +630,10 @@ impl Session {
 
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
     pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
-        self.wait_for_background();
+        self.poll();
+        while self.take_update(true) {
+            self.poll();
+        }
         while *self.model.simulation.status() == Status::Running {
             self.iterate();
         }
