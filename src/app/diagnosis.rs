@@ -140,7 +140,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
         // The status has it too.
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
-    let strain = quality.max_strain;
+    let strain = quality.deformation.max_strain;
     let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
     let known = errors.own.zip(input.reference.and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));

@@ -136,15 +136,16 @@ fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let quality = input.session.quality();
     let known = input.shown.status().is_success() && quality.is_of(input.shown);
-    let error = quality.mesh_error_percent.filter(|_| known);
+    let error = quality.stress.mesh_error_percent.filter(|_| known);
     let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
                the nodes";
     row("Error in energy", text, tip);
-    let text = match quality.largest_stress.filter(|_| known) {
-        Some((stress, at)) => {
-            let (stress, at) = (engineering(three_digits(stress), "Pa"), engineering_pair(at.into(), "m"));
-            match quality.singularity {
+    let text = match quality.stress.largest.filter(|_| known) {
+        Some(largest) => {
+            let (stress, at) =
+                (engineering(three_digits(largest.von_mises), "Pa"), engineering_pair(largest.at.into(), "m"));
+            match quality.stress.singularity {
                 Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress, place = at),
                 None => fill!("%{stress} at %{place}", stress, place = at),
             }
@@ -152,9 +153,9 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
         None => UNKNOWN.to_owned(),
     };
     let tip = tr("Largest von Mises stress (Cauchy), and its point at rest; no yielding is modelled").to_owned();
-    let tip = std::iter::once(tip).chain(quality.singularity.as_ref().map(said)).collect::<Vec<_>>().join("; ");
+    let tip = std::iter::once(tip).chain(quality.stress.singularity.as_ref().map(said)).collect::<Vec<_>>().join("; ");
     row("Stress", text, &tip);
-    let strain = engineering(three_digits(100.0 * quality.max_strain), "%");
+    let strain = engineering(three_digits(100.0 * quality.deformation.max_strain), "%");
     let warnings: Vec<String> = quality.warnings().filter(|_| known).map(|warning| said(&warning)).collect();
     let text = match (known, warnings.is_empty()) {
         (false, _) => UNKNOWN.to_owned(),

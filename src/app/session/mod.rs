@@ -54,8 +54,8 @@ pub(crate) enum Edit {
     Scene(&'static str, Box<Scene>),
     /// Open a scene in place of the current one.
     Open(Source),
-    /// Replace the document by this one, with a scene that may have been edited since the document was saved.
-    Restore(Box<(Document, Scene)>),
+    /// Replace the document, and the scene by one that may have been edited since the document was saved.
+    Restore(Box<Version>),
     Undo,
     Redo,
 }
@@ -339,19 +339,18 @@ impl Session {
                 // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
                 let is_kept = source.built_in().is_some() && source != before.document.source;
                 let kept = self.undo.last_of(&source).filter(|_| is_kept).cloned();
-                let Version { document, scene } = match kept {
+                let version = match kept {
                     Some(version) => version,
                     None => {
                         let document = Document::open(source)?;
                         Version { scene: document.original.clone(), document }
                     }
                 };
-                self.replace(document, scene).map_err(refused)?;
+                self.replace(version).map_err(refused)?;
                 self.record(before, None);
             }
-            Edit::Restore(copy) => {
-                let (document, scene) = *copy;
-                self.replace(document, scene).map_err(refused)?;
+            Edit::Restore(version) => {
+                self.replace(*version).map_err(refused)?;
                 self.record(before, None);
             }
             Edit::Undo => {
@@ -383,8 +382,11 @@ impl Session {
     }
 
     fn go_to(&mut self, step: Option<Version>) -> Result<(), SimulationError> {
-        let Some(Version { document, scene }) = step else { return Ok(()) };
-        if document.source == self.document.source { self.set_scene(scene) } else { self.replace(document, scene) }
+        match step {
+            Some(step) if step.document.source == self.document.source => self.set_scene(step.scene),
+            Some(step) => self.replace(step),
+            None => Ok(()),
+        }
     }
 
     /// Changes the scene of the body, which continues from its current state if possible.
@@ -441,7 +443,7 @@ impl Session {
     }
 
     /// Replaces the document.
-    pub(crate) fn replace(&mut self, document: Document, scene: Scene) -> Result<(), SimulationError> {
+    pub(crate) fn replace(&mut self, Version { document, scene }: Version) -> Result<(), SimulationError> {
         if self.is_for_background(&scene) {
             scene.validate()?;
             self.request_scene(scene);

@@ -348,9 +348,9 @@ fn restored_edits_know_what_their_file_contained() {
             fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
         }
         let (mut recovery, left) = recovery::RecoveryCopies::open(&copies).unwrap();
-        let recovery::Unsaved { document, scene } = left.unwrap();
+        let left = left.unwrap();
         let mut next = session(cantilever(-1.0));
-        next.apply(Edit::Restore(Box::new((document, scene)))).unwrap();
+        next.apply(Edit::Restore(Box::new(left))).unwrap();
         assert!(next.scene() == crashed.scene() && next.is_edited());
         assert_eq!((next.is_outdated(), next.document().has_changed()), (is_changed, is_changed));
         recovery.discard_left(None).unwrap();
@@ -413,7 +413,7 @@ fn a_large_document_that_becomes_small_starts_over() {
     session.solve(ShownFacts::default());
     let large = large(6);
     let document = Document::new(source("large"), large.clone());
-    session.apply(Edit::Restore(Box::new((document, large)))).unwrap();
+    session.apply(Edit::Restore(Box::new(Version { document, scene: large }))).unwrap();
     assert!(session.is_working() && !session.take_changed().document);
     let small = Edit::Scene("Cells along", Box::new(cantilever(-1000.0)));
     assert!(session.apply(small).unwrap().document && !session.is_working());
@@ -443,7 +443,7 @@ fn a_large_result_is_certified_in_the_background() {
     let mut own = Simulation::new(&scene).unwrap();
     own.solve();
     assert_eq!(certificate(&session), Some(own.certify()));
-    assert!(session.quality().mesh_error_percent.is_some());
+    assert!(session.quality().stress.mesh_error_percent.is_some());
     // An edit in the meantime keeps its own result.
     session.apply(with_force(&session, -1100.0)).unwrap();
     while session.iterates() {

@@ -270,7 +270,7 @@ impl Lab {
         let plots = view.drawer == Some(Drawer::Section) && self.desk.sections.is_pending();
         let measures = match view.measured(scene) {
             Some(MeasureTab::LoadCurve) => facts.curve.is_pending(scene),
-            Some(MeasureTab::HowFar) => measure.limits.base().is_none_or(|base| facts.limits.is_pending(base)),
+            Some(MeasureTab::HowFar) => measure.limits_of.as_ref().is_none_or(|base| facts.limits.is_pending(base)),
             Some(MeasureTab::HowFast) | None => false,
         };
         let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));

@@ -3,7 +3,7 @@
 use crate::app::modes::compare::Compare;
 use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
-use crate::app::modes::measure::Measure;
+use crate::app::modes::measure::{Measure, limits};
 use crate::app::panel::PanelState;
 use crate::app::readout::Readout;
 use crate::app::session::document::{Document, built_in};
@@ -61,13 +61,13 @@ impl Desk {
     /// Turns the limits to the scene while they are shown, and returns the results that only some views show; `learns_rho` is
     /// `true` if a card of Learn shows ρ.
     pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
-        let Self { session, view, measure: Measure { limits, .. }, .. } = self;
+        let Self { session, view, measure: Measure { limits_of, .. }, .. } = self;
         let tab = view.measured(session.scene());
         let shows_limits = tab == Some(MeasureTab::HowFar);
         if shows_limits {
-            limits.turn_to(session.scene());
+            limits::turn_to(limits_of, session.scene());
         }
-        let limits_of = limits.base().filter(|_| shows_limits);
+        let limits_of = limits_of.as_ref().filter(|_| shows_limits);
         session.turn_limits_to(limits_of);
         (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
     }
@@ -186,7 +186,7 @@ impl Lab {
         simulation.solve();
         let mut lab = Self::new(own, meanwhile, simulation);
         let session = &mut lab.desk.session;
-        if let Err(error) = session.replace(Document::new(source, scene.clone()), scene) {
+        if let Err(error) = session.replace(Unsaved { document: Document::new(source, scene.clone()), scene }) {
             session.notices.push(Notice { label: None, message: (&error).into() });
         }
         Some(lab)

@@ -73,7 +73,10 @@ impl Lab {
             UnsavedDeparture::Close => self.requests.push(Request::Close),
             UnsavedDeparture::Open(source) => self.open(ctx, source),
             UnsavedDeparture::New(scene) => {
-                _ = self.apply(ctx, Edit::Restore(Box::new((Document::unnamed(&scene), *scene))));
+                _ = self.apply(
+                    ctx,
+                    Edit::Restore(Box::new(Unsaved { document: Document::unnamed(&scene), scene: *scene })),
+                );
             }
             UnsavedDeparture::AskForFile if IS_PAGE => files::choose(),
             UnsavedDeparture::AskForFile => {
@@ -134,8 +137,8 @@ impl Lab {
         if !(restore || discard) {
             return;
         }
-        let Some(Unsaved { document, scene }) = self.left.clone() else { return };
-        if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new((document, scene)))) {
+        let Some(left) = self.left.clone() else { return };
+        if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new(left))) {
             return;
         }
         self.left = None;

@@ -11,16 +11,10 @@ use crate::stress::{inversion_warning, strain_warning};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
-    /// Estimated discretization error in the energy norm, percent.
-    pub mesh_error_percent: Option<f64>,
-    /// Largest principal strain that is recovered at a node.
-    pub max_strain: f64,
-    /// Largest von Mises stress (Cauchy) that is recovered at a node, Pa, and the node's position at rest, m.
-    pub largest_stress: Option<(f64, Vector2<f64>)>,
-    /// Reason why this stress depends on the mesh.
-    pub singularity: Option<Sentence>,
-    /// Number of elements that are turned inside out, and number of all elements.
-    inside_out: [usize; 2],
+    pub stress: StressResult,
+    pub deformation: Deformation,
+    /// Number of elements.
+    elements: usize,
 }
 
 impl Quality {
@@ -39,13 +33,9 @@ impl Quality {
         }
         let nodal = simulation.nodal_stress();
         let error = simulation.mesh_error(&nodal);
-        let stress = StressResult::of(simulation.problem(), &nodal, &error);
-        self.mesh_error_percent = stress.mesh_error_percent;
-        self.largest_stress = stress.largest.map(|largest| (largest.von_mises, largest.at));
-        self.singularity = stress.singularity.as_ref().map(Sentence::from);
-        let deformation = Deformation::of(simulation.problem(), simulation.state(), &nodal);
-        self.max_strain = deformation.max_strain;
-        self.inside_out = [deformation.inverted_elements, simulation.mesh().element_count()];
+        self.stress = StressResult::of(simulation.problem(), &nodal, &error);
+        self.deformation = Deformation::of(simulation.problem(), simulation.state(), &nodal);
+        self.elements = simulation.mesh().element_count();
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));
     }
 
@@ -59,14 +49,14 @@ impl Quality {
     /// evaluated it is computed here.
     pub(crate) fn is_inside_out(&self, simulation: &Simulation) -> bool {
         if self.is_of(simulation) {
-            return self.inside_out[0] > 0;
+            return self.deformation.inverted_elements > 0;
         }
         simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0
     }
 
     /// Returns the warnings for inverted elements and for large strains.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = Sentence> {
-        let [inverted, all] = self.inside_out;
-        inversion_warning(inverted, all).into_iter().chain(strain_warning(self.max_strain))
+        let Deformation { inverted_elements, max_strain, .. } = self.deformation;
+        inversion_warning(inverted_elements, self.elements).into_iter().chain(strain_warning(max_strain))
     }
 }

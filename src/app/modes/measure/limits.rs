@@ -42,99 +42,81 @@ const ROW: [f32; 2] = [13.0, 19.0];
 /// Largest height of a strip of a motion, which has no curve.
 const HIGH_ROW: f32 = 40.0;
 
-/// The scene whose limits are shown.
-#[derive(Debug, Default)]
-pub(crate) struct LimitMap {
-    /// Scene whose limits are shown, and the part of its loads, or of its time step, that the lab's scene has: the loads of
-    /// both have the same proportions.
-    base: Option<(Scene, f64)>,
+/// Turns from the scene `base` whose limits are shown to the lab's scene. Another load in the range of the limits does not
+/// change them, nor do method and element.
+pub(crate) fn turn_to(base: &mut Option<Scene>, scene: &Scene) {
+    base.take_if(|base| part_of(base, scene).is_none());
+    base.get_or_insert_with(|| scene.clone());
 }
 
-impl LimitMap {
-    /// Turns to the lab's scene. Another load in the range of the limits does not change them, nor do method and element.
-    pub(crate) fn turn_to(&mut self, scene: &Scene) {
-        let part = self.base().and_then(|base| part_of(base, scene));
-        match (&mut self.base, part) {
-            (Some((_, own)), Some(part)) => *own = part,
-            (base, _) => *base = Some((scene.clone(), 1.0)),
-        }
+/// Shows the limits of the lab's scene: those of `base`, whose loads have the same proportions. `shown` is the drawn body.
+pub(crate) fn show(ui: &mut Ui, session: &Session, (base, shown): (&Scene, &Simulation), actions: &mut Vec<Action>) {
+    let (scene, facts) = (session.scene(), &session.facts().limits);
+    let Some(part) = part_of(base, scene) else { return };
+    let progress = facts.progress().map(|(done, _)| done as f32);
+    if let Some(reason) = facts.failure(base) {
+        ui.centered_and_justified(|ui| ui.weak(said(reason)));
+        return;
     }
-
-    /// Returns the scene whose limits are shown.
-    pub(crate) fn base(&self) -> Option<&Scene> {
-        self.base.as_ref().map(|(base, _)| base)
-    }
-
-    /// Shows the limits of the lab's scene.
-    pub(crate) fn show(&self, ui: &mut Ui, session: &Session, shown: &Simulation, actions: &mut Vec<Action>) {
-        let scene = session.scene();
-        let facts = &session.facts().limits;
-        let Some((base, part)) = &self.base else { return };
-        let progress = facts.progress().map(|(done, _)| done as f32);
-        if let Some(reason) = facts.failure(base) {
-            ui.centered_and_justified(|ui| ui.weak(said(reason)));
-            return;
-        }
-        let Some(limits) = facts.so_far(base) else {
-            ui.add_space(0.3 * ui.available_height());
-            ui.vertical_centered(|ui| {
-                ui.weak(tr(match scene.analysis {
-                    Analysis::Static => "Solving with every method and element, from a hundredth to ten times the load",
-                    Analysis::Dynamic => "Computing the reference solution, and the motion with every integrator",
-                }));
-                ui.add(ProgressBar::new(progress.unwrap_or_default()).show_percentage().desired_width(240.0));
-            });
-            return;
-        };
-        // Its room stays after the limits are complete, so that nothing moves.
-        let line = Rect::from_min_size(ui.next_widget_position(), vec2(ui.available_width(), PROGRESS));
-        ui.add_space(PROGRESS);
-        if let Some(done) = progress {
-            ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
-        }
-        let mut axis = LoadAxis::of(base);
-        if let Some(Beam { cells: [n, m], .. }) = &base.beam {
-            axis.name = sentence!("%{load} on %{n} × %{m} cells", load = axis.name, n = *n, m = *m);
-        }
-        // A low window scrolls.
-        let least = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let size = vec2(ui.available_width(), ui.available_height().max(least));
-            let (below, _) = ui.allocate_exact_size(size, Sense::hover());
-            let chart = StripChart::new(ui, below, limits, &axis);
-            let placed = chart.handle(ui, *part);
-            let edited = placed.map(|factor| with_part(base, scene, &axis, factor)).filter(|edited| edited != scene);
-            actions.extend(edited.map(|edited| Action::Edit(chart.label(), Box::new(edited))));
-            chart.curve(ui);
-            for (row, strip) in limits.strips.iter().enumerate() {
-                chart.strip(ui, row, strip, scene, actions);
-            }
-            let factor = placed.unwrap_or(*part);
-            if limits.contains(factor) {
-                // While a load is not reached, the body is that of another one.
-                let is_here = part_of(base, shown.scene()).is_none_or(|own| own == *part);
-                let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
-                chart.load_line(ui, factor, length);
-            }
+    let Some(limits) = facts.so_far(base) else {
+        ui.add_space(0.3 * ui.available_height());
+        ui.vertical_centered(|ui| {
+            ui.weak(tr(match scene.analysis {
+                Analysis::Static => "Solving with every method and element, from a hundredth to ten times the load",
+                Analysis::Dynamic => "Computing the reference solution, and the motion with every integrator",
+            }));
+            ui.add(ProgressBar::new(progress.unwrap_or_default()).show_percentage().desired_width(240.0));
         });
+        return;
+    };
+    // Its room stays after the limits are complete, so that nothing moves.
+    let line = Rect::from_min_size(ui.next_widget_position(), vec2(ui.available_width(), PROGRESS));
+    ui.add_space(PROGRESS);
+    if let Some(done) = progress {
+        ui.put(line, ProgressBar::new(done).desired_height(PROGRESS).corner_radius(0));
     }
+    let mut axis = LoadAxis::of(base);
+    if let Some(Beam { cells: [n, m], .. }) = &base.beam {
+        axis.name = sentence!("%{load} on %{n} × %{m} cells", load = axis.name, n = *n, m = *m);
+    }
+    // A low window scrolls.
+    let least = 3.0 * LINE + ROW[0] * limits.strips.len() as f32;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let size = vec2(ui.available_width(), ui.available_height().max(least));
+        let (below, _) = ui.allocate_exact_size(size, Sense::hover());
+        let chart = StripChart::new(ui, below, limits, &axis);
+        let placed = chart.handle(ui, part);
+        let edited = placed.map(|factor| with_part(base, scene, &axis, factor)).filter(|edited| edited != scene);
+        actions.extend(edited.map(|edited| Action::Edit(chart.label(), Box::new(edited))));
+        chart.curve(ui);
+        for (row, strip) in limits.strips.iter().enumerate() {
+            chart.strip(ui, row, strip, scene, actions);
+        }
+        let factor = placed.unwrap_or(part);
+        if limits.contains(factor) {
+            // While a load is not reached, the body is that of another one.
+            let is_here = part_of(base, shown.scene()).is_none_or(|own| own == part);
+            let length = first_probe(shown).filter(|_| is_here).map(|u| u.norm());
+            chart.load_line(ui, factor, length);
+        }
+    });
+}
 
-    /// Shows the key of the colours once limits are known; a line breaks between entries.
-    pub(crate) fn key(&self, ui: &mut Ui, session: &Session) {
-        const BOX: Vec2 = vec2(10.0, 10.0);
-        if self.base().is_none_or(|base| session.facts().limits.so_far(base).is_none()) {
-            return;
-        }
-        ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
-        for (rating, name) in Rating::all(session.is_motion()) {
-            legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
-        }
-        let ink = Palette::new(ui.visuals()).text;
-        legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
-            ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
-            hatch(ui, rect, ink);
-        });
+/// Shows the key of the colours once limits are known; a line breaks between entries.
+pub(crate) fn key(ui: &mut Ui, session: &Session, base: &Scene) {
+    const BOX: Vec2 = vec2(10.0, 10.0);
+    if session.facts().limits.so_far(base).is_none() {
+        return;
     }
+    ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
+    for (rating, name) in Rating::all(session.is_motion()) {
+        legend::entry(ui, &said(&name), BOX, &|ui, rect| _ = ui.painter().rect_filled(rect, 0.0, color(rating)));
+    }
+    let ink = Palette::new(ui.visuals()).text;
+    legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
+        ui.painter().rect_stroke(rect, 0.0, Stroke::new(1.0, ink), egui::StrokeKind::Inside);
+        hatch(ui, rect, ink);
+    });
 }
 
 /// Returns the part of the base's loads, or of its time step, that a scene has; `None` if the limits of the base are not

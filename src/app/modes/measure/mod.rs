@@ -10,7 +10,6 @@ use nalgebra::Vector2;
 use crate::app::action::Action;
 use crate::app::language::tr;
 use crate::app::modes::measure::budget::Budget;
-use crate::app::modes::measure::limits::LimitMap;
 use crate::app::session::{Session, live};
 use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
 use crate::scene::Scene;
@@ -19,7 +18,8 @@ use crate::simulation::Simulation;
 /// State of Measure.
 #[derive(Debug, Default)]
 pub(crate) struct Measure {
-    pub limits: LimitMap,
+    /// Scene whose limits are shown.
+    pub limits_of: Option<Scene>,
     pub budget: Budget,
 }
 
@@ -27,7 +27,7 @@ impl Measure {
     /// Turns to another scene.
     pub(crate) fn open(&mut self, scene: &Scene) {
         self.budget.open(scene);
-        self.limits = LimitMap::default();
+        self.limits_of = None;
     }
 
     /// Shows a tab; `shown` is the drawn body.
@@ -50,12 +50,16 @@ impl Measure {
                     actions.push(Action::Toggle(Toggle::Tab(*other)));
                 }
             }
-            if tab == MeasureTab::HowFar {
-                self.limits.key(ui, session);
+            if let (MeasureTab::HowFar, Some(base)) = (tab, &self.limits_of) {
+                limits::key(ui, session, base);
             }
         });
         match tab {
-            MeasureTab::HowFar => self.limits.show(ui, session, shown, actions),
+            MeasureTab::HowFar => {
+                if let Some(base) = &self.limits_of {
+                    limits::show(ui, session, (base, shown), actions);
+                }
+            }
             MeasureTab::HowFast => self.budget.show(ui, scene, actions),
             MeasureTab::LoadCurve => load_curve::show(ui, session, first_probe(shown), view.curve_plot, actions),
         }

@@ -29,24 +29,13 @@ impl MovieFormat {
     /// # Errors
     /// [`RecordError::UnknownFormat`], and [`RecordError::NoFolder`] if the file's folder does not exist.
     pub fn of(path: &Path) -> Result<Self, RecordError> {
-        let unknown = || RecordError::UnknownFormat(path.to_owned());
-        if path.is_dir() {
-            return Ok(Self::Folder);
-        }
-        if path.file_name().is_none() {
-            return Err(unknown());
-        }
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        let format = match extension.as_deref().map(|e| e.to_str()) {
-            Some(Some("gif")) => Self::Gif,
-            None => return Ok(Self::Folder),
-            _ => return Err(unknown()),
-        };
-        match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-                Err(RecordError::NoFolder(folder.to_owned()))
-            }
-            _ => Ok(format),
+        let is_folder = path.is_dir() || path.file_name().is_some() && path.extension().is_none();
+        let is_gif = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
+        match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+            _ if is_folder => Ok(Self::Folder),
+            _ if !is_gif => Err(RecordError::UnknownFormat(path.to_owned())),
+            Some(folder) => Err(RecordError::NoFolder(folder.to_owned())),
+            None => Ok(Self::Gif),
         }
     }
 
