@@ -1,20 +1,18 @@
 //! Diagnosis of a result: its error and the source of the error, its status in words, and edits that would improve it.
 
 use crate::app::action::Action;
-use crate::app::language::{count, fill, percent, said, sentence, tr};
+use crate::app::language::sentence;
+use crate::app::prelude::*;
 use crate::app::readout::Readout;
 use crate::app::session::live::first_probe;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
-use nalgebra::Vector2;
 
 use crate::exact_beam::error_percent;
 use crate::format::{self, engineering, number, three_digits, two_digits};
-use crate::scene::{ElementKind, IntegratorKind, Load, MethodKind, Scene, Support, limits};
-use crate::sentence::Sentence;
-use crate::simulation::{Simulation, Status};
+use crate::scene::{Support, limits};
 use crate::stress::strain_warning;
-use crate::study::{Advice, Claim, FOLDS, MovedPoint, ProbeReference, Reference, moved_points};
+use crate::study::{Advice, Claim, FOLDS, MovedPoint, ProbeReference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \

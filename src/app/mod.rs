@@ -13,6 +13,7 @@ mod modes;
 mod offscreen;
 mod panel;
 mod platform;
+mod prelude;
 mod readout;
 mod session;
 mod shell;

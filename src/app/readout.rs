@@ -1,13 +1,11 @@
 //! State of the model and of its results, as shown by bars, panel and cards.
 
 use crate::app::language::Language;
+use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::live::Live;
 use crate::app::widgets::load_scale::OpeningLoads;
-use crate::scene::Scene;
-use crate::sentence::Sentence;
-use crate::simulation::Simulation;
-use crate::study::{PathSummary, Reference};
+use crate::study::PathSummary;
 
 /// State of the model and of its results that the toolbar, the panel and the status bar show.
 #[derive(Clone, Copy)]

@@ -28,7 +28,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("plot", &["plot"]),
     ("render", &["render"]),
     ("platform", &["app/platform"]),
-    ("language", &["app/language"]),
+    ("language", &["app/language", "app/prelude"]),
     ("task", &["app/task"]),
     ("session", &["app/session"]),
     ("widgets", &["app/widgets"]),

@@ -1,17 +1,15 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
 use crate::app::action::{Action, FigureFile};
-use std::path::{Path, PathBuf};
+use crate::app::prelude::*;
 
 use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotBounds, PlotPoints, Points};
 
-use crate::app::language::tr;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{segments, still};
-use crate::sentence::Sentence;
 use crate::study::figure::{Figure, FigurePoint, FigureSeries, Ink, Mark};
 
 /// Saves a figure in the current folder under the first free name, and returns its path.

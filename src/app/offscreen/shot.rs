@@ -1,19 +1,14 @@
 //! Images of a lab without a window.
 
-use std::path::Path;
-
 use egui_wgpu::ScreenDescriptor;
-use web_time::{Duration, Instant};
 
 use crate::app::AppError;
 use crate::app::offscreen::options::ShotOptions;
 use crate::app::offscreen::painter::PaintStage;
+use crate::app::prelude::*;
 use crate::app::shell::lab::Lab;
 use crate::image::Picture;
-use crate::progress::Observer;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
-use crate::scene::{Scene, Source};
-use crate::simulation::{Simulation, Status};
 use crate::study::{Extent, Study, StudyError};
 
 /// Result of [`shot`].

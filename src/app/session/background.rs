@@ -1,16 +1,12 @@
 //! Background solve of large models, one at a time. The last snapshot stays on display; edits change the requested
 //! scene, which the next solve uses.
 
-use web_time::{Duration, Instant};
-
+use crate::app::prelude::*;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::solve::{
     BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
 };
-use crate::scene::{Analysis, Scene};
-use crate::sentence::sentence;
-use crate::simulation::Status;
 
 /// Time after which the meshing of a body that is solved between two frames is shown.
 const SOON: Duration = Duration::from_millis(500);

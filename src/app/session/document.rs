@@ -1,11 +1,8 @@
 //! Origin of the scene: a built-in scene, or a file that can be read, written, and changed by other programs.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
 use crate::app::platform::{IS_PAGE, files};
-use crate::scene::{self, MeshFile, Scene, SceneError, Source, built_in_mesh};
-use crate::sentence::{Sentence, sentence};
+use crate::app::prelude::*;
+use crate::scene::{self, MeshFile, SceneError, built_in_mesh};
 
 /// Name of a scene's file or built-in scene, and the scene as it is stored there.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,20 +4,18 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::prelude::*;
 use crate::app::session::clock::FRAMES;
 use crate::app::task::keyed::{Computed, Keyed, facts};
 use crate::app::task::sent_scene::SentScene;
 use crate::assembly::Mass;
 use crate::dynamics::lowest_frequency;
 use crate::format::number;
-use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, DynamicsSettings, MethodKind, Scene, SolverSettings};
-use crate::sentence::sentence;
-use crate::simulation::Simulation;
+use crate::scene::{DynamicsSettings, SolverSettings};
 use crate::study::limits::MethodLimits;
 use crate::study::{
-    Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Reference, SolveFromRest, Study, StudyError,
-    time_from_rest, time_of_motion,
+    Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError, time_from_rest,
+    time_of_motion,
 };
 
 /// Load–displacement curve of a scene.

@@ -1,10 +1,8 @@
 //! Bodies drawn in place of a search that has found no equilibrium.
 
-use std::sync::Arc;
-
+use crate::app::prelude::*;
 use crate::app::session::WILD;
-use crate::scene::{Load, Scene};
-use crate::simulation::{Equilibrium, Simulation, Status};
+use crate::simulation::Equilibrium;
 
 /// Last equilibrium, and the body at rest.
 #[derive(Debug, Default)]

@@ -1,14 +1,11 @@
 //! Reference solution that follows a dragged load in a thread of its own. One load is solved at a time, and the newest is
 //! next.
 
-use nalgebra::Vector2;
-
 use crate::app::platform::IS_PAGE;
+use crate::app::prelude::*;
 use crate::app::session::facts::without_settings;
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::scene::Scene;
-use crate::simulation::Simulation;
-use crate::study::{LiveReference, Reference};
+use crate::study::LiveReference;
 
 /// Displacements of the first probe, m: of the body, and by linear theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

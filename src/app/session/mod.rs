@@ -15,13 +15,10 @@ pub(crate) mod run;
 mod tests;
 pub(crate) mod undo;
 
-use std::path::Path;
-use std::sync::{Arc, LazyLock};
-
-use nalgebra::Vector2;
-use web_time::{Duration, Instant};
+use std::sync::LazyLock;
 
 use crate::app::platform::IS_PAGE;
+use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
 use crate::app::session::facts::{Facts, ShownFacts};
@@ -34,11 +31,9 @@ use crate::app::task::solve::{Equations, MAX_UNKNOWNS, Model, note_residual, sol
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene, Source};
-use crate::sentence::Sentence;
-use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
+use crate::simulation::{Equilibrium, SimulationError};
 use crate::state::State;
-use crate::study::{Reference, SolveFromRest, StudyError, is_unstable};
+use crate::study::{SolveFromRest, StudyError, is_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.

@@ -5,16 +5,13 @@
 //! copy that is not locked belongs to a window that has crashed. A page has an item for each visit.
 
 use std::io;
-use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use web_time::{Duration, Instant};
 
-use crate::app::language::fill;
 use crate::app::platform::settings::{self, CopyPlace};
+use crate::app::prelude::*;
 use crate::app::session::document::Document;
 pub use crate::app::session::undo::Version as Unsaved;
-use crate::scene::{Scene, Source};
 
 /// Largest number of windows that are open or have crashed.
 const PLACES: usize = 100;

@@ -1,16 +1,12 @@
 //! Run of a scene, to be compared with others: a solve or a motion. Small models are made and iterate between two
 //! frames, large ones in the background. The cost of a solve is measured from rest.
 
-use nalgebra::Vector2;
-use web_time::Instant;
-
+use crate::app::prelude::*;
 use crate::app::session::has_mesh_of;
 use crate::app::session::live::first_probe;
 use crate::app::task::quality::Quality;
 use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveRequest};
-use crate::scene::{Analysis, Scene};
-use crate::sentence::{Sentence, sentence};
-use crate::simulation::{ProbeResult, Simulation, Status, probe_results};
+use crate::simulation::{ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.
 #[derive(Debug, Default)]

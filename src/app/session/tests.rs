@@ -1,12 +1,10 @@
 //! Tests of the session without user interface: edits, undo history, background solves, files, motions and grabs.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-
-use nalgebra::Vector2;
 
 use super::*;
-use crate::scene::{LoadId, MethodKind};
+use crate::app::prelude::*;
+use crate::scene::LoadId;
 
 fn cantilever(force: f64) -> Scene {
     Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")

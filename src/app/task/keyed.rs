@@ -5,11 +5,9 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::prelude::*;
 use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Data, Reporter, Task, Update};
-use crate::progress::{Observer, Progress};
-use crate::scene::Scene;
-use crate::sentence::{Sentence, sentence};
 
 /// Result of a computation: a value, or `None` if the scene has none, or the reason why the computation failed.
 pub(crate) type Computed<V> = Result<Option<V>, Sentence>;

@@ -1,10 +1,8 @@
 //! Quality of an equilibrium other than its convergence, computed once per state.
 
-use nalgebra::Vector2;
-
+use crate::app::prelude::*;
 use crate::scene::Material;
-use crate::sentence::Sentence;
-use crate::simulation::{Deformation, Simulation, StressResult};
+use crate::simulation::{Deformation, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
 
 /// Quality of the last state that was evaluated.

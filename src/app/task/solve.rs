@@ -1,18 +1,15 @@
 //! Model of a scene, and its solve in the background: request, progress and result.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
-
-use web_time::{Duration, Instant};
 
 use crate::app::platform::IS_PAGE;
+use crate::app::prelude::*;
 use crate::app::task::quality::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, Beam, Invalid, MeshFile, MethodKind, Scene, SolverSettings};
-use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Equilibrium, Simulation, SimulationError, Status};
+use crate::scene::{Beam, Invalid, MeshFile, SolverSettings};
+use crate::simulation::{Equilibrium, SimulationError};
 
 /// Largest number of unknowns of a model that is meshed and solved between two frames.
 pub(crate) const MAX_UNKNOWNS: u64 = 16_000;

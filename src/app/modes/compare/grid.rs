@@ -2,15 +2,13 @@
 
 use egui::emath::GuiRounding;
 use egui::{Align, Align2, ComboBox, FontId, Layout, Rect, RichText, Role, Ui, Vec2, WidgetInfo, pos2, vec2};
-use nalgebra::Vector2;
 
-use crate::app::language::{fill, tr};
+use crate::app::prelude::*;
 use crate::app::view_options::ViewOptions;
 use crate::app::viewport::overlay;
 use crate::app::widgets::buttons::choice;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{engineering, prefix, three_digits};
-use crate::scene::Scene;
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;

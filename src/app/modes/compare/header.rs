@@ -6,7 +6,8 @@ use super::pane::{Condition, Pane};
 use super::setting::PANES;
 use super::{CompareInput, PaneChange, grid};
 use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip};
-use crate::app::language::{area_text, count, fill, joined, percent, said, sentence, tr};
+use crate::app::language::{area_text, sentence};
+use crate::app::prelude::*;
 use crate::app::view_options::ViewOptions;
 use crate::app::widgets::legend::LegendMark;
 use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
@@ -14,9 +15,7 @@ use crate::app::widgets::text::semibold;
 use crate::dynamics::INTEGRATORS;
 use crate::format::{engineering, engineering_pair, three_digits, two_digits};
 use crate::method::METHODS;
-use crate::scene::{Analysis, Scene};
-use crate::simulation::{Motion, Simulation, Status};
-use crate::study::Reference;
+use crate::simulation::Motion;
 
 /// Shows the pickers of a pane behind a mark of its colour, the button that closes it, and its result.
 pub(super) fn show(ui: &mut Ui, panes: &[Pane], number: usize, input: &CompareInput<'_>) -> PaneChange {

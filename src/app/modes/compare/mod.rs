@@ -2,12 +2,10 @@
 //! range.
 
 use egui::{Button, Context, Panel, Rect, Ui, UiBuilder, vec2};
-use nalgebra::Vector2;
-use web_time::{Duration, Instant};
 
 use self::grid::{Grid, grow};
 use self::setting::PANES;
-use crate::app::language::{fill, tr};
+use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::live::Live;
@@ -23,9 +21,8 @@ use crate::app::widgets::buttons::option_button;
 use crate::dynamics::INTEGRATORS;
 use crate::method::METHODS;
 use crate::render::{Camera, Margins, View};
-use crate::scene::{ElementKind, MethodKind, Scene};
 use crate::state::largest;
-use crate::study::{Reference, Setting};
+use crate::study::Setting;
 
 mod grid;
 mod header;

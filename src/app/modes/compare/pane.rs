@@ -1,15 +1,13 @@
 //! Pane of a comparison: a run of the scene with settings of its own, and its display.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui};
-use nalgebra::Vector2;
 
 use super::CompareInput;
 use super::setting::PaneSetting;
 use crate::app::diagnosis::{Errors, equilibrium_text};
-use crate::app::language::tr;
+use crate::app::prelude::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
@@ -31,9 +29,6 @@ use crate::assembly::System;
 use crate::exact_beam::error_percent;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::render::{Camera, View};
-use crate::scene::{Analysis, Scene};
-use crate::simulation::Simulation;
-use crate::study::Reference;
 
 /// Scene with settings of its own, compared with others.
 #[derive(Debug, Default)]

@@ -3,16 +3,15 @@
 use egui::Ui;
 
 use crate::app::action::Action;
-use crate::app::language::{said, tr};
 use crate::app::modes::figure;
 use crate::app::platform::IS_PAGE;
+use crate::app::prelude::*;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;
 use crate::app::widgets::buttons::options;
 use crate::format::Context;
-use crate::scene::Scene;
 use crate::section::{Section, SectionError};
-use crate::simulation::{Equilibrium, Simulation};
+use crate::simulation::Equilibrium;
 use crate::state::State;
 use crate::study::figure::Figure;
 use crate::study::section_chart::{self, COMPONENTS, STRESSES};

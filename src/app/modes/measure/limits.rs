@@ -5,20 +5,17 @@ use egui::{
     Align2, Color32, EventFilter, FontId, ProgressBar, Rect, Role, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo,
     pos2, vec2,
 };
-use nalgebra::Vector2;
 
 use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
 use crate::app::modes::measure::first_probe;
+use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::facts::with_default_methods;
 use crate::app::widgets::legend;
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::format::{number, prefix, six_digits, three_digits};
 use crate::plot::{ScaledAxis, rating_color};
-use crate::scene::{Analysis, Beam, Load, Scene};
-use crate::sentence::sentence;
-use crate::simulation::Simulation;
+use crate::scene::{Analysis, Beam, Load};
 use crate::study::Setting;
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};

@@ -2,21 +2,17 @@
 //! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
 use egui::{Align2, Ui};
-use nalgebra::Vector2;
 
 use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
 use crate::app::modes::figure;
 use crate::app::modes::measure::first_probe;
+use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::facts::Curve;
 use crate::app::view_options::CurvePlot;
 use crate::app::widgets::buttons::options;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair_among, three_digits};
-use crate::scene::{MethodKind, Scene};
-use crate::sentence::sentence;
-use crate::simulation::Status;
 use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};

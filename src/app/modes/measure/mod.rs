@@ -5,15 +5,12 @@ pub(crate) mod limits;
 pub(crate) mod load_curve;
 
 use egui::{Button, Ui};
-use nalgebra::Vector2;
 
 use crate::app::action::Action;
-use crate::app::language::tr;
 use crate::app::modes::measure::budget::Budget;
+use crate::app::prelude::*;
 use crate::app::session::{Session, live};
 use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
-use crate::scene::Scene;
-use crate::simulation::Simulation;
 
 /// State of Measure.
 #[derive(Debug, Default)]

@@ -1,27 +1,24 @@
 //! Recordings of a lab without a window.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 
-use nalgebra::Vector2;
 use thiserror::Error;
 
 use self::film::Film;
 pub use self::film::MovieFormat;
 use crate::app::AppError;
-use crate::app::language::{self, fill};
+use crate::app::language;
 use crate::app::offscreen::options::RecordOptions;
 use crate::app::offscreen::shot::Canvas;
+use crate::app::prelude::*;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::story;
 use crate::image::Picture;
-use crate::progress::{Observer, Progress};
 use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
-use crate::scene::{Analysis, Scene, Source, registry};
-use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Field, PointValues, Simulation, SimulationError, Status};
+use crate::scene::registry;
+use crate::simulation::{PointValues, SimulationError};
 use crate::state::State;
 
 mod colors;
