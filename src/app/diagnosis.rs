@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::language::sentence;
 use crate::app::prelude::*;
 use crate::app::readout::Readout;
-use crate::app::session::live::first_probe;
+use crate::app::session::facts::first_probe;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 

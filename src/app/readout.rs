@@ -3,7 +3,7 @@
 use crate::app::language::Language;
 use crate::app::prelude::*;
 use crate::app::session::Session;
-use crate::app::session::live::Live;
+use crate::app::session::facts::Live;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::study::PathSummary;
 

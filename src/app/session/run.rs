@@ -2,10 +2,11 @@
 //! frames, large ones in the background. The cost of a solve is measured from rest.
 
 use crate::app::prelude::*;
+use crate::app::session::facts::first_probe;
 use crate::app::session::has_mesh_of;
-use crate::app::session::live::first_probe;
-use crate::app::task::quality::Quality;
-use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveRequest};
+use crate::app::task::solve::{
+    BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, Quality, SolveRequest,
+};
 use crate::simulation::{ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.

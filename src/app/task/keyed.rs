@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 use crate::app::prelude::*;
-use crate::app::task::sent_scene::SentScene;
 use crate::app::task::thread::{Data, Reporter, Task, Update};
+use crate::mesh::Mesh;
+use crate::scene::SceneError;
 
 /// Result of a computation: a value, or `None` if the scene has none, or the reason why the computation failed.
 pub(crate) type Computed<V> = Result<Option<V>, Sentence>;
@@ -52,6 +53,39 @@ macro_rules! facts {
     )*};
 }
 pub(crate) use facts;
+
+/// Scene that can be sent as data.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "SceneParts", try_from = "SceneParts")]
+pub(crate) struct SentScene(pub Scene);
+
+/// Text of a scene, and of its mesh file.
+#[derive(Serialize, Deserialize)]
+struct SceneParts {
+    toml: String,
+    mesh: Option<String>,
+}
+
+impl From<SentScene> for SceneParts {
+    fn from(SentScene(scene): SentScene) -> Self {
+        let mesh = scene.mesh.as_ref().and_then(|mesh| mesh.text.as_deref()).map(str::to_owned);
+        // A scene that cannot be written gives an empty text, which the receiver refuses.
+        Self { toml: scene.to_toml().unwrap_or_default(), mesh }
+    }
+}
+
+impl TryFrom<SceneParts> for SentScene {
+    type Error = SceneError;
+
+    fn try_from(SceneParts { toml, mesh: text }: SceneParts) -> Result<Self, SceneError> {
+        let mut scene = Scene::from_toml(&toml)?;
+        if let (Some(mesh), Some(text)) = (&mut scene.mesh, text) {
+            mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));
+            mesh.text = Some(text.into());
+        }
+        Ok(Self(scene))
+    }
+}
 
 /// Computes the value of a scene in a thread, or in a worker of a web page.
 pub(crate) fn work<F: Fact>(
@@ -247,6 +281,7 @@ mod tests {
 
     use super::*;
     use crate::model::SolverSettings;
+    use crate::scene::{open, registry};
 
     fn without_solver(scene: &Scene) -> Scene {
         Scene { solver: SolverSettings::default(), ..scene.clone() }
@@ -327,6 +362,16 @@ mod tests {
             }
             assert_eq!(length.failure(&scene).map(ToString::to_string).as_deref(), Some(reason));
             assert_eq!((length.get(&scene), length.is_pending(&scene)), (None, false));
+        }
+    }
+
+    /// Every built-in scene, with its mesh, arrives as it was sent.
+    #[test]
+    fn a_sent_scene_arrives_unchanged() {
+        for built_in in registry::BUILT_IN {
+            let scene = open(&Source { name: built_in.id.into(), assignments: Vec::new() }).unwrap();
+            let parts = SceneParts::from(SentScene(scene.clone()));
+            assert_eq!(SentScene::try_from(parts).unwrap().0, scene, "{}", built_in.id);
         }
     }
 }

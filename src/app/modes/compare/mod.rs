@@ -3,12 +3,12 @@
 
 use egui::{Button, Context, Panel, Rect, Ui, UiBuilder, vec2};
 
-use self::grid::{Grid, grow};
+use self::header::{Grid, grow};
 use self::setting::PANES;
 use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::clock::RealTimeClock;
-use crate::app::session::live::Live;
+use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::{POLL, QUIET_POLL};
@@ -24,7 +24,6 @@ use crate::render::{Camera, Margins, View};
 use crate::state::largest;
 use crate::study::Setting;
 
-mod grid;
 mod header;
 mod pane;
 mod setting;
@@ -347,7 +346,7 @@ impl Compare {
         }
         // Motions that have exploded do not count.
         let counted = self.panes.iter().filter(|pane| !self.in_motion || pane.run.is_sound());
-        let range = input.view.fixed_range.unwrap_or(grid::common_range(counted.filter_map(|pane| pane.range)));
+        let range = input.view.fixed_range.unwrap_or(header::common_range(counted.filter_map(|pane| pane.range)));
         let whole = ui.available_rect_before_wrap();
         let probes = if self.in_motion { 0 } else { header::shown_probes(input.scene, input.view) };
         let grid = Grid::new(whole, self.panes.len(), probes);
@@ -444,7 +443,7 @@ impl Compare {
 
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
-        let Some(size) = grid::common_size(self.panes.iter().filter_map(|pane| pane.place)) else { return };
+        let Some(size) = header::common_size(self.panes.iter().filter_map(|pane| pane.place)) else { return };
         let rest: [Vector2<f64>; 2] = input.session.simulation().mesh().bounds().into();
         let (whole, margins) = match self.in_motion {
             true => (self.sweep(rest), Margins { sides: 40.0, top: 40.0, bottom: 44.0 }),

@@ -9,7 +9,7 @@ use egui::{Button, Ui};
 use crate::app::action::Action;
 use crate::app::modes::measure::budget::Budget;
 use crate::app::prelude::*;
-use crate::app::session::{Session, live};
+use crate::app::session::{Session, facts};
 use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
 
 /// State of Measure.
@@ -64,6 +64,6 @@ impl Measure {
 }
 
 /// Returns the displacement of the first probe, m, at an equilibrium.
-pub(super) fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
-    live::first_probe(shown).filter(|_| shown.status().is_success())
+fn first_probe(shown: &Simulation) -> Option<Vector2<f64>> {
+    facts::first_probe(shown).filter(|_| shown.status().is_success())
 }
