@@ -45,7 +45,9 @@ impl DisplacementMap {
         by_x.sort_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
         let mut found = vec![(-OUTSIDE, None); points.len()];
         for triangle in &self.triangles {
-            let [Some((a, u)), Some((b, v)), Some((c, w))] = triangle.map(|corner| self.corner(corner)) else { continue };
+            let [Some((a, u)), Some((b, v)), Some((c, w))] = triangle.map(|corner| self.corner(corner)) else {
+                continue;
+            };
             // Barycentric coordinates; a triangle without area has none.
             let Some(inverse) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { continue };
             // Points at the largest distance are as far away as the triangle is large.
@@ -58,7 +60,8 @@ impl DisplacementMap {
                 let weights = [1.0 - part.x - part.y, part.x, part.y];
                 let depth = weights.into_iter().fold(f64::INFINITY, f64::min);
                 if depth.total_cmp(&found[point].0).is_ge() {
-                    found[point] = (depth, Some([u, v, w].into_iter().zip(weights).map(|(u, weight)| u * weight).sum()));
+                    found[point] =
+                        (depth, Some([u, v, w].into_iter().zip(weights).map(|(u, weight)| u * weight).sum()));
                 }
             }
         }
