@@ -34,6 +34,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("widgets", &["app/widgets"]),
     ("view options", &["app/view_options", "app/action"]),
     ("readout", &["app/readout", "app/diagnosis"]),
+    ("prelude", &["app/prelude"]),
     ("viewport", &["app/viewport"]),
     ("panel", &["app/panel"]),
     ("modes", &["app/modes"]),

@@ -1,15 +1,11 @@
 //! Panel section of the material and the mesh.
 
-use crate::app::session::has_mesh_of;
-use egui::Ui;
-
-use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::Panel;
-use crate::app::readout::Readout;
-use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::number_field::{NumberField, NumberRow, show_message};
-use crate::format::{engineering, number, three_digits};
-use crate::scene::{Beam, Material, Plane, Scene, keys};
+use crate::app::prelude::*;
+use crate::app::session::has_mesh_of;
+use crate::app::widgets::number_field::{NumberRow, show_message};
+use crate::format::number;
+use crate::scene::{Beam, Material, Plane};
 
 /// Named material.
 struct MaterialPreset {

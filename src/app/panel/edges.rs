@@ -2,22 +2,18 @@
 
 use std::cell::RefCell;
 
-use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Ui, WidgetInfo, vec2};
-use nalgebra::Vector2;
+use egui::DragValue;
 
-use crate::app::language::{count, fill, joined, tr};
 use crate::app::panel::Panel;
+use crate::app::prelude::*;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{
     acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,
 };
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::buttons::option_button;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::app::widgets::number_field::{Messages, read, show_message};
 use crate::assembly::{Edge, System};
-use crate::format::{editable, engineering, engineering_pair, three_digits};
-use crate::scene::{Axis, Load, Place, Scene, Support, limits};
 use crate::study::moved_points;
 
 /// Name of the section, with which its messages are kept.

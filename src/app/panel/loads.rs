@@ -1,15 +1,11 @@
 //! Panel section of force, gravity and moment.
 
-use egui::Ui;
-
-use crate::app::language::{fill, joined, tr};
 use crate::app::panel::{Panel, PanelState, combo, edges};
+use crate::app::prelude::*;
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::number_field::NumberField;
-use crate::format::engineering;
+use crate::scene::LoadId;
 use crate::scene::limits::Limit;
-use crate::scene::{Load, LoadId, Place, Scene, keys};
 use crate::sentence::sentence;
 
 /// Gravitational acceleration on earth, m/s².

@@ -1,21 +1,15 @@
 //! Panel: reads parameters and emits actions, and never accesses the simulation for writing. Four controls are always
 //! visible; the others are in sections whose headers summarize their content.
 
-use crate::app::readout::Readout;
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::scroll_area::ScrollBarVisibility;
-use egui::{Align2, ComboBox, FontId, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use crate::app::action::Action;
 use crate::app::diagnosis::Errors;
-use crate::app::language::{spaced, tr};
-use crate::app::view_options::{Mode, ViewOptions};
+use crate::app::prelude::*;
 use crate::app::viewport::arrow::DOWN;
 use crate::app::widgets::buttons::choice;
-use crate::app::widgets::number_field::{Messages, NumberField, NumberRow, show_message};
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::widgets::number_field::{Messages, NumberRow, show_message};
 use crate::method::METHODS;
-use crate::scene::{Analysis, Scene, keys};
 
 mod body;
 pub(crate) mod edges;

@@ -1,16 +1,11 @@
 //! Panel section of a motion: integrator, time step, solves per step, damping, speed, and the other integrators for
 //! comparison.
 
-use egui::Ui;
-
-use crate::app::language::{fill, joined, tr};
-use crate::app::panel::{Action, Panel};
+use crate::app::panel::Panel;
+use crate::app::prelude::*;
 use crate::app::session::clock::{fraction, speed_of_period};
-use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::number_field::{NumberField, NumberRow};
+use crate::app::widgets::number_field::NumberRow;
 use crate::dynamics::INTEGRATORS;
-use crate::format::{engineering, three_digits};
-use crate::scene::{Scene, keys, limits};
 
 /// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];

@@ -1,17 +1,12 @@
 //! Panel section of the result: status, iterations, errors, certificate, times.
 
-use egui::{RichText, Ui};
-
 use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, load_text, rho, stability, state_text};
-use crate::app::language::{count, fill, joined, percent, said, sentence, signed_percent, tr};
+use crate::app::language::signed_percent;
 use crate::app::panel::supports;
-use crate::app::readout::Readout;
+use crate::app::prelude::*;
 use crate::app::session::clock::fraction;
-use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
-use crate::format::{engineering, engineering_pair, three_digits};
-use crate::scene::MethodKind;
-use crate::simulation::{Motion, Simulation};
+use crate::simulation::Motion;
 use crate::study::{Claim, Reference};
 
 /// Width of the names of the rows, points.

@@ -1,15 +1,11 @@
 //! Panel section of the cuts whose section forces are shown.
 
-use egui::{ComboBox, Ui};
-
 use crate::app::diagnosis::state_text;
-use crate::app::language::{fill, said, tr};
+use crate::app::panel::Panel;
 use crate::app::panel::supports::TURNS;
-use crate::app::panel::{Action, Panel};
-use crate::app::view_options::{Drawer, Toggle};
+use crate::app::prelude::*;
 use crate::app::viewport::menu::with_middle_section;
-use crate::app::widgets::number_field::NumberField;
-use crate::scene::{Analysis, SectionLine, limits};
+use crate::scene::SectionLine;
 use crate::study::section_chart;
 
 /// Shows the chosen section: its forces, its place and direction, and buttons that show its stress and remove it.

@@ -1,14 +1,9 @@
 //! Panel section of moving supports: prescribed displacements and rotations, and reactions.
 
-use egui::Ui;
-
-use crate::app::language::{fill, joined, tr};
 use crate::app::panel::{Panel, combo};
-use crate::app::widgets::number_field::NumberField;
-use crate::format::{Context, editable, engineering, engineering_pair, three_digits};
+use crate::app::prelude::*;
+use crate::format::Context;
 use crate::scene::limits::Limit;
-use crate::scene::{Analysis, Axis, Place, Support, limits};
-use crate::simulation::Simulation;
 
 /// Returns the support that the sliders move, with its index; `None` for a motion, or if no support of this scene has
 /// been moved.

@@ -1,15 +1,9 @@
 //! Panel section of the display options.
 
-use egui::{Id, TextEdit, Ui};
-
-use crate::app::language::{joined, tr};
-use crate::app::panel::{Action, Panel, combo};
-use crate::app::view_options::{Magnification, ViewOptions};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::text::with_keys;
-use crate::scene::{Analysis, Scene, limits};
+use crate::app::panel::{Panel, combo};
+use crate::app::prelude::*;
+use crate::app::view_options::Magnification;
 use crate::sentence::sentence;
-use crate::simulation::Field;
 
 pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     let shown = panel.view.field;

@@ -2,26 +2,24 @@
 
 use std::path::Path;
 
-use egui::Rect;
-use nalgebra::Vector2;
 use web_time::Duration;
 
 use crate::app::ThemeChoice;
-use crate::app::language::{self, Language, tr};
+use crate::app::language::{self, Language};
 use crate::app::modes::compare::{Pane, PaneSetting};
-use crate::app::modes::learn::{self};
+use crate::app::modes::learn;
+use crate::app::prelude::*;
+use crate::app::shell::lab::{Desk, Lab};
 use crate::app::shell::settings::Settings;
-use crate::app::view_options::{Drawer, Magnification, MeasureTab, Mode, ViewOptions};
+use crate::app::view_options::Magnification;
 use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, View};
-use crate::scene::{IntegratorKind, Scene, Source};
-use crate::simulation::{Field, Simulation, SimulationError};
+use crate::scene::IntegratorKind;
+use crate::simulation::SimulationError;
 use crate::state::State;
 use crate::study::Study;
-
-use crate::app::shell::lab::{Desk, Lab};
 
 impl Lab {
     /// Shows or hides the panel and the bars; without them the view fills the window or image.

@@ -1,18 +1,17 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
-use crate::app::action::Action;
-use crate::app::language::{fill, said};
 use crate::app::modes::compare::Compare;
 use crate::app::modes::figure;
 use crate::app::modes::learn;
 use crate::app::panel::PanelState;
+use crate::app::prelude::*;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
-use crate::app::view_options::{Magnification, MeasureTab, Mode, Toggle};
+use crate::app::view_options::Magnification;
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
-use crate::scene::{Load, LoadId, Source};
+use crate::scene::LoadId;
 
 impl Lab {
     /// Updates the window after changes of the session.

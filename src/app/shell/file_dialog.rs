@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Key, Modal, RichText, ScrollArea, TextEdit};
-
-use crate::app::language::{fill, tr};
+use crate::app::prelude::*;
 
 /// Largest number of recent files that are offered.
 const RECENT: usize = 4;

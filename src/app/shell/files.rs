@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use crate::app::action::Action;
-use crate::app::language::{fill, said, tr};
 use crate::app::platform::{IS_PAGE, files, page};
+use crate::app::prelude::*;
 use crate::app::session::Edit;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question};
-use crate::scene::{Source, registry};
 use crate::sentence::Sentence;
 
 impl Lab {

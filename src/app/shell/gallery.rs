@@ -3,19 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use egui::style::ScrollAnimation;
 use egui::text::TextWrapping;
-use egui::{
-    Align, ColorImage, ComboBox, Context, Image, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
-    TextureHandle, TextureOptions, Ui, WidgetInfo, style::ScrollAnimation, vec2,
-};
+use egui::{ColorImage, Image, TextureHandle, TextureOptions};
 
-use crate::app::action::Action;
-use crate::app::language::tr;
-use crate::app::readout::Readout;
+use crate::app::prelude::*;
 use crate::app::widgets::buttons::described;
-use crate::app::widgets::palette::Palette;
-use crate::app::widgets::text::with_keys;
-use crate::scene::{Analysis, Axis, ElementKind, Scene, registry};
 
 /// Size of a picture, and height of its entry, points.
 const PICTURE: egui::Vec2 = vec2(112.0, 68.0);

@@ -1,10 +1,7 @@
 //! Help overlay with the list of keys and mouse actions.
 
-use egui::{Align2, Context, Key, Modifiers, RichText};
-
-use crate::app::language::tr;
+use crate::app::prelude::*;
 use crate::app::shell::shortcuts::shortcuts;
-use crate::app::widgets::text::with_keys;
 
 /// Keys that belong to a mode or to the control with the focus, and their descriptions.
 pub const FOCUS_KEYS: &[(&str, &str)] = &[

@@ -5,7 +5,7 @@ use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::measure::{Measure, limits};
 use crate::app::panel::PanelState;
-use crate::app::readout::Readout;
+use crate::app::prelude::*;
 use crate::app::session::document::{Document, built_in};
 use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;
@@ -13,11 +13,8 @@ use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
 use crate::app::shell::settings::Settings;
-use crate::app::view_options::{Drawer, MeasureTab, Mode, ViewOptions};
 use crate::app::viewport::view::{BodyView, CardContent, Content};
 use crate::app::widgets::load_scale::OpeningLoads;
-use crate::scene::{Scene, Source, registry};
-use crate::simulation::{Simulation, Status};
 
 /// Request of the lab to the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,25 +1,22 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
+use egui::{CentralPanel, Panel};
 use web_time::Duration;
 
-use egui::{Button, CentralPanel, Color32, Panel, Rect, Role, Ui, WidgetInfo, vec2};
-
-use crate::app::action::Action;
 use crate::app::diagnosis::{self, Errors};
-use crate::app::language::{self, spaced, tr};
+use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::explore::motion_plot;
 use crate::app::modes::learn;
 use crate::app::panel::{self, PANEL_WIDTH};
-use crate::app::readout::Readout;
+use crate::app::prelude::*;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{help, shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
-use crate::app::view_options::{Drawer, Mode, Toggle};
 use crate::app::viewport::menu;
 use crate::app::viewport::{overlay, time_line};
-use crate::app::widgets::palette::{self, Palette};
+use crate::app::widgets::palette;
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
 const NARROW: f32 = 960.0;

@@ -3,11 +3,10 @@
 
 use crate::app::modes::learn::Learn;
 use crate::app::panel::PanelState;
+use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
-use crate::app::view_options::{Mode, ViewOptions};
-use crate::simulation::Simulation;
 
 impl Lab {
     /// Enters or leaves Learn after a change of the mode.

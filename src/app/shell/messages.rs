@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use egui::{Align2, Painter, Panel, Rect, Sense, Ui};
+use egui::Panel;
 
-use crate::app::action::Action;
-use crate::app::language::{fill, said, sentence, tr};
+use crate::app::prelude::*;
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
-use crate::format::engineering;
 use crate::sentence::Sentence;
 
 /// Time for which a message is shown.

@@ -7,10 +7,9 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use crate::app::ThemeChoice;
-use crate::app::language::{Language, fill};
+use crate::app::language::Language;
 use crate::app::platform;
-use crate::app::view_options::Drawer;
-use crate::simulation::Field;
+use crate::app::prelude::*;
 
 /// Largest number of recent files.
 const MAX_RECENT: usize = 10;

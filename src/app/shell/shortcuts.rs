@@ -1,9 +1,6 @@
 //! Keyboard shortcuts.
 
-use egui::{Context, Event, Key, Modifiers};
-
-use crate::app::action::Action;
-use crate::app::view_options::{Drawer, MeasureTab, Mode, Toggle};
+use crate::app::prelude::*;
 
 /// Key with its modifiers, description and action.
 pub(crate) struct Shortcut {

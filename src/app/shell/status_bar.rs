@@ -1,26 +1,21 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use egui::Galley;
+
 use crate::app::diagnosis::{
     DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_text, error_tip, is_large, is_without_reference,
     load_text, rho, rho_number,
 };
-use crate::app::widgets::text::{UNKNOWN, semibold};
-use std::borrow::Cow;
-use std::sync::Arc;
-
-use egui::{Align, Color32, FontId, Galley, Layout, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-
-use crate::app::action::Action;
-use crate::app::language::{fill, filled, tr};
-use crate::app::readout::Readout;
+use crate::app::language::filled;
+use crate::app::prelude::*;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
-use crate::app::view_options::{Drawer, Mode, Toggle, ViewOptions};
 use crate::app::widgets::buttons::{Icon, icon_button};
-use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
-use crate::format::{engineering, grouped, two_digits};
-use crate::scene::MethodKind;
-use crate::scene::Scene;
+use crate::app::widgets::text::{UNKNOWN, semibold};
+use crate::format::{grouped, two_digits};
 
 /// Name of the error, and the least width of the slot of its remark, points: what follows stays in place when the remark
 /// changes.

@@ -1,18 +1,14 @@
 //! Story of the first start: in five parts the default scene shows linear theory, the limit of the warped iteration,
 //! Newton's method and another element. It ends as it began: with that scene, or with the card of Learn that was open.
 
-use egui::{Align2, Event, FontId, Painter, Rect, Role, Sense, Stroke, TouchPhase, Ui, WidgetInfo, vec2};
-use nalgebra::Vector2;
+use egui::TouchPhase;
 
-use crate::app::language::tr;
 use crate::app::panel::PanelState;
 use crate::app::platform::page;
+use crate::app::prelude::*;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
-use crate::app::view_options::ViewOptions;
-use crate::app::widgets::palette::{HEADLINE, Palette};
 use crate::render::{Camera, Margins};
-use crate::scene::{ElementKind, MethodKind, registry};
 
 /// Part of the story.
 struct Part {

@@ -1,14 +1,10 @@
 //! Toolbar along the top: scene, run, modes, theme, help.
 
-use crate::app::widgets::buttons::{Icon, at_right, icon_button};
-use crate::app::widgets::text::with_keys;
-use egui::{Button, Ui};
-
-use crate::app::action::Action;
-use crate::app::language::{Language, tr};
-use crate::app::readout::Readout;
+use crate::app::language::Language;
+use crate::app::prelude::*;
 use crate::app::shell::gallery::Gallery;
-use crate::app::view_options::{MODES, Toggle, ViewOptions};
+use crate::app::view_options::MODES;
+use crate::app::widgets::buttons::{Icon, at_right, icon_button};
 
 /// Height of the toolbar in one row, and in the two rows of a narrow window, points.
 const HEIGHTS: [f32; 2] = [36.0, 68.0];

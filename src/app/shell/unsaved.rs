@@ -2,17 +2,13 @@
 
 use std::path::Path;
 
-use egui::{Context, Event, Id, Key, Modal, RichText, Ui};
-
-use crate::app::language::{fill, tr};
 use crate::app::platform::{IS_PAGE, files};
+use crate::app::prelude::*;
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question, Request, UnsavedDeparture};
-use crate::app::view_options::Mode;
-use crate::scene::Scene;
 
 impl Lab {
     /// Returns the edited scene and its document; `None` if there are no unsaved edits.

@@ -1,19 +1,15 @@
 //! Bases of the objects of a scene: the points of the body at which forces, supports, probes and sections are. A drag
 //! moves them along the body.
 
-use egui::{Color32, Painter, Pos2, Stroke};
-use nalgebra::Vector2;
-
-use crate::app::language::{fill, tr};
+use crate::app::prelude::*;
 use crate::app::viewport::arrow::point_of_application;
 use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::text::boxed_text;
 use crate::assembly::System;
-use crate::format::{editable, engineering_pair, three_digits};
 use crate::mesh::{Mesh, Segment};
-use crate::scene::{Load, Place, Scene, SectionLine, Support};
+use crate::scene::SectionLine;
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to

@@ -2,17 +2,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use egui::{Response, Ui};
-use nalgebra::Vector2;
-
-use crate::app::language::{fill, tr};
+use crate::app::prelude::*;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::assembly::{Edge, System};
 use crate::format::two_digits;
 use crate::mesh::{Mesh, Segment, axis_angle, bent, straightened};
-use crate::scene::{Axis, Load, Place, Probe, Scene, SectionLine, Support};
+use crate::scene::{Probe, SectionLine};
 use crate::section;
 
 /// Entry of the menu: its text, and the scene that it leads to.

@@ -22,16 +22,14 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::app::AppError;
-use crate::app::language::{fill, tr};
 use crate::app::platform::{self, IS_PAGE};
+use crate::app::prelude::*;
 use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;
 use crate::app::task::solve::MAX_UNKNOWNS;
 use crate::app::window::open_window::{BareWindow, Graphics, OpenWindow};
 use crate::render::RenderError;
-use crate::scene::{Scene, Source};
-use crate::simulation::Simulation;
 
 /// Connection to a display.
 pub struct Display(EventLoop<()>);

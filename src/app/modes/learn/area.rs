@@ -1,17 +1,11 @@
 //! Card of the growth of the body's area.
 
-use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
-use nalgebra::Vector2;
-
 use super::{Learn, triangle};
-use crate::app::action::Action;
-use crate::app::language::{fill, percent, signed_percent, spaced, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::palette::{HEADLINE, Palette, SMALL};
-use crate::format::{number, three_digits};
+use crate::app::language::signed_percent;
+use crate::app::prelude::*;
+use crate::format::number;
+use crate::scene::LoadId;
 use crate::scene::limits::Limit;
-use crate::scene::{Load, LoadId, MethodKind};
 
 /// Largest force of the slider, N.
 pub(super) const LARGEST_FORCE: f64 = 4e4;

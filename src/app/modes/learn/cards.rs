@@ -1,8 +1,7 @@
 //! Cards of the mode Learn. A new card is an entry here, and a module for its drawing.
 
 use super::area;
-use crate::scene::{Load, MethodKind, Scene};
-use crate::simulation::Field;
+use crate::app::prelude::*;
 
 /// Card that explains one step of the article.
 pub(crate) struct Card {

@@ -1,18 +1,10 @@
 //! Card of the method as ten lines of pseudocode. One line is highlighted; a step goes to the next one.
 
-use egui::{Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
-
 use super::frames::angle_text;
 use super::triangle::Triangle;
 use super::{Learn, formula, not_triangles, step_buttons};
-use crate::app::action::Action;
-use crate::app::language::{count, fill, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
-use crate::format::{engineering, three_digits};
+use crate::app::prelude::*;
 use crate::rotation::Rotation;
-use crate::scene::{ElementKind, MethodKind};
-use crate::simulation::{Simulation, Status};
 
 /// Line of the pseudocode.
 struct Line {

@@ -1,17 +1,12 @@
 //! Exploded view: the elements are drawn apart from each other, each rotated back by its Rᵀ onto its shape at rest.
 
-use egui::{Painter, RichText, Shape, Slider, Stroke, Ui};
-use nalgebra::Vector2;
+use egui::{Shape, Slider};
 
 use super::frames::{angle_text, paint_picked};
 use super::triangle::Triangle;
 use super::{CardView, Learn, NOT_TRIANGLES, not_triangles};
-use crate::app::action::Action;
-use crate::app::language::{fill, percent, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::palette::{Palette, SMALL};
+use crate::app::prelude::*;
 use crate::rotation::Rotation;
-use crate::simulation::Simulation;
 
 /// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
 const APART: f64 = 1.5;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use egui::text::LayoutJob;
-use egui::{Align, Color32, FontId, Galley, Painter, TextFormat};
+use egui::{Galley, TextFormat};
 
-use crate::app::language::tr;
+use crate::app::prelude::*;
 
 /// Font size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;

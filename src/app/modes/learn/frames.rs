@@ -1,14 +1,11 @@
 //! Card of the rotated frame R of every triangle, and of F = R S of one triangle.
 
-use egui::{Align2, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
-use nalgebra::{Matrix2, Vector2};
+use egui::Shape;
+use nalgebra::Matrix2;
 
 use super::triangle::Triangle;
 use super::{CardView, Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::action::Action;
-use crate::app::language::{fill, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
+use crate::app::prelude::*;
 use crate::rotation::Rotation;
 
 /// Smallest length of a drawn axis, points; finer meshes have none.

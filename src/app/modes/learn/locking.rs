@@ -1,15 +1,9 @@
 //! Card of locking: the same beam with every element, one button each with its error.
 
-use egui::{Button, RichText, Ui};
-
 use super::Learn;
-use crate::app::action::Action;
-use crate::app::language::{fill, percent, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::palette::{Palette, SMALL};
+use crate::app::prelude::*;
 use crate::progress::{Observer, Progress};
-use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::simulation::{Simulation, Status, probe_results};
+use crate::simulation::probe_results;
 use crate::study::{Effort, Reference};
 
 /// Error of an element on the scene's cells.

@@ -1,17 +1,11 @@
 //! Card of the matrices: Ke and R Ke Rᵀ of the selected triangle as coloured cells, and the assembled matrix.
 
-use egui::{Color32, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 use nalgebra::DMatrix;
 
 use super::triangle::{Triangle, assembled};
 use super::{Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::action::Action;
-use crate::app::language::{fill, spaced, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::palette::{Palette, SMALL};
-use crate::format::{engineering, three_digits};
+use crate::app::prelude::*;
 use crate::render::colormap;
-use crate::simulation::Field;
 
 /// Sides of a small matrix and of the large one, points.
 const SMALL_SIDE: f32 = 120.0;

@@ -1,23 +1,16 @@
 //! Mode Learn: the article on a row of cards. Each card sets up its scene, and the user can change everything at any
 //! time. The user's own scene is put aside, and restored when the mode ends.
 
-use egui::{Context, FontId, Key, Painter, Panel, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
-use nalgebra::Vector2;
+use egui::Panel;
 
-use crate::app::action::Action;
-use crate::app::language::{fill, spaced, tr};
-use crate::app::readout::Readout;
+use crate::app::prelude::*;
 use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;
-use crate::app::view_options::{MeasureTab, Mode, Toggle};
 use crate::app::widgets::buttons::at_right;
 use crate::app::widgets::number_field::Messages;
-use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
 use crate::render::Camera;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::Scene;
-use crate::simulation::{Simulation, Status};
 
 mod area;
 mod cards;

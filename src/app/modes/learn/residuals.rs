@@ -1,18 +1,10 @@
 //! Card of the residual of every iteration on a logarithmic scale, compared with a line that falls by the factor ρ per
 //! iteration.
 
-use egui::{Align2, FontId, Painter, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-
 use super::step_buttons;
-use crate::app::action::Action;
 use crate::app::diagnosis::rho_number;
-use crate::app::language::{count, fill, tr};
-use crate::app::readout::Readout;
-use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::palette::{Palette, SMALL};
+use crate::app::prelude::*;
 use crate::method::METHODS;
-use crate::scene::MethodKind;
-use crate::simulation::Status;
 
 /// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {

@@ -1,13 +1,12 @@
 //! Quantities of the article for the elements of a body.
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{DMatrix, Matrix2};
 
+use crate::app::prelude::*;
 use crate::article::affine::Affine2;
 use crate::article::stiffness::ElementStiffness;
 use crate::element::QuadraturePoint;
 use crate::rotation::{Rotation, polar};
-use crate::scene::ElementKind;
-use crate::simulation::Simulation;
 
 /// Three-node triangle, at rest and in the current state.
 #[derive(Clone, Copy, Debug)]
