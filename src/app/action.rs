@@ -17,6 +17,8 @@ pub(crate) enum Action {
     New(Box<Scene>),
     /// Ask for a scene file and open it.
     OpenFile,
+    /// Close the window.
+    Close,
     /// Open the scene's file again.
     Reload,
     /// Save the scene to its file; if it has none, show the file dialog.

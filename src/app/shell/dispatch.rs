@@ -6,7 +6,7 @@ use crate::app::modes::learn;
 use crate::app::panel::PanelState;
 use crate::app::prelude::*;
 use crate::app::session::{Changed, Edit};
-use crate::app::shell::lab::{Desk, Lab, Request, UnsavedDeparture};
+use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::view_options::Magnification;
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
@@ -47,7 +47,7 @@ impl Lab {
     }
 
     /// Applies an edit, and shows a message if it is refused.
-    pub(super) fn apply(&mut self, ctx: &egui::Context, edit: Edit) -> bool {
+    pub(super) fn apply(&mut self, ctx: &Context, edit: Edit) -> bool {
         let applied = self.desk.session.apply(edit);
         self.apply_session_changes();
         if let Err(error) = &applied {
@@ -57,24 +57,17 @@ impl Lab {
     }
 
     /// Performs an action.
-    pub(super) fn act(&mut self, ctx: &egui::Context, action: Action) {
+    pub(super) fn act(&mut self, ctx: &Context, action: Action) {
+        // What is laid out before the action shows its effect in the next frame.
+        ctx.request_repaint();
         match action {
-            Action::Open(name) => self.depart(ctx, UnsavedDeparture::Open(Source { name, assignments: Vec::new() })),
-            Action::New(scene) => self.depart(ctx, UnsavedDeparture::New(scene)),
-            Action::OpenFile => self.depart(ctx, UnsavedDeparture::AskForFile),
+            Action::Open(_) | Action::New(_) | Action::OpenFile | Action::Close => self.depart(ctx, action),
             Action::Reload => self.open(ctx, self.source().clone()),
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(ctx),
-            Action::Undo | Action::Redo => {
-                let (is_possible, edit) = match action {
-                    Action::Undo => (self.can_undo(), Edit::Undo),
-                    _ => (self.can_redo(), Edit::Redo),
-                };
-                if is_possible {
-                    self.desk.panel.messages.clear();
-                    self.apply(ctx, edit);
-                }
-            }
+            Action::Undo if self.can_undo() => self.undo(ctx, Edit::Undo),
+            Action::Redo if self.can_redo() => self.undo(ctx, Edit::Redo),
+            Action::Undo | Action::Redo => {}
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
             Action::Escape if self.desk.view.why => self.desk.view.why = false,
             Action::Cancel => self.cancel(),
@@ -108,17 +101,12 @@ impl Lab {
                 self.desk.motions.step();
             }
             Action::Step => self.step(),
-            Action::Scrub(_) | Action::Back if self.compares_motions() => {}
             Action::Scrub(_) | Action::Back | Action::Forward
-                if !self.desk.session.is_motion() || self.desk.session.is_in_background() => {}
-            Action::Scrub(time) => {
-                self.desk.session.show_moment(time);
-                ctx.request_repaint();
-            }
-            Action::Back | Action::Forward => {
-                self.desk.session.show_neighbour(action == Action::Forward);
-                ctx.request_repaint();
-            }
+                if !self.desk.session.is_motion()
+                    || self.desk.session.is_in_background()
+                    || self.compares_motions() => {}
+            Action::Scrub(time) => self.desk.session.show_moment(time),
+            Action::Back | Action::Forward => self.desk.session.show_neighbour(action == Action::Forward),
             Action::Reset => {
                 self.reset();
                 // A card that waits for its steps waits again.
@@ -143,33 +131,22 @@ impl Lab {
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);
                 self.enter_or_leave();
-                ctx.request_repaint();
             }
-            Action::Card(card) => {
-                self.go_to_card(card);
-                ctx.request_repaint();
-            }
-            Action::Story => {
-                self.tell_story();
-                ctx.request_repaint();
-            }
+            Action::Card(card) => self.go_to_card(card),
+            Action::Story => self.tell_story(),
             Action::Color(field) => self.desk.view.color_with(field),
             Action::ToggleTheme => {
                 let dark = ctx.theme() == egui::Theme::Dark;
                 ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
             }
             Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
-            Action::Plot(plot) => {
-                self.desk.view.curve_plot = Some(plot);
-                ctx.request_repaint();
-            }
+            Action::Plot(plot) => self.desk.view.curve_plot = Some(plot),
             Action::Export(figure, file) => {
                 let text = match figure::save(&figure, file) {
                     Ok(path) => fill!("Saved %{file}", file = path.display()),
                     Err(reason) => fill!("Not saved: %{reason}", reason = said(&reason)),
                 };
                 self.say(ctx, text);
-                ctx.request_repaint();
             }
             Action::Screenshot => self.requests.push(Request::Screenshot),
             Action::Copy => self.copy(ctx, false),
@@ -183,6 +160,12 @@ impl Lab {
             }
             Action::Measure(false) => self.desk.measure.budget.cancel(),
         }
+    }
+
+    /// Undoes or redoes an edit.
+    fn undo(&mut self, ctx: &Context, edit: Edit) {
+        self.desk.panel.messages.clear();
+        self.apply(ctx, edit);
     }
 
     /// Cancels the background solve.
@@ -234,7 +217,7 @@ impl Lab {
     }
 
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.
-    pub(super) fn edit_loads(&mut self, ctx: &egui::Context, interaction: &Interaction) {
+    pub(super) fn edit_loads(&mut self, ctx: &Context, interaction: &Interaction) {
         let dragged = interaction.load.and_then(|(load, pull)| {
             self.desk.panel.force = Some(load);
             let mut scene = self.scene().clone();
@@ -256,7 +239,6 @@ impl Lab {
         });
         for (label, scene) in dragged.into_iter().chain(restored) {
             self.act(ctx, Action::Edit(label, Box::new(scene)));
-            ctx.request_repaint();
         }
     }
 }

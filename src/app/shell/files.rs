@@ -1,17 +1,20 @@
-//! Files: opening, saving, dropping, changes on disk, and copies of the scene to the clipboard.
+//! Files: opening, saving, dropping, changes on disk, copies of the scene to the clipboard, the question before unsaved
+//! edits are lost, and the offer to restore the edits left by a crashed window.
 
 use std::path::Path;
 
 use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::prelude::*;
 use crate::app::session::Edit;
+use crate::app::session::document::Document;
+use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
-use crate::app::shell::lab::{Lab, Question};
+use crate::app::shell::lab::{Lab, Question, Request};
 use crate::sentence::Sentence;
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
-    pub(super) fn open(&mut self, ctx: &egui::Context, source: Source) {
+    pub(super) fn open(&mut self, ctx: &Context, source: Source) {
         if let Err(error) = self.try_open(source) {
             self.say(ctx, said(&error));
         }
@@ -27,19 +30,20 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to a file, and shows a message of success.
-    ///
-    /// # Errors
-    /// Reason for which it was not saved; no message is shown.
-    fn save(&mut self, ctx: &egui::Context, path: &Path) -> Result<(), Sentence> {
+    /// Saves the scene to a file, shows a message of success, and goes on with the action that waits for it. Returns the
+    /// reason for which it was not saved, without a message.
+    fn save(&mut self, ctx: &Context, path: &Path) -> Result<(), Sentence> {
         self.desk.session.save(path)?;
         self.settings.add_recent(path);
         self.say(ctx, fill!("Saved %{file}", file = path.display()));
+        if let Question::Saving(departure) = std::mem::take(&mut self.question) {
+            self.go(ctx, departure);
+        }
         Ok(())
     }
 
     /// Saves the scene to its file. If it has none, or another program has changed it, shows the file dialog.
-    pub(super) fn save_here(&mut self, ctx: &egui::Context) {
+    pub(super) fn save_here(&mut self, ctx: &Context) {
         let document = self.desk.session.document();
         let has_changed = document.has_changed();
         match document.path().map(Path::to_owned) {
@@ -55,18 +59,15 @@ impl Lab {
     }
 
     /// Saves the scene to a file, and shows a message.
-    fn save_there(&mut self, ctx: &egui::Context, path: &Path) {
-        match self.save(ctx, path) {
-            Ok(()) => self.after_save(ctx),
-            Err(reason) => {
-                self.question = Question::None;
-                self.say(ctx, fill!("Not saved: %{reason}", reason = said(&reason)));
-            }
+    fn save_there(&mut self, ctx: &Context, path: &Path) {
+        if let Err(reason) = self.save(ctx, path) {
+            self.question = Question::None;
+            self.say(ctx, fill!("Not saved: %{reason}", reason = said(&reason)));
         }
     }
 
     /// Shows the dialog for the name of the file. A web page downloads the scene instead.
-    pub(super) fn ask_where_to_save(&mut self, ctx: &egui::Context) {
+    pub(super) fn ask_where_to_save(&mut self, ctx: &Context) {
         let document = self.desk.session.document();
         let name = document.path().and_then(Path::file_name).and_then(|name| name.to_str());
         let name = name.map_or_else(|| format!("{}.toml", document.source.name.display()), str::to_owned);
@@ -84,41 +85,34 @@ impl Lab {
     }
 
     /// Shows the file dialog, and processes its answer.
-    pub(super) fn ask_for_file(&mut self, ctx: &egui::Context) {
+    pub(super) fn ask_for_file(&mut self, ctx: &Context) {
         let Some(mut dialog) = self.dialog.take() else { return };
         let Some(answer) = dialog.show(ctx, self.settings.recent()) else {
             self.dialog = Some(dialog);
             return;
         };
-        let refusal = match answer {
+        let done = match answer {
             Answer::Cancel => {
                 self.question = Question::None;
-                None
+                Ok(())
             }
             Answer::File(path) if dialog.purpose == Purpose::Open => {
-                let source = Source { name: path, assignments: Vec::new() };
-                self.try_open(source).err().map(|error| said(&error))
+                self.try_open(Source { name: path, assignments: Vec::new() })
             }
-            Answer::File(path) => match self.save(ctx, &path) {
-                Ok(()) => {
-                    self.after_save(ctx);
-                    None
-                }
-                Err(reason) => Some(said(&reason)),
-            },
+            Answer::File(path) => self.save(ctx, &path),
         };
-        if let Some(refusal) = refusal {
-            dialog.refuse(refusal);
-            self.dialog = Some(dialog);
-        }
-        if self.dialog.is_none() {
-            ctx.request_repaint();
+        match done {
+            Ok(()) => ctx.request_repaint(),
+            Err(reason) => {
+                dialog.refuse(said(&reason));
+                self.dialog = Some(dialog);
+            }
         }
     }
 
     /// Opens a file that is dropped on the window. When the window gets the focus, checks whether the scene's file has
     /// changed on disk.
-    pub(super) fn check_files(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+    pub(super) fn check_files(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
         let (dropped, is_back) = ctx.input(|i| {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
             (dropped.or_else(files::arrived), i.events.contains(&egui::Event::WindowFocused(true)))
@@ -130,7 +124,7 @@ impl Lab {
     }
 
     /// Offers to read the scene's file again if it has changed on disk.
-    pub(super) fn offer_changed_file(&mut self, ui: &mut egui::Ui, actions: &mut Vec<Action>) {
+    pub(super) fn offer_changed_file(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let session = &mut self.desk.session;
         if !session.is_outdated() {
             return;
@@ -148,7 +142,7 @@ impl Lab {
     }
 
     /// Copies the scene as TOML, or the address of the web page with the scene in it.
-    pub(super) fn copy(&mut self, ctx: &egui::Context, as_link: bool) {
+    pub(super) fn copy(&mut self, ctx: &Context, as_link: bool) {
         let scene = self.scene();
         let has_file = scene.mesh.as_ref().is_some_and(|mesh| registry::mesh(&mesh.file).is_none());
         let message = match scene.to_toml() {
@@ -165,4 +159,150 @@ impl Lab {
         };
         self.say(ctx, message);
     }
+
+    /// Returns the edited scene and its document; `None` if there are no unsaved edits.
+    pub(crate) fn unsaved(&self) -> Option<(&Document, &Scene)> {
+        let desk = self.own_desk()?;
+        desk.session.is_edited().then(|| (desk.session.document(), desk.session.scene()))
+    }
+
+    /// Offers to restore the edits left by a crashed window.
+    pub fn offer(&mut self, left: Unsaved) {
+        self.left = Some(left);
+    }
+
+    /// Returns `true` while edits of an earlier window wait for an answer.
+    pub(crate) fn offers_unsaved(&self) -> bool {
+        self.left.is_some()
+    }
+
+    /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits,
+    /// and [`Request::Close`] follows unless the answer is "Cancel".
+    pub fn request_close(&mut self, ctx: &Context) -> bool {
+        self.end_story();
+        if self.unsaved().is_some() && self.lesson.is_some() {
+            self.desk.view.mode = Mode::Explore;
+            self.enter_or_leave();
+        }
+        self.depart(ctx, Action::Close);
+        self.requests.pop_if(|request| *request == Request::Close).is_some()
+    }
+
+    /// Returns `true` while a dialog has the keyboard focus.
+    pub(crate) fn has_dialog(&self) -> bool {
+        self.dialog.is_some() || matches!(self.question, Question::Unsaved(_))
+    }
+
+    /// Opens a scene or closes the window, after a question if edits would be lost. Undo restores those of a scene that has
+    /// no file when another one is opened, and in Learn the user's scene is kept.
+    pub(super) fn depart(&mut self, ctx: &Context, departure: Action) {
+        let closes = departure == Action::Close;
+        let is_lost = |(document, _): (&Document, _)| closes || document.path().is_some();
+        let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
+        if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
+    }
+
+    pub(super) fn ask(&mut self, ctx: &Context, question: Question) {
+        // The question gets the keys.
+        if let Some(focused) = ctx.memory(egui::Memory::focused) {
+            ctx.memory_mut(|memory| memory.surrender_focus(focused));
+        }
+        // The key that opened the question must not answer it.
+        ctx.input_mut(|i| i.events.retain(|event| !matches!(event, Event::Key { pressed: true, .. })));
+        self.question = question;
+        ctx.request_repaint();
+    }
+
+    fn go(&mut self, ctx: &Context, departure: Action) {
+        match departure {
+            Action::Open(name) => self.open(ctx, Source { name, assignments: Vec::new() }),
+            Action::New(scene) => {
+                let version = Unsaved { document: Document::unnamed(&scene), scene: *scene };
+                _ = self.apply(ctx, Edit::Restore(Box::new(version)));
+            }
+            Action::OpenFile if IS_PAGE => files::choose(),
+            Action::OpenFile => {
+                self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
+            }
+            _ => self.requests.push(Request::Close),
+        }
+        ctx.request_repaint();
+    }
+
+    /// Shows the question, if there is one, and processes its answer.
+    pub(crate) fn show_question(&mut self, ctx: &Context) {
+        let departure = match std::mem::take(&mut self.question) {
+            Question::Unsaved(departure) => departure,
+            other => return self.question = other,
+        };
+        let file = self.desk.session.document().path().and_then(Path::file_name);
+        let name = file.map_or_else(|| tr(&self.scene().name).to_owned(), |file| file.to_string_lossy().into_owned());
+        let title = fill!("Save the changes to “%{scene}”?", scene = name);
+        let text = match departure {
+            Action::Close => "Discarded changes are lost.",
+            _ => "Undo restores discarded changes.",
+        };
+        match dialog(ctx, &title, tr(text)) {
+            None => self.question = Question::Unsaved(departure),
+            Some("Save") => {
+                self.question = Question::Saving(departure);
+                self.save_here(ctx);
+            }
+            Some("Discard") => self.go(ctx, departure),
+            Some(_) => {}
+        }
+    }
+
+    /// Returns the edits that are offered now: they are restored to the user's own scene, which Learn puts aside.
+    pub(super) fn offered(&self) -> Option<&Unsaved> {
+        self.left.as_ref().filter(|_| self.lesson.is_none())
+    }
+
+    /// Offers the edits left by a crashed window, until the user answers.
+    pub(super) fn offer_unsaved(&mut self, ui: &mut Ui) {
+        let Some(left) = self.offered() else { return };
+        let text = fill!("Unsaved changes to “%{scene}” were found.", scene = tr(&left.scene.name));
+        let (mut restore, mut discard) = (false, false);
+        ui.horizontal_wrapped(|ui| {
+            ui.label(text);
+            restore = ui.button(tr("Restore")).clicked();
+            discard = ui.button(tr("Discard")).clicked();
+        });
+        if !(restore || discard) {
+            return;
+        }
+        let Some(left) = self.left.clone() else { return };
+        if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new(left))) {
+            return;
+        }
+        self.left = None;
+        self.requests.push(Request::DiscardCopy);
+        ui.ctx().request_repaint();
+    }
+}
+
+/// Shows a question; returns the answer.
+fn dialog(ctx: &Context, title: &str, text: &str) -> Option<&'static str> {
+    const ANSWERS: [(&str, Key); 3] = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
+    let mut answer = None;
+    let modal = Modal::new(Id::unique("question")).show(ctx, |ui| {
+        ui.set_width(ui.available_width().min(360.0));
+        ui.heading(title);
+        ui.add_space(6.0);
+        ui.label(text);
+        ui.add_space(10.0);
+        ui.horizontal(|ui| {
+            for (i, (label, key)) in ANSWERS.into_iter().enumerate() {
+                let text = RichText::new(tr(label));
+                let button = ui.button(if i == 0 { text.strong() } else { text }).on_hover_text(key.name());
+                let is_pressed = |event: &Event| {
+                    matches!(event, Event::Key { key: own, pressed: true, repeat: false, .. } if *own == key)
+                };
+                if button.clicked() || ui.input(|i| i.events.iter().any(is_pressed)) {
+                    answer = Some(label);
+                }
+            }
+        });
+    });
+    answer.or_else(|| modal.should_close().then_some("Cancel"))
 }

@@ -101,24 +101,15 @@ pub(super) struct Story {
     pub lesson: Option<Box<Lesson>>,
 }
 
-/// Action that would lose unsaved edits.
-#[derive(Clone, Debug)]
-pub(super) enum UnsavedDeparture {
-    Close,
-    Open(Source),
-    New(Box<Scene>),
-    AskForFile,
-}
-
 /// Question that the user is asked.
 #[derive(Debug, Default)]
 pub(super) enum Question {
     #[default]
     None,
-    /// Unsaved edits would be lost.
-    Unsaved(UnsavedDeparture),
+    /// The action would lose unsaved edits.
+    Unsaved(Action),
     /// "Save" was answered, and the dialog asks for a file.
-    Saving(UnsavedDeparture),
+    Saving(Action),
 }
 
 /// Complete content of a window.

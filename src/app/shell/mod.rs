@@ -15,4 +15,3 @@ pub(crate) mod shortcuts;
 pub(crate) mod status_bar;
 pub(crate) mod story;
 pub(crate) mod toolbar;
-mod unsaved;
