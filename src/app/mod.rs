@@ -36,7 +36,7 @@ pub use session::recovery::{RecoveryCopies, Unsaved};
 #[doc(hidden)]
 pub use session::run::PaneEnd;
 #[doc(hidden)]
-pub use shell::help::{FOCUS_KEYS, MOUSE};
+pub use shell::shortcuts::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 pub use view_options::Magnification;

@@ -12,7 +12,7 @@ use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::prelude::*;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
-use crate::app::shell::{help, shortcuts, status_bar, toolbar};
+use crate::app::shell::{shortcuts, status_bar, toolbar};
 use crate::app::task::thread::POLL;
 use crate::app::viewport::menu;
 use crate::app::viewport::{overlay, time_line};
@@ -93,7 +93,7 @@ impl Lab {
             self.is_mixed = true;
             ui.ctx().request_repaint();
         }
-        help::show(ui.ctx(), &mut self.desk.view.help);
+        shortcuts::show_help(ui.ctx(), &mut self.desk.view.help);
         self.show_question(ui.ctx());
         self.ask_for_file(ui.ctx());
         if self.desk.session.is_working() {

@@ -5,7 +5,6 @@ mod dispatch;
 pub(crate) mod file_dialog;
 mod files;
 pub(crate) mod gallery;
-pub(crate) mod help;
 pub mod lab;
 mod layout;
 mod learning;
