@@ -35,10 +35,10 @@ pub use panel::PANEL_WIDTH;
 pub use session::recovery::{RecoveryCopies, Unsaved};
 #[doc(hidden)]
 pub use session::run::PaneEnd;
-#[doc(hidden)]
-pub use shell::shortcuts::{FOCUS_KEYS, MOUSE};
 pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
+#[doc(hidden)]
+pub use shell::shortcuts::{FOCUS_KEYS, MOUSE};
 pub use view_options::Magnification;
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;

@@ -42,14 +42,6 @@ impl Language {
             Self::Chinese => Self::English,
         }
     }
-
-    /// Returns the translation of a text; a text without translation is returned unchanged.
-    fn of(self, english: &str) -> &str {
-        match self {
-            Self::English => english,
-            Self::Chinese => CHINESE.get(english).map_or(english, String::as_str),
-        }
-    }
 }
 
 /// Chinese texts by English texts. Tests check that the file is well formed.
@@ -68,7 +60,10 @@ pub(super) fn speak(language: Language) {
 
 /// Returns the translation of a text. A text without translation, such as the name of a file, is returned unchanged.
 pub(super) fn tr(english: &str) -> &str {
-    CURRENT.get().of(english)
+    match CURRENT.get() {
+        Language::English => english,
+        Language::Chinese => CHINESE.get(english).map_or(english, String::as_str),
+    }
 }
 
 /// Renders a sentence or a text of the library in the language of the window.

@@ -167,15 +167,14 @@ pub(super) fn material(ui: &mut Ui, panel: &mut Panel<'_>) {
 }
 
 pub(super) fn mesh(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let Some(beam) = &panel.scene.beam else { return };
     for (axis, label, tip, most) in [
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles or a quadrilateral.", 40.0),
     ] {
         let field = NumberField::new(label, keys::range("beam.cells"), 1.0..=most).logarithmic(1.0).whole().tip(tip);
-        let original = panel.input.original.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
-        if let Some(new) = panel.number(ui, &field, f64::from(beam.cells[axis]), original) {
-            panel.edit(label, |scene| scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = new as u32));
-        }
+        let cells = |scene: &Scene| scene.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
+        panel.field(ui, &field, cells, |scene, new| {
+            scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = new as u32);
+        });
     }
 }

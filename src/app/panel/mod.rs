@@ -182,12 +182,23 @@ impl Panel<'_> {
         field.show(ui, &mut self.state.messages, value, original)
     }
 
-    /// Shows numbers of the scene.
+    /// Shows a number of the scene, which `get` returns if the scene has it.
+    fn field(
+        &mut self,
+        ui: &mut Ui,
+        field: &NumberField,
+        get: impl Fn(&Scene) -> Option<f64>,
+        set: impl FnOnce(&mut Scene, f64),
+    ) {
+        let Some(value) = get(self.scene) else { return };
+        if let Some(new) = self.number(ui, field, value, get(self.input.original)) {
+            self.edit(field.label, |scene| set(scene, new));
+        }
+    }
+
     fn rows(&mut self, ui: &mut Ui, rows: impl IntoIterator<Item = NumberRow>) {
         for NumberRow { field, get, set } in rows {
-            if let Some(new) = self.number(ui, &field, get(self.scene), Some(get(self.input.original))) {
-                self.edit(field.label, |scene| set(scene, new));
-            }
+            self.field(ui, &field, |scene| Some(get(scene)), set);
         }
     }
 

@@ -24,7 +24,7 @@ pub(super) fn summary(support: &Support) -> String {
 
 /// Shows the sliders of a support: its displacement in fixed directions, and its rotation if it is an edge.
 pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, number: usize, support: &Support) {
-    let (scene, original) = (panel.scene, panel.input.original.supports.get(number));
+    let scene = panel.scene;
     if scene.supports.len() > 1 {
         let tip = "The support that the sliders move";
         combo(ui, "Support", tr(&support.place.to_string()), tip, None, |ui| {
@@ -36,36 +36,31 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, number: usize, support: &
         });
     }
     let reach = reach(0.1 * panel.input.simulation.system().size());
-    for (axis, label, tip) in [
+    for (axis, component, label, tip) in [
         (
             Axis::X,
+            0,
             "Move x",
             "Prescribed displacement of the support to the right, m. Numbers with a unit can be typed, such as 3 mm.",
         ),
         (
             Axis::Y,
+            1,
             "Move y",
             "Prescribed displacement of the support upwards, m. Numbers with a unit can be typed, such as -3 mm.",
         ),
     ] {
-        let component = usize::from(axis == Axis::Y);
-        let of = |support: &Support| support.displacement[component];
-        let field = NumberField::new(label, limits::COORDINATE, -reach..=reach).tip(tip);
-        if support.fix.contains(&axis)
-            && let Some(new) = panel.number(ui, &field, of(support), original.map(of))
-        {
-            panel.edit(label, |scene| {
+        if support.fix.contains(&axis) {
+            let field = NumberField::new(label, limits::COORDINATE, -reach..=reach).tip(tip);
+            let own = |scene: &Scene| Some(scene.supports.get(number)?.displacement[component]);
+            panel.field(ui, &field, own, |scene, new| {
                 scene.supports.get_mut(number).into_iter().for_each(|support| support.displacement[component] = new);
             });
         }
     }
-    let of = |support: &Support| support.turn.to_degrees();
-    if matches!(support.place, Place::Edge(_))
-        && support.fix.contains(&Axis::X)
-        && support.fix.contains(&Axis::Y)
-        && let Some(new) = panel.number(ui, &ROTATION, of(support), original.map(of))
-    {
-        panel.edit("Rotation", |scene| {
+    if matches!(support.place, Place::Edge(_)) && [Axis::X, Axis::Y].iter().all(|axis| support.fix.contains(axis)) {
+        let own = |scene: &Scene| Some(scene.supports.get(number)?.turn.to_degrees());
+        panel.field(ui, &ROTATION, own, |scene, new| {
             scene.supports.get_mut(number).into_iter().for_each(|support| support.turn = new.to_radians());
         });
     }

@@ -94,30 +94,19 @@ impl Lab {
 
     /// Paints the message, while it is shown.
     pub(super) fn paint_toast(&mut self, ui: &Ui, painter: &Painter, rect: Rect) {
-        let Some((message, until)) = &self.toast else {
-            return;
-        };
+        let Some((message, until)) = &self.toast else { return };
         let left = until - ui.input(|i| i.time);
         if left <= 0.0 {
             self.toast = None;
             return;
         }
-        boxed_text(
-            painter,
-            rect.center_bottom() - egui::vec2(0.0, if self.desk.session.is_motion() { 48.0 } else { 24.0 }),
-            Align2::CENTER_BOTTOM,
-            message,
-            ui.visuals(),
-            ui.visuals().strong_text_color(),
-            rect.width() - 48.0,
-        );
+        let (visuals, color) = (ui.visuals(), ui.visuals().strong_text_color());
+        let at = rect.center_bottom() - vec2(0.0, if self.desk.session.is_motion() { 48.0 } else { 24.0 });
+        boxed_text(painter, at, Align2::CENTER_BOTTOM, message, visuals, color, rect.width() - 48.0);
         // For screen readers.
-        let said = ui.interact(
-            Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO),
-            egui::Id::unique("toast"),
-            Sense::empty(),
-        );
-        said.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, message));
+        let place = Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO);
+        let said = ui.interact(place, Id::unique("toast"), Sense::empty());
+        said.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));
     }
 }

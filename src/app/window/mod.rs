@@ -145,9 +145,7 @@ impl App {
             Some(simulation) => Some(Lab::new(source, scene, simulation)),
             None => Lab::opening(source, scene),
         };
-        let Some(mut lab) = lab else {
-            return Err(AppError::Window("the scene to begin with is missing".to_owned()));
-        };
+        let mut lab = lab.ok_or_else(|| AppError::Window("the scene to begin with is missing".to_owned()))?;
         lab.set_settings(&ctx, settings.clone());
         lab.set_easing(!lab.reduces_motion());
         let is_first_start = file.as_deref().is_some_and(Settings::is_missing);

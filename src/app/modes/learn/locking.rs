@@ -38,9 +38,9 @@ pub(super) fn errors(scene: &Scene, observe: Observer<'_>) -> Option<Vec<Element
 pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     let scene = shown.scene;
-    let known = learn.errors(scene).map(<[ElementError]>::to_vec);
+    let known = learn.errors.get(scene);
     for element in scene.elements() {
-        let error = known.as_ref().and_then(|all| all.iter().find(|e| e.element == element));
+        let error = known.and_then(|all| all.iter().find(|e| e.element == element));
         let text = match error {
             Some(e) => fill!(
                 "%{element}: error %{error}, %{n} unknowns",

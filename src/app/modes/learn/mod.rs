@@ -147,10 +147,6 @@ impl Learn {
         matches!(self.card().content, CardDisplay::Steps | CardDisplay::Methods)
     }
 
-    fn errors(&self, scene: &Scene) -> Option<&[ElementError]> {
-        self.errors.get(scene).map(Vec::as_slice)
-    }
-
     /// Returns `true` while a result of a scene that the card shows is being computed.
     pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
         self.card().content == CardDisplay::Elements && self.errors.is_pending(scene)
