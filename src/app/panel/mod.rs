@@ -44,7 +44,7 @@ pub(super) struct PanelState {
 impl PanelState {
     /// Removes messages when the pointer is released after the next press: the fields have their values again. A press
     /// that itself leads to a message keeps it.
-    pub(super) fn fade_messages(&mut self, ctx: &egui::Context) {
+    pub(super) fn fade_messages(&mut self, ctx: &Context) {
         let (pressed, released) = ctx.input(|i| (i.pointer.any_pressed(), i.pointer.any_released()));
         if pressed {
             self.has_old_messages = !self.messages.is_empty();
@@ -85,7 +85,7 @@ pub(super) fn show(
         let palette = Palette::new(ui.visuals());
         if !scene.about.is_empty() {
             let about = spaced(RichText::new(tr(&scene.about)), SMALL).small().color(palette.secondary);
-            ui.add(egui::Label::new(about).wrap());
+            ui.add(Label::new(about).wrap());
         }
         if panel.view.mode == Mode::Compare {
             ui.small(tr("Each pane has its own method, element and mesh."));
@@ -135,9 +135,9 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
     if ui.is_rect_visible(rect) {
         ui.painter().hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
         if response.has_focus() {
-            ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.5, palette.accent), egui::StrokeKind::Inside);
+            ui.painter().rect_stroke(rect, 3.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
         }
-        let icon = egui::Rect::from_center_size(rect.left_center() + vec2(7.0, 0.0), vec2(12.0, 12.0));
+        let icon = Rect::from_center_size(rect.left_center() + vec2(7.0, 0.0), vec2(12.0, 12.0));
         paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
         let at = rect.left_center() + vec2(ICON, 0.0);
         let font = FontId::proportional(BODY);
@@ -150,7 +150,7 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
         );
         job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left).max(0.0));
         let galley = ui.painter().layout_job(job);
-        let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
+        let at = pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.secondary);
     }
     let text = format!("{name}: {summary}");

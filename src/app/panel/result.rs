@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
             let left = ui.cursor().left();
             let label = ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
             ui.add_space((left + NAME_WIDTH - label.rect.right() - ui.spacing().item_spacing.x).max(0.0));
-            ui.add(egui::Label::new(RichText::new(value).size(13.0)).wrap()).on_hover_text(tip);
+            ui.add(Label::new(RichText::new(value).size(13.0)).wrap()).on_hover_text(tip);
         });
     };
     if let Some(motion) = simulation.motion() {

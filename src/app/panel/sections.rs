@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         Ok(section) => section_chart::text_of(&section, input.shown),
         Err(error) => said(&error),
     };
-    ui.add(egui::Label::new(forces).wrap()).on_hover_text(tr(
+    ui.add(Label::new(forces).wrap()).on_hover_text(tr(
         "Normal force, shear force and bending moment that the part in front of the section exerts on the part behind",
     ));
     let (low, high) = input.simulation.mesh().bounds();

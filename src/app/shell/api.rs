@@ -166,14 +166,14 @@ impl Lab {
 
     /// Returns the tips of the load arrows in the window, points, with the index of each load in the scene.
     #[must_use]
-    pub fn arrow_tips(&self) -> Vec<(usize, egui::Pos2)> {
+    pub fn arrow_tips(&self) -> Vec<(usize, Pos2)> {
         let arrows = self.desk.viewport.arrows(&self.content());
         arrows.iter().map(|arrow| (arrow.load(), arrow.tip())).collect()
     }
 
     /// Returns the start points of force arrows, and the centres of moment arrows, in the window, points.
     #[must_use]
-    pub fn arrow_feet(&self) -> Vec<egui::Pos2> {
+    pub fn arrow_feet(&self) -> Vec<Pos2> {
         self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
     }
 
@@ -279,7 +279,7 @@ impl Lab {
     }
 
     /// Restores the saved settings.
-    pub fn set_settings(&mut self, ctx: &egui::Context, settings: Settings) {
+    pub fn set_settings(&mut self, ctx: &Context, settings: Settings) {
         palette::install(ctx);
         if let Some(theme) = settings.theme {
             ctx.set_theme(egui::Theme::from(theme));
@@ -313,7 +313,7 @@ impl Lab {
 
     /// Returns the settings to be saved.
     #[must_use]
-    pub fn settings(&self, ctx: &egui::Context) -> Settings {
+    pub fn settings(&self, ctx: &Context) -> Settings {
         let theme = match ctx.options(|options| options.theme_preference) {
             egui::ThemePreference::Dark => Some(ThemeChoice::Dark),
             egui::ThemePreference::Light => Some(ThemeChoice::Light),

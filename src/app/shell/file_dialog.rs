@@ -115,11 +115,11 @@ impl FileDialog {
         let mut answer = None;
         let mut chosen: Option<PathBuf> = None;
         let mut entered: Option<PathBuf> = None;
-        let modal = Modal::new(egui::Id::unique("file dialog")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("file dialog")).show(ctx, |ui| {
             ui.set_width(ui.available_width().min(460.0));
             ui.heading(tr(title));
             ui.add_space(6.0);
-            ui.add(egui::Label::new(RichText::new(self.folder.display().to_string()).weak()).truncate());
+            ui.add(Label::new(RichText::new(self.folder.display().to_string()).weak()).truncate());
             let label = ui.label(tr("File"));
             let edit = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).hint_text("scene.toml");
             let edit = ui.add(edit).labelled_by(label.id);
@@ -166,7 +166,7 @@ impl FileDialog {
             if let Some(message) = &self.message {
                 ui.add_space(4.0);
                 let color = ui.visuals().error_fg_color;
-                ui.add(egui::Label::new(RichText::new(message).color(color)).wrap());
+                ui.add(Label::new(RichText::new(message).color(color)).wrap());
             }
             ui.add_space(8.0);
             ui.horizontal(|ui| {

@@ -115,7 +115,7 @@ impl Lab {
     pub(super) fn check_files(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
         let (dropped, is_back) = ctx.input(|i| {
             let dropped = i.raw.dropped_files.last().map(|file| file.path().to_owned());
-            (dropped.or_else(files::arrived), i.events.contains(&egui::Event::WindowFocused(true)))
+            (dropped.or_else(files::arrived), i.events.contains(&Event::WindowFocused(true)))
         });
         actions.extend(dropped.map(Action::Open));
         if is_back {

@@ -11,7 +11,7 @@ use crate::app::prelude::*;
 use crate::app::widgets::buttons::described;
 
 /// Size of a picture, and height of its entry, points.
-const PICTURE: egui::Vec2 = vec2(112.0, 68.0);
+const PICTURE: Vec2 = vec2(112.0, 68.0);
 const HEIGHT: f32 = 80.0;
 /// Number of columns, and largest width of an entry, points.
 const COLUMNS: usize = 2;
@@ -170,7 +170,7 @@ impl Gallery {
         let mut job = described(tr(&scene.name), tr(&scene.about), palette.text, quiet);
         job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
         let galley = ui.painter().layout_job(job);
-        let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
+        let at = pos2(left, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.text);
         response
     }

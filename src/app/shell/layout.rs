@@ -78,7 +78,7 @@ impl Lab {
             self.act(ui.ctx(), action);
         }
         let mut actions = Vec::new();
-        CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| match self.desk.view.mode {
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| match self.desk.view.mode {
             Mode::Compare => self.comparison(ui, &mut actions),
             _ => self.body_view(ui, &mut actions),
         });
@@ -108,7 +108,7 @@ impl Lab {
     }
 
     /// Requests the displayed results of the scene.
-    fn request_facts(&mut self, ctx: &egui::Context) {
+    fn request_facts(&mut self, ctx: &Context) {
         // Results of a load that changes with every frame would be late.
         if let Some(story) = &self.story {
             if story.compares && self.desk.session.request_reference() {
@@ -127,7 +127,7 @@ impl Lab {
     /// Shows the toolbar, the status bar, and the panel if the window is wide enough for it.
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
-        let bar = |ui: &Ui| unfilled(ui).inner_margin(egui::Margin::symmetric(12, 0));
+        let bar = |ui: &Ui| unfilled(ui).inner_margin(Margin::symmetric(12, 0));
         let top = Panel::top("toolbar").exact_size(toolbar::height(&self.desk.view)).resizable(false).frame(bar(ui));
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
@@ -138,7 +138,7 @@ impl Lab {
             bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
         }
         if self.desk.view.panel && !self.desk.view.narrow {
-            let frame = unfilled(ui).inner_margin(egui::Margin { left: 12, right: 8, top: 8, bottom: 4 });
+            let frame = unfilled(ui).inner_margin(Margin { left: 12, right: 8, top: 8, bottom: 4 });
             let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
             panel.show(ui, |ui| self.panel(ui, &errors, actions));
         }
@@ -149,21 +149,21 @@ impl Lab {
         let errors = diagnosis::errors(&self.readout());
         let rect = self.view_rect();
         let width = PANEL_WIDTH.min(rect.width());
-        egui::Area::new(egui::Id::unique("sheet"))
+        egui::Area::new(Id::unique("sheet"))
             .order(egui::Order::Foreground)
-            .fixed_pos(rect.right_top() - egui::vec2(width, 0.0))
+            .fixed_pos(rect.right_top() - vec2(width, 0.0))
             .constrain(false)
             .show(ui.ctx(), |ui| {
                 let palette = Palette::new(ui.visuals());
-                let margin = egui::Margin { left: 12, right: 8, top: 8, bottom: 4 };
-                let frame = egui::Frame::new().fill(palette.panel).inner_margin(margin);
-                frame.stroke(egui::Stroke::new(1.0, palette.line)).show(ui, |ui| {
+                let margin = Margin { left: 12, right: 8, top: 8, bottom: 4 };
+                let frame = Frame::new().fill(palette.panel).inner_margin(margin);
+                frame.stroke(Stroke::new(1.0, palette.line)).show(ui, |ui| {
                     ui.set_width((width - 22.0).max(0.0));
                     ui.set_height((rect.height() - 14.0).max(0.0));
                     self.panel(ui, &errors, actions);
                 });
             });
-        if ui.input(|i| i.key_pressed(egui::Key::Escape)) && !ui.ctx().text_edit_focused() {
+        if ui.input(|i| i.key_pressed(Key::Escape)) && !ui.ctx().text_edit_focused() {
             self.desk.view.sheet = false;
         }
     }
@@ -324,12 +324,12 @@ impl Lab {
 
     /// Explains the status in lines under the body.
     fn explanation(&self, ui: &mut Ui) {
-        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(14, 6));
+        let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(14, 6));
         let highest = DRAWER_SHARE * ui.available_height();
         Panel::bottom("explanation").resizable(false).frame(frame).show(ui, |ui| {
-            egui::ScrollArea::vertical().max_height(highest).auto_shrink([false, true]).show(ui, |ui| {
+            ScrollArea::vertical().max_height(highest).auto_shrink([false, true]).show(ui, |ui| {
                 for line in diagnosis::explanation(&self.readout()) {
-                    ui.add(egui::Label::new(spaced(line.into(), palette::BODY)).wrap());
+                    ui.add(Label::new(spaced(line.into(), palette::BODY)).wrap());
                 }
             });
         });
@@ -342,9 +342,9 @@ impl Lab {
         let remedy = self.remedy(&input, &diagnosis::errors(&input));
         let (status, bad) = diagnosis::summary(&input, remedy.as_ref());
         let color = if bad { palette.error } else { palette.text };
-        let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 2));
+        let frame = Frame::new().inner_margin(Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link(tr("explain")).clicked() {
                     actions.push(Action::Toggle(Toggle::Why));
                 }
@@ -353,12 +353,12 @@ impl Lab {
                 {
                     actions.push(remedy.action.clone());
                 }
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // The remedy of a failure says what has failed.
                     let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
                     let reason = remedy.map(|remedy| (remedy.text, palette.error));
                     for (text, color) in reason.into_iter().chain(status) {
-                        ui.add(egui::Label::new(egui::RichText::new(text).color(color)).truncate());
+                        ui.add(Label::new(RichText::new(text).color(color)).truncate());
                     }
                 });
             });
@@ -375,12 +375,12 @@ impl Lab {
     fn show_work(&self, ui: &Ui, rect: Rect, actions: &mut Vec<Action>) {
         let Some((scene, phase, seconds)) = self.desk.session.work() else { return };
         let palette = Palette::new(ui.visuals());
-        let area = egui::Area::new(egui::Id::unique("work"))
+        let area = egui::Area::new(Id::unique("work"))
             .order(egui::Order::Middle)
-            .fixed_pos(rect.left_top() + egui::vec2(14.0, 52.0))
+            .fixed_pos(rect.left_top() + vec2(14.0, 52.0))
             .constrain_to(rect);
         area.show(ui.ctx(), |ui| {
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
+            Frame::popup(ui.style()).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     // The button comes first, so that it stays under the pointer while the text changes.
                     if ui.button(tr("Cancel")).on_hover_text(tr("Return to the previous state (Esc)")).clicked() {
@@ -403,7 +403,7 @@ fn fit_button(ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
 }
 
 /// Returns the state of the pointer in this frame.
-fn press(ctx: &egui::Context) -> Press {
+fn press(ctx: &Context) -> Press {
     let double_click = ctx.options(|options| options.input_options.max_double_click_delay);
     ctx.input(|i| Press {
         now: i.time,
@@ -420,6 +420,6 @@ fn drawer_panel(ui: &Ui, height: f32) -> Panel {
 }
 
 /// Returns a panel's frame without background, which the body's render pass has filled.
-fn unfilled(ui: &Ui) -> egui::Frame {
-    egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
+fn unfilled(ui: &Ui) -> Frame {
+    Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }

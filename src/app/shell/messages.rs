@@ -16,12 +16,12 @@ const TOAST: Duration = Duration::from_secs(4);
 
 impl Lab {
     /// Shows a message for a while.
-    pub fn say(&mut self, ctx: &egui::Context, message: String) {
+    pub fn say(&mut self, ctx: &Context, message: String) {
         self.toast = Some((message, ctx.input(|i| i.time) + TOAST.as_secs_f64()));
     }
 
     /// Shows the reason for which an edit was refused: beside the field with this label, or over the body.
-    pub(super) fn refuse(&mut self, ctx: &egui::Context, label: &'static str, reason: Sentence) {
+    pub(super) fn refuse(&mut self, ctx: &Context, label: &'static str, reason: Sentence) {
         match label {
             menu::EDIT => self.say(ctx, sentence(&said(&reason))),
             _ => _ = self.desk.panel.messages.insert(label, reason),
@@ -45,7 +45,7 @@ impl Lab {
         if !(has_warning || self.offered().is_some() || self.desk.session.is_outdated()) {
             return;
         }
-        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 4));
+        let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 4));
         Panel::top("banners").resizable(false).frame(frame).show(ui, |ui| {
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
@@ -60,7 +60,7 @@ impl Lab {
     }
 
     /// Shows the notices of the session.
-    pub(super) fn show_notices(&mut self, ctx: &egui::Context) {
+    pub(super) fn show_notices(&mut self, ctx: &Context) {
         self.apply_session_changes();
         for (integrator, step) in std::mem::take(&mut self.desk.session.playback.unstable) {
             let integrator = tr(integrator.id());
@@ -104,7 +104,7 @@ impl Lab {
         let at = rect.center_bottom() - vec2(0.0, if self.desk.session.is_motion() { 48.0 } else { 24.0 });
         boxed_text(painter, at, Align2::CENTER_BOTTOM, message, visuals, color, rect.width() - 48.0);
         // For screen readers.
-        let place = Rect::from_center_size(rect.center_bottom(), egui::Vec2::ZERO);
+        let place = Rect::from_center_size(rect.center_bottom(), Vec2::ZERO);
         let said = ui.interact(place, Id::unique("toast"), Sense::empty());
         said.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
         ui.ctx().request_repaint_after(Duration::from_secs_f64(left.clamp(0.0, TOAST.as_secs_f64())));

@@ -129,7 +129,7 @@ const GROUPS: [(&str, &str); 6] = [
 ];
 
 /// Scrolls by the keys of the list.
-fn scroll_by_keys(ui: &egui::Ui) {
+fn scroll_by_keys(ui: &Ui) {
     /// Distance of a line, points.
     const LINE: f32 = 40.0;
     let page = 0.8 * ui.ctx().content_rect().height();
@@ -144,7 +144,7 @@ fn scroll_by_keys(ui: &egui::Ui) {
     ];
     for (key, distance) in keys {
         if ui.input_mut(|i| i.consume_key(Modifiers::NONE, key)) {
-            ui.scroll_with_delta(egui::vec2(0.0, distance));
+            ui.scroll_with_delta(vec2(0.0, distance));
         }
     }
 }
@@ -154,17 +154,17 @@ pub(crate) fn show_help(ctx: &Context, open: &mut bool) {
     if !*open {
         return;
     }
-    let size = ctx.content_rect().size() - egui::vec2(40.0, 80.0);
+    let size = ctx.content_rect().size() - vec2(40.0, 80.0);
     egui::Window::new(tr("Keys and mouse"))
-        .id(egui::Id::unique("help"))
+        .id(Id::unique("help"))
         .open(open)
         .collapsible(false)
         .resizable(false)
         // The list is higher than a small window.
         .vscroll(true)
-        .default_size(size.min(egui::vec2(640.0, 640.0)))
+        .default_size(size.min(vec2(640.0, 640.0)))
         .max_height(size.y)
-        .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
+        .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .show(ctx, |ui| {
             scroll_by_keys(ui);
             let heading = |of: &str| GROUPS.iter().find(|(first, _)| *first == of).map(|(_, heading)| *heading);

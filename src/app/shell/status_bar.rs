@@ -188,7 +188,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
 
 /// Space between the parts of an entry, points, and size of its bar.
 const GAP: f32 = 6.0;
-const BAR: egui::Vec2 = vec2(56.0, 6.0);
+const BAR: Vec2 = vec2(56.0, 6.0);
 
 /// Texts of a number, laid out.
 struct Texts {

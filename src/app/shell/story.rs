@@ -160,7 +160,7 @@ impl Lab {
     }
 
     /// Ends the story if the user does something; a movement of the pointer alone does not count.
-    pub(super) fn end_story_on_input(&mut self, ctx: &egui::Context) {
+    pub(super) fn end_story_on_input(&mut self, ctx: &Context) {
         let is_input = |event: &Event| match event {
             Event::Key { pressed, repeat, .. } => *pressed && !repeat,
             Event::PointerButton { pressed, .. } => *pressed,
@@ -223,7 +223,7 @@ impl Lab {
         painter.rect_filled(area.expand2(vec2(12.0, 5.0)), 6.0, palette.panel);
         painter.galley(area.min, galley, palette.text);
         // For screen readers.
-        let response = ui.interact(area, egui::Id::unique("story"), Sense::empty());
+        let response = ui.interact(area, Id::unique("story"), Sense::empty());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, caption));
     }
 }

@@ -214,7 +214,7 @@ impl Bases<'_> {
         let Some(pointer) = hot.dragged else { return };
         let Some((place, at)) = self.target(hot.base.object, pointer) else {
             let text = tr("not on the body: stays where it was");
-            boxed_text(painter, pointer, egui::Align2::CENTER_BOTTOM, text, visuals, color, 240.0);
+            boxed_text(painter, pointer, Align2::CENTER_BOTTOM, text, visuals, color, 240.0);
             return;
         };
         let at = self.projection.point(at);
@@ -241,8 +241,8 @@ impl Bases<'_> {
             },
             (Place::At(at), _) => engineering_pair(at.map(three_digits), "m"),
         };
-        let above = at - egui::vec2(0.0, 12.0);
-        boxed_text(painter, above, egui::Align2::CENTER_BOTTOM, &text, visuals, color, 240.0);
+        let above = at - vec2(0.0, 12.0);
+        boxed_text(painter, above, Align2::CENTER_BOTTOM, &text, visuals, color, 240.0);
     }
 }
 

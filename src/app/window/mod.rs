@@ -105,7 +105,7 @@ fn no_copy(reason: impl std::fmt::Display) -> String {
 
 struct App {
     lab: Lab,
-    ctx: egui::Context,
+    ctx: Context,
     /// Settings as stored in their file.
     settings: Settings,
     settings_file: Option<PathBuf>,
@@ -120,7 +120,7 @@ struct App {
     /// Time at which the window opened.
     start: Instant,
     /// Events that are processed in the next frame.
-    later: Vec<egui::Event>,
+    later: Vec<Event>,
     /// Time of the next frame that egui has requested without an event.
     wake: Option<Instant>,
     /// Part of the name of the graphics adapter; `None` stands for that of the environment.
@@ -140,7 +140,7 @@ impl App {
         is_default: bool,
     ) -> Result<Self, AppError> {
         let file = Settings::file();
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         let lab = match simulation {
             Some(simulation) => Some(Lab::new(source, scene, simulation)),
             None => Lab::opening(source, scene),

@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     }
     ui.add_space(6.0);
     let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
-    ui.add(egui::Label::new(spaced(sources, SMALL)).wrap());
+    ui.add(Label::new(spaced(sources, SMALL)).wrap());
 }
 
 /// Sources of the mode: the article, and the paper that it explains.
@@ -73,7 +73,7 @@ fn enclosed(line: &[Vector2<f64>]) -> f64 {
     0.5 * line.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>()
 }
 
-fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: egui::Color32) {
+fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: Color32) {
     /// Growth at the end of the bar.
     const FULL: f64 = 1.1;
     const NAME: f32 = 132.0;
@@ -84,13 +84,12 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: e
     let painter = ui.painter();
     let put = |x: f32, text: RichText| {
         let galley = egui::WidgetText::from(text).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
-        painter.galley(egui::pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
+        painter.galley(pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
     };
     put(rect.left(), RichText::new(&name).size(SMALL).color(palette.secondary));
     put(rect.left() + NAME, RichText::new(&text).size(HEADLINE).color(color));
     let left = rect.left() + NAME + NUMBER;
-    let bar =
-        Rect::from_min_max(egui::pos2(left, rect.center().y - 4.0), egui::pos2(rect.right(), rect.center().y + 4.0));
+    let bar = Rect::from_min_max(pos2(left, rect.center().y - 4.0), pos2(rect.right(), rect.center().y + 4.0));
     if bar.width() > 20.0 {
         painter.rect_filled(bar, 2.0, palette.line);
         let part = (growth.unwrap_or(0.0).abs() / FULL).min(1.0) as f32;

@@ -120,7 +120,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         let next = ("Next line", "The next line; the line that solves makes an iteration (N)", true);
         step_buttons(ui, shown, next, actions);
         let iterations = count(simulation.iterations(), "iteration");
-        ui.add(egui::Label::new(fill!("%{iterations} so far", iterations)).extend());
+        ui.add(Label::new(fill!("%{iterations} so far", iterations)).extend());
     });
     let has_moved = std::mem::replace(&mut learn.shown_line, learn.line) != learn.line;
     // The buttons do not scroll with the lines.
@@ -147,7 +147,7 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     let code = tr(line.code);
     let galley = painter.layout_job(formula::sized(code, BODY, palette.text));
     let left = GUTTER + INDENT * f32::from(line.indent);
-    let small = egui::FontId::proportional(SMALL);
+    let small = FontId::proportional(SMALL);
     let value_galley = numbers.map(|text| painter.layout_no_wrap(text.to_owned(), small.clone(), palette.accent));
     let width = ui.available_width();
     // Numbers that do not fit to the right of the code are placed under it.
@@ -161,7 +161,7 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     }
     let middle = rect.top() + 0.5 * HEIGHT;
     let place = pos2(rect.left() + GUTTER - 10.0, middle);
-    painter.text(place, egui::Align2::RIGHT_CENTER, format!("{}", number + 1), small, palette.secondary);
+    painter.text(place, Align2::RIGHT_CENTER, format!("{}", number + 1), small, palette.secondary);
     painter.galley(pos2(rect.left() + left, middle - 0.5 * galley.size().y), galley, palette.text);
     if let Some(value_galley) = value_galley {
         let at = match is_under {

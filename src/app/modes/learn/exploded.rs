@@ -1,6 +1,6 @@
 //! Exploded view: the elements are drawn apart from each other, each rotated back by its Rᵀ onto its shape at rest.
 
-use egui::{Shape, Slider};
+use egui::Slider;
 
 use super::frames::{angle_text, paint_picked};
 use super::triangle::Triangle;

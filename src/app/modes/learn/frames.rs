@@ -1,6 +1,5 @@
 //! Card of the rotated frame R of every triangle, and of F = R S of one triangle.
 
-use egui::Shape;
 use nalgebra::Matrix2;
 
 use super::triangle::Triangle;
@@ -43,7 +42,7 @@ pub(super) fn paint_picked(painter: &Painter, view: &CardView<'_>, learn: &Learn
 }
 
 fn middle(corners: &[Pos2]) -> Option<Pos2> {
-    let sum = corners.iter().fold(egui::Vec2::ZERO, |sum, c| sum + c.to_vec2());
+    let sum = corners.iter().fold(Vec2::ZERO, |sum, c| sum + c.to_vec2());
     (!corners.is_empty()).then(|| (sum / corners.len() as f32).to_pos2())
 }
 
@@ -78,7 +77,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     });
     ui.add_space(4.0);
     ui.label(
-        egui::RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing."))
+        RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing."))
             .size(SMALL)
             .color(palette.secondary),
     );
@@ -91,7 +90,7 @@ pub(super) fn angle_text(rotation: Rotation) -> String {
 
 /// Shows a 2 × 2 matrix in brackets, after an operator, with its name below.
 fn show_matrix(ui: &mut Ui, (name, before): (&str, &str), m: &Matrix2<f64>, palette: &Palette) {
-    const CELL: egui::Vec2 = vec2(54.0, 22.0);
+    const CELL: Vec2 = vec2(54.0, 22.0);
     const BRACKET: f32 = 5.0;
     const SIGN: f32 = 16.0;
     const NAME: f32 = 26.0;

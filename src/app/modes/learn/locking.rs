@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         if button.clicked() && !chosen {
             actions.push(Action::edit("Element", scene, |scene| scene.set_element(element)));
         }
-        ui.add(egui::Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
+        ui.add(Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
         ui.add_space(2.0);
     }
     if known.is_none() {

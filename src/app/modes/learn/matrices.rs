@@ -50,7 +50,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         clamped = all - free,
         free,
     );
-    ui.add(egui::Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
+    ui.add(Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
 }
 
 /// Shows the matrix of the body before the supports are applied, and the rows and columns that they remove.

@@ -224,8 +224,8 @@ impl Learn {
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
-        let frame = egui::Frame::side_top_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
-        let frame = frame.inner_margin(egui::Margin { left: 14, right: 10, top: 6, bottom: 4 });
+        let frame = Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT);
+        let frame = frame.inner_margin(Margin { left: 14, right: 10, top: 6, bottom: 4 });
         let height = HEIGHT.min(SHARE * ui.ctx().content_rect().height());
         Panel::bottom("learn").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
             self.header(ui, actions);
@@ -236,7 +236,7 @@ impl Learn {
             let number = self.card;
             let (left, right) = split(ui.available_rect_before_wrap());
             let mut column = |rect: Rect, part: &str, show: &mut dyn FnMut(&mut Ui)| {
-                let layout = egui::Layout::top_down(egui::Align::Min);
+                let layout = Layout::top_down(Align::Min);
                 let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
                 ui.set_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
                 // A scroll bar that appears would wrap the text differently, which might hide the bar again.
@@ -261,12 +261,12 @@ impl Learn {
             let room = (ui.available_width() - NAVIGATION).max(0.0);
             ui.scope(|ui| {
                 ui.set_max_width(room);
-                ui.add(egui::Label::new(title).truncate());
+                ui.add(Label::new(title).truncate());
             });
             at_right(ui, "cards", |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let mut button = |ui: &mut Ui, is_on: bool, name: &str, tip: &str, action: Action| {
-                    if ui.add_enabled(is_on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+                    if ui.add_enabled(is_on, Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
                         actions.push(action);
                     }
                 };
@@ -314,7 +314,7 @@ fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static 
         ("From rest", "Back to rest (R)", true, Action::Reset),
         ("Go on", "Iterate to the end (Space)", goes_on, Action::ToggleRun),
     ] {
-        if ui.add_enabled(on, egui::Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
+        if ui.add_enabled(on, Button::new(tr(name))).on_hover_text(tr(tip)).clicked() {
             actions.push(action);
         }
     }
@@ -335,9 +335,9 @@ fn split(rect: Rect) -> (Rect, Rect) {
 fn text(ui: &mut Ui, card: &Card) {
     let palette = Palette::new(ui.visuals());
     let text = spaced(RichText::new(tr(card.text)), BODY).color(palette.text);
-    ui.add(egui::Label::new(text).wrap());
+    ui.add(Label::new(text).wrap());
     ui.add_space(4.0);
-    let chip = egui::Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(egui::Margin::symmetric(12, 5));
+    let chip = Frame::new().fill(palette.canvas).corner_radius(6.0).inner_margin(Margin::symmetric(12, 5));
     chip.show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             let width = ui.max_rect().width();
@@ -348,19 +348,19 @@ fn text(ui: &mut Ui, card: &Card) {
             let gap = gaps / card.formula.len().saturating_sub(1).max(1) as f32;
             ui.spacing_mut().item_spacing.x = gap.floor().clamp(14.0, 36.0);
             for (part, galley) in card.formula.iter().zip(galleys) {
-                let response = ui.add(egui::Label::new(galley).extend());
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, formula::plain(part)));
+                let response = ui.add(Label::new(galley).extend());
+                response.widget_info(|| WidgetInfo::labeled(Role::Label, true, formula::plain(part)));
             }
         });
     });
     ui.add_space(2.0);
     let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
-    ui.add(egui::Label::new(spaced(symbols, SMALL)).wrap());
+    ui.add(Label::new(spaced(symbols, SMALL)).wrap());
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 16.0), Sense::hover());
         let triangle = [vec2(-3.0, -5.0), vec2(5.0, 0.0), vec2(-3.0, 5.0)].map(|v| rect.center() + v);
-        ui.painter().add(egui::Shape::convex_polygon(triangle.to_vec(), palette.accent, egui::Stroke::NONE));
+        ui.painter().add(Shape::convex_polygon(triangle.to_vec(), palette.accent, Stroke::NONE));
         ui.label(RichText::new(tr(card.task)).color(palette.accent).font(FontId::proportional(BODY)));
     });
 }

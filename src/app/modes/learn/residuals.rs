@@ -13,7 +13,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>)
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
         if let Some(ratio) = last_ratio(shown.session.residuals()) {
             let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
-            ui.add(egui::Label::new(text).extend());
+            ui.add(Label::new(text).extend());
         }
     });
     plot(ui, shown);
@@ -36,7 +36,7 @@ pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action
             Status::Running => iterations,
             _ => fill!("given up after %{iterations}", iterations),
         };
-        ui.add(egui::Label::new(text).extend());
+        ui.add(Label::new(text).extend());
     });
     plot(ui, shown);
 }
@@ -118,7 +118,7 @@ fn axes(
     palette: &Palette,
     (bottom, top): (f64, f64),
     most: f64,
-    place: &dyn Fn(f64, f64) -> egui::Pos2,
+    place: &dyn Fn(f64, f64) -> Pos2,
 ) {
     let font = FontId::proportional(SMALL);
     let grid = Stroke::new(1.0, palette.line);
@@ -136,6 +136,6 @@ fn axes(
     painter.line_segment([rect.left_bottom(), rect.right_bottom()], grid);
 }
 
-fn dashed(painter: &Painter, from: egui::Pos2, to: egui::Pos2, stroke: Stroke) {
-    painter.extend(egui::Shape::dashed_line(&[from, to], stroke, 6.0, 4.0));
+fn dashed(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
+    painter.extend(Shape::dashed_line(&[from, to], stroke, 6.0, 4.0));
 }
