@@ -299,7 +299,6 @@ impl ViewOptions {
         (self.mode == Mode::Measure).then_some(tab)
     }
 
-    /// Returns `true` if the panel is visible.
     pub(crate) fn shows_panel(&self) -> bool {
         if self.narrow { self.sheet } else { self.panel }
     }

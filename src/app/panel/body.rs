@@ -7,7 +7,6 @@ use crate::app::widgets::number_field::{NumberRow, show_message};
 use crate::format::number;
 use crate::scene::{Beam, Material, Plane};
 
-/// Named material.
 struct MaterialPreset {
     name: &'static str,
     /// Young's modulus, Pa, and the `range` of moduli that are still given this name.
@@ -92,7 +91,6 @@ impl CellsThatFollow {
     }
 }
 
-/// Shows length and height of the beam.
 pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
     const SPAN: f64 = 10.0;
     let Some(original) = &panel.input.original.beam else { return };

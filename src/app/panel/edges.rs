@@ -164,13 +164,11 @@ fn coordinates(
     (moved != at).then(|| EdgeChange::Move(moved.into())).or(widened)
 }
 
-/// Returns the numbers of loads and supports.
 pub(super) fn summary(scene: &Scene) -> String {
     let loads = scene.loads.iter().filter_map(place_of).count();
     joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
-/// Shows the rows of all loads, supports and probes.
 pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let (scene, system) = (panel.scene, panel.input.simulation.system());
     let edges = |can_carry: fn(&System, &Edge) -> bool| {
@@ -259,7 +257,6 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     show_message(ui, &panel.state.messages, SECTION);
 }
 
-/// Shows the buttons of the directions that a support fixes.
 fn directions(ui: &mut Ui, fix: &mut Vec<Axis>) {
     ui.spacing_mut().item_spacing.x = 2.0;
     // The layout runs from right to left.

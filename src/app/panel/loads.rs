@@ -40,7 +40,6 @@ fn moment_of(scene: &Scene) -> Option<f64> {
     })
 }
 
-/// Returns a summary of gravity and moment.
 pub(super) fn summary(scene: &Scene) -> String {
     let gravity = gravity_of(scene).map(|g| polar_form(g).0).filter(|&g| g > 0.0).map(|g| engineering(g, "m/s²"));
     let moment = moment_of(scene).filter(|&m| m != 0.0).map(|m| engineering(m, "N m"));

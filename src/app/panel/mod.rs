@@ -172,7 +172,6 @@ struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// Requests a change of the scene.
     fn edit(&mut self, label: &'static str, change: impl FnOnce(&mut Scene)) {
         self.actions.push(Action::edit(label, self.scene, change));
     }

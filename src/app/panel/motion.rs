@@ -39,7 +39,6 @@ const TIME: [NumberRow; 4] = [
         .row(|s| s.dynamics.damping.stiffness, |s, v| s.dynamics.damping.stiffness = v),
 ];
 
-/// Returns a summary of integrator and time step.
 pub(super) fn summary(scene: &Scene) -> String {
     joined([tr(scene.dynamics.integrator.id()), &engineering(scene.dynamics.time_step, "s")])
 }

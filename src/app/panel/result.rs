@@ -12,7 +12,6 @@ use crate::study::{Claim, Reference};
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
 
-/// Returns a summary of the section's content.
 pub(super) fn summary(input: &Readout<'_>) -> String {
     let moves = input.simulation.motion().is_some();
     tr(if moves { "energy, steps, times" } else { "stability, reactions, times" }).to_owned()

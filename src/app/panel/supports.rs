@@ -16,7 +16,6 @@ pub(super) fn chosen<'a>(panel: &mut Panel<'a>) -> Option<(usize, &'a Support)> 
     Some((number, scene.supports.get(number)?))
 }
 
-/// Returns a summary of a support's prescribed displacement and rotation.
 pub(super) fn summary(support: &Support) -> String {
     let turn = (support.turn != 0.0).then(|| editable(support.turn.to_degrees(), "°"));
     joined([engineering_pair(support.displacement, "m")].into_iter().chain(turn))

@@ -77,7 +77,6 @@ pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-/// Shows the factor of the drawn displacement.
 fn magnification(ui: &mut Ui, panel: &mut Panel<'_>) {
     let names = [
         (Magnification::None, "True scale"),
@@ -103,7 +102,6 @@ fn magnification(ui: &mut Ui, panel: &mut Panel<'_>) {
     }
 }
 
-/// Returns a summary of the display options.
 pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     let moves = scene.analysis == Analysis::Dynamic;
     let name = tr(view.field.name());

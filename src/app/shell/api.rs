@@ -141,7 +141,6 @@ impl Lab {
         self.desk.session.scene()
     }
 
-    /// Returns the source of the scene.
     pub(crate) fn source(&self) -> &Source {
         &self.desk.session.document().source
     }

@@ -56,7 +56,6 @@ impl Lab {
         applied.is_ok()
     }
 
-    /// Performs an action.
     pub(super) fn act(&mut self, ctx: &Context, action: Action) {
         // What is laid out before the action shows its effect in the next frame.
         ctx.request_repaint();
@@ -162,13 +161,11 @@ impl Lab {
         }
     }
 
-    /// Undoes or redoes an edit.
     fn undo(&mut self, ctx: &Context, edit: Edit) {
         self.desk.panel.messages.clear();
         self.apply(ctx, edit);
     }
 
-    /// Cancels the background solve.
     fn cancel(&mut self) {
         self.desk.session.cancel();
         self.apply_session_changes();

@@ -114,7 +114,6 @@ impl FileDialog {
         };
         let mut answer = None;
         let mut chosen: Option<PathBuf> = None;
-        let mut entered: Option<PathBuf> = None;
         let modal = Modal::new(Id::unique("file dialog")).show(ctx, |ui| {
             ui.set_width(ui.available_width().min(460.0));
             ui.heading(tr(title));
@@ -144,21 +143,16 @@ impl FileDialog {
                 if let Some(above) = self.folder.parent()
                     && ui.selectable_label(false, "../").clicked()
                 {
-                    entered = Some(above.to_owned());
+                    chosen = Some(above.to_owned());
                 }
                 for (is_file, name) in &self.entries {
-                    if !is_file {
-                        if ui.selectable_label(false, format!("{name}/")).clicked() {
-                            entered = Some(self.folder.join(name));
-                        }
-                        continue;
-                    }
-                    let row = ui.selectable_label(*name == self.text, name);
-                    if row.clicked() {
+                    let label = if *is_file { name.clone() } else { format!("{name}/") };
+                    let row = ui.selectable_label(*is_file && *name == self.text, label);
+                    if row.clicked() && *is_file {
                         self.text.clone_from(name);
                         (self.replaced, self.message) = (None, None);
                     }
-                    if row.double_clicked() {
+                    if row.double_clicked() || row.clicked() && !is_file {
                         chosen = Some(self.folder.join(name));
                     }
                 }
@@ -178,11 +172,10 @@ impl FileDialog {
                 }
             });
         });
-        if let Some(folder) = entered {
-            self.enter(folder);
-        }
-        if let (Some(path), Purpose::Open) = (chosen, self.purpose) {
-            answer = Some(Answer::File(path));
+        match chosen {
+            Some(folder) if folder.is_dir() => self.enter(folder),
+            Some(path) if self.purpose == Purpose::Open => answer = Some(Answer::File(path)),
+            _ => {}
         }
         if modal.should_close() && answer.is_none() {
             answer = Some(Answer::Cancel);

@@ -199,17 +199,16 @@ impl Lab {
         let closes = departure == Action::Close;
         let is_lost = |(document, _): (&Document, _)| closes || document.path().is_some();
         let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
-        if loses { self.ask(ctx, Question::Unsaved(departure)) } else { self.go(ctx, departure) }
-    }
-
-    pub(super) fn ask(&mut self, ctx: &Context, question: Question) {
+        if !loses {
+            return self.go(ctx, departure);
+        }
         // The question gets the keys.
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
         }
         // The key that opened the question must not answer it.
         ctx.input_mut(|i| i.events.retain(|event| !matches!(event, Event::Key { pressed: true, .. })));
-        self.question = question;
+        self.question = Question::Unsaved(departure);
         ctx.request_repaint();
     }
 
@@ -281,7 +280,6 @@ impl Lab {
     }
 }
 
-/// Shows a question; returns the answer.
 fn dialog(ctx: &Context, title: &str, text: &str) -> Option<&'static str> {
     const ANSWERS: [(&str, Key); 3] = [("Save", Key::Enter), ("Discard", Key::D), ("Cancel", Key::Escape)];
     let mut answer = None;

@@ -17,7 +17,6 @@ const HEIGHT: f32 = 80.0;
 const COLUMNS: usize = 2;
 const WIDEST: f32 = 420.0;
 
-/// Entry of the gallery.
 type GalleryEntry = (&'static registry::BuiltIn, Scene);
 
 static ENTRIES: LazyLock<Vec<GalleryEntry>> = LazyLock::new(|| {

@@ -69,7 +69,6 @@ impl Desk {
         (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
     }
 
-    /// Returns the comparison of the scene.
     pub(super) fn comparison(&self) -> &Compare {
         if self.session.is_motion() { &self.motions } else { &self.compare }
     }
@@ -220,7 +219,6 @@ impl Lab {
         self.desk.session.iterates()
     }
 
-    /// Makes one iteration or time step.
     pub(crate) fn iterate(&mut self) {
         self.desk.session.iterate();
         if !self.desk.session.is_motion() {
@@ -264,13 +262,11 @@ impl Lab {
         self.lesson.as_ref().is_some_and(|lesson| lesson.learn.shows_rho())
     }
 
-    /// Returns the content of the body's view.
     pub(super) fn content(&self) -> Content<'_> {
         let Self { desk: Desk { session, view, panel, .. }, lesson, .. } = self;
         content(session, view, panel, lesson.as_deref())
     }
 
-    /// Returns the view of the body, and its content.
     pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
         let Self { desk: Desk { session, viewport, view, panel, .. }, lesson, .. } = self;
         (viewport, content(session, view, panel, lesson.as_deref()))

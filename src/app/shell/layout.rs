@@ -219,7 +219,6 @@ impl Lab {
         self.paint_toast(ui, &painter, rect);
     }
 
-    /// Returns the comparison of the scene, and its input.
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
         let Desk { session, viewport, view, panel, measure, compare, motions, .. } = &mut self.desk;
         let is_motion = session.is_motion();
@@ -237,7 +236,6 @@ impl Lab {
         (if is_motion { motions } else { compare }, input)
     }
 
-    /// Shows the row of cards under the body.
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // The state of the cards is taken out of the lab, because the readout borrows the lab.
         let Some(mut lesson) = self.lesson.take() else { return };
@@ -250,7 +248,6 @@ impl Lab {
         self.lesson = Some(lesson);
     }
 
-    /// Shows the body with its overlays.
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         if self.desk.view.bars {
             self.status_line(ui, actions);

@@ -59,7 +59,6 @@ impl Lab {
         });
     }
 
-    /// Shows the notices of the session.
     pub(super) fn show_notices(&mut self, ctx: &Context) {
         self.apply_session_changes();
         for (integrator, step) in std::mem::take(&mut self.desk.session.playback.unstable) {

@@ -22,7 +22,6 @@ use crate::format::{grouped, two_digits};
 const ERROR: &str = "ERROR";
 const ERROR_REMARK: f32 = 178.0;
 
-/// Number with its name.
 struct BarNumber {
     name: &'static str,
     value: String,
@@ -41,7 +40,6 @@ impl BarNumber {
     }
 }
 
-/// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     // In a narrow window the numbers have no bars.
@@ -190,12 +188,10 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
 const GAP: f32 = 6.0;
 const BAR: Vec2 = vec2(56.0, 6.0);
 
-/// Texts of a number, laid out.
 struct Texts {
     title: Arc<Galley>,
     number: Arc<Galley>,
     number_width: f32,
-    /// `true` if there is a bar.
     has_bar: bool,
     remark: Option<Arc<Galley>>,
 }

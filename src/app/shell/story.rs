@@ -10,7 +10,6 @@ use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
 use crate::render::{Camera, Margins};
 
-/// Part of the story.
 struct Part {
     /// Text over the body, of at most eight words.
     caption: &'static str,

@@ -39,7 +39,6 @@ pub(crate) fn show(
     chosen
 }
 
-/// Returns a scene after an edit.
 fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
     let mut scene = scene.clone();
     edit(&mut scene);
@@ -159,7 +158,6 @@ fn additions(
     entries
 }
 
-/// Returns the scene with a probe at a point.
 pub(crate) fn with_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> Scene {
     let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
     let name = (1..).map(|n| format!("p{n}")).find(is_free).unwrap_or_default();
@@ -167,7 +165,6 @@ pub(crate) fn with_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> Sc
     edited(scene, |scene| scene.probes.push(probe))
 }
 
-/// Returns `true` if the scene has a probe at a point.
 pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> bool {
     let place = Place::At(rounded(system, at).into());
     scene.probes.iter().any(|probe| probe.place == place)

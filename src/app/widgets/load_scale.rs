@@ -13,7 +13,6 @@ pub(crate) struct OpeningLoads {
 }
 
 impl OpeningLoads {
-    /// Returns the largest loads of a scene.
     pub(crate) fn of(scene: &Scene) -> Self {
         let largest = |sizes: &mut dyn Iterator<Item = f64>| {
             let largest = sizes.fold(0.0, f64::max);
@@ -55,7 +54,6 @@ pub(crate) struct LoadScale {
 pub(crate) const STRAIGHT: f64 = 2.0;
 
 impl LoadScale {
-    /// Returns the length of a load.
     pub(crate) fn length(self, load: f64) -> f64 {
         let x = load / self.usual;
         if x <= 1.0 {
@@ -67,7 +65,6 @@ impl LoadScale {
         }
     }
 
-    /// Returns the load of a length.
     pub(crate) fn load(self, length: f64) -> f64 {
         let x = if length <= self.stub {
             0.0

@@ -22,13 +22,10 @@ use crate::sentence::{Sentence, sentence};
 /// Messages next to fields, by the field's label.
 pub(crate) type Messages = BTreeMap<&'static str, Sentence>;
 
-/// Number to show and edit.
 pub(crate) struct NumberField {
     /// Label; unique in the panel.
     pub label: &'static str,
-    /// Description of the value.
     tooltip: &'static str,
-    /// Accepted values.
     limit: Limit,
     /// Range of the slider. Typed values may lie outside it, but within the limit.
     slider: RangeInclusive<f64>,
@@ -60,7 +57,6 @@ impl NumberField {
         Self { label, tooltip: "", limit, slider, scale: SliderScale::Linear, whole: false }
     }
 
-    /// Describes the value.
     pub(crate) const fn tip(mut self, tooltip: &'static str) -> Self {
         self.tooltip = tooltip;
         self
@@ -78,13 +74,11 @@ impl NumberField {
         self
     }
 
-    /// Accepts only whole numbers.
     pub(crate) const fn whole(mut self) -> Self {
         self.whole = true;
         self
     }
 
-    /// Edits a number of the scene.
     pub(crate) const fn row(self, get: fn(&Scene) -> f64, set: fn(&mut Scene, f64)) -> NumberRow {
         NumberRow { field: self, get, set }
     }
@@ -253,7 +247,6 @@ impl NumberField {
         Some(if self.whole { stepped } else { three_digits(stepped) })
     }
 
-    /// Returns the value if it is accepted.
     fn check(&self, value: f64) -> Result<f64, Sentence> {
         if self.whole && value.fract() != 0.0 {
             return Err(sentence!("expected a whole number, got %{got}", got = number(value)));

@@ -104,7 +104,6 @@ const LIGHT: Palette = Palette {
 };
 
 impl Palette {
-    /// Returns the palette of a theme.
     pub(crate) fn of(theme: Theme) -> Self {
         if theme == Theme::Dark { DARK } else { LIGHT }
     }
@@ -119,7 +118,6 @@ impl Palette {
         self.series(method.id())
     }
 
-    /// Returns the colour of an integrator.
     pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
         self.series(integrator.id())
     }

@@ -21,7 +21,6 @@ const APART: [f32; 2] = [66.0, 26.0];
 /// Fraction of the x axis, from either end, in which a tick label would overlap the labels of the y axis or be cut.
 const CORNER: f64 = 0.02;
 
-/// Returns a plot that cannot be dragged or zoomed.
 pub(crate) fn fixed<'a>(id: &str, palette: &Palette) -> Plot<'a> {
     Plot::new(id.to_owned())
         .grid_color(palette.line)

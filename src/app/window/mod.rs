@@ -186,7 +186,6 @@ impl App {
         })
     }
 
-    /// Opens the window and returns when it is closed.
     fn run(self, display: Display) -> Result<(), AppError> {
         let ended = platform::start::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
         let Some(mut app) = ended else { return Ok(()) };
@@ -358,7 +357,6 @@ impl App {
         self.quit(event_loop, None);
     }
 
-    /// Shows a message.
     fn say(&mut self, message: String) {
         self.lab.say(&self.ctx, message);
         self.request_redraw();

@@ -32,7 +32,6 @@ pub(super) struct BareWindow {
     pub(super) window: Arc<Window>,
 }
 
-/// Graphics resources of a window.
 pub(super) struct Graphics {
     surface: wgpu::Surface<'static>,
     pub(super) configuration: wgpu::SurfaceConfiguration,

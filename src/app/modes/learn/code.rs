@@ -6,7 +6,6 @@ use super::{Learn, formula, not_triangles, step_buttons};
 use crate::app::prelude::*;
 use crate::rotation::Rotation;
 
-/// Line of the pseudocode.
 struct Line {
     indent: u8,
     /// Text in the markup of [`formula`].

@@ -22,7 +22,6 @@ enum Level {
     Lowered,
 }
 
-/// Lays out a formula.
 pub(super) fn set(markup: &str, color: Color32) -> LayoutJob {
     sized(markup, SIZE, color)
 }

@@ -14,7 +14,6 @@ const GAP: f32 = 18.0;
 /// Largest number of unknowns of a body whose matrix is drawn.
 const MAX_UNKNOWNS: usize = 96;
 
-/// Shows the matrices.
 pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let simulation = shown.simulation;
     let triangle = Triangle::of(simulation, learn.picked);
@@ -94,7 +93,6 @@ fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangl
     }
 }
 
-/// Returns the name of an unknown.
 fn name_of(unknown: usize) -> String {
     fill!("node %{n} %{axis}", n = unknown / 2, axis = if unknown.is_multiple_of(2) { "x" } else { "y" })
 }

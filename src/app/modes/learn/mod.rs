@@ -91,7 +91,6 @@ impl CardView<'_> {
         self.simulation.system().mesh().element_count() > MAX_ELEMENTS
     }
 
-    /// Returns the drawn points of an element.
     fn points_of(&self, element: usize) -> &[Vector2<f64>] {
         let each = self.points.len() / self.simulation.system().mesh().element_count().max(1);
         self.points.get(element * each..(element + 1) * each).unwrap_or_default()
@@ -189,7 +188,6 @@ impl Learn {
         }
     }
 
-    /// Paints over the body.
     pub(crate) fn paint(&self, painter: &Painter, view: &CardView<'_>) {
         match self.card().content {
             CardDisplay::Frames | CardDisplay::Matrices | CardDisplay::Code => frames::paint(painter, view, self),
@@ -218,7 +216,6 @@ impl Learn {
         }
     }
 
-    /// Shows the card.
     pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Readout<'_>, keys: bool, actions: &mut Vec<Action>) {
         self.request(shown.scene, ui.ctx());
         if keys {

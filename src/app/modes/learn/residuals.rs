@@ -41,7 +41,6 @@ pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action
     plot(ui, shown);
 }
 
-/// Returns the ratio of the last two residuals.
 fn last_ratio(residuals: &[f64]) -> Option<f64> {
     let [.., before, last] = residuals else { return None };
     let ratio = last / before;

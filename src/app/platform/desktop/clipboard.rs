@@ -13,7 +13,6 @@ pub(crate) struct Clipboard {
 }
 
 impl Clipboard {
-    /// Connects to the clipboard.
     pub(crate) fn open() -> Self {
         let system = arboard::Clipboard::new().map_err(|error| error.to_string());
         Self { system, modifiers: ModifiersState::empty() }

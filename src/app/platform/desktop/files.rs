@@ -6,7 +6,6 @@ pub(crate) use crate::atomic_write::{save, save_without_sync};
 use crate::scene::Source;
 pub(crate) use crate::scene::open;
 
-/// Returns the text of a scene.
 pub(crate) fn text(source: &Source) -> Option<String> {
     source.text().ok()
 }

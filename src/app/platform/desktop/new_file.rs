@@ -11,9 +11,6 @@ pub(crate) struct NewFile(PathBuf);
 
 impl NewFile {
     /// Creates the file under the first free name of `warpbeam-001.png`, …
-    ///
-    /// # Errors
-    /// Error of the operating system, or all names are taken.
     pub(crate) fn create(folder: &Path, extension: &str) -> std::io::Result<Self> {
         let create = |i| {
             let path = folder.join(format!("warpbeam-{i:03}.{extension}"));

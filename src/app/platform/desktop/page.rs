@@ -2,7 +2,6 @@
 
 use winit::window::Window;
 
-/// Shows the title of the window.
 pub(crate) fn set_title(window: &Window, title: &str) {
     window.set_title(title);
 }

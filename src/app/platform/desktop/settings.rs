@@ -14,9 +14,6 @@ pub(crate) fn file() -> Option<PathBuf> {
 }
 
 /// Reads settings or a copy.
-///
-/// # Errors
-/// Error of the operating system.
 pub(crate) fn read(file: &Path) -> std::io::Result<String> {
     std::fs::read_to_string(file)
 }
@@ -30,9 +27,6 @@ pub(crate) struct CopyPlace {
 
 /// Locks the file with this number in `folder`, which is created if it does not exist; `None` if another window has
 /// locked it.
-///
-/// # Errors
-/// Error of the operating system.
 pub(crate) fn lock(folder: &Path, number: usize) -> std::io::Result<Option<CopyPlace>> {
     std::fs::create_dir_all(folder)?;
     let lock = folder.join(format!("{number}.lock"));
@@ -44,19 +38,13 @@ pub(crate) fn lock(folder: &Path, number: usize) -> std::io::Result<Option<CopyP
     }
 }
 
-/// Writes settings or a copy, and creates their folder if necessary.
-///
-/// # Errors
-/// Error of the operating system; the previous content is unchanged.
+/// Writes settings or a copy, and creates their folder if necessary. After an error the previous content is unchanged.
 pub(crate) fn write(file: &Path, text: &str) -> std::io::Result<()> {
     file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
     files::save_without_sync(file, text.as_bytes())
 }
 
 /// Removes a copy, if there is one.
-///
-/// # Errors
-/// Error of the operating system.
 pub(crate) fn remove(file: &Path) -> std::io::Result<()> {
     match std::fs::remove_file(file) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),

@@ -52,9 +52,6 @@ pub(crate) fn open(opening: impl Future<Output = ()> + 'static) {
 }
 
 /// Runs the event loop; returns the application when the window is closed.
-///
-/// # Errors
-/// Error of the window system.
 pub(crate) fn run<A: ApplicationHandler>(event_loop: EventLoop<()>, mut app: A) -> Result<Option<A>, EventLoopError> {
     event_loop.run_app(&mut app)?;
     Ok(Some(app))

@@ -6,9 +6,6 @@ use std::io;
 use std::thread;
 
 /// Starts `work` in a thread.
-///
-/// # Errors
-/// The system cannot start another thread.
 pub(crate) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     thread::Builder::new().name(name.to_owned()).spawn(work).map(drop)
 }

@@ -7,7 +7,6 @@ use web_sys::{Document, HtmlCanvasElement};
 use winit::event_loop::EventLoopProxy;
 
 thread_local! {
-    /// Wakes the event loop.
     static PROXY: RefCell<Option<EventLoopProxy<()>>> = RefCell::default();
 }
 
@@ -21,12 +20,10 @@ pub(super) fn document() -> Option<Document> {
     web_sys::window()?.document()
 }
 
-/// Returns the canvas of the page.
 pub(super) fn canvas() -> Option<HtmlCanvasElement> {
     document()?.get_element_by_id("warpbeam")?.dyn_into().ok()
 }
 
-/// Wakes the event loop.
 pub(super) fn wake() {
     PROXY.with_borrow(|proxy| proxy.iter().for_each(|proxy| _ = proxy.send_event(())));
 }

@@ -22,7 +22,6 @@ pub(crate) struct Clipboard {
 }
 
 impl Clipboard {
-    /// Connects to the clipboard.
     pub(crate) fn open() -> Self {
         Self { modifiers: ModifiersState::empty() }
     }

@@ -28,9 +28,6 @@ thread_local! {
 }
 
 /// Opens a built-in scene, or a scene file that the user has chosen, with its mesh file.
-///
-/// # Errors
-/// [`SceneError`].
 pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
     let Some(toml) = chosen(source) else { return scene::open(source) };
     let mut scene = Scene::from_toml(&toml)?;
@@ -58,7 +55,6 @@ fn chosen(source: &Source) -> Option<String> {
     source.name.to_str().and_then(stored).filter(|_| source.built_in().is_none())
 }
 
-/// Returns the text of a scene.
 pub(crate) fn text(source: &Source) -> Option<String> {
     chosen(source).or_else(|| source.text().ok())
 }
@@ -70,9 +66,6 @@ pub(crate) fn add(name: &str, text: String) -> PathBuf {
 }
 
 /// Offers a file as a download.
-///
-/// # Errors
-/// The browser refuses it.
 pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("warpbeam");
     if let Some(text) = str::from_utf8(bytes).ok().filter(|_| name.ends_with(".toml")) {
@@ -85,9 +78,6 @@ pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Offers data as a download.
-///
-/// # Errors
-/// The browser refuses it.
 pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
     let document = browser::document().ok_or("no document")?;
     let address = Url::create_object_url_with_blob(data)?;

@@ -8,9 +8,6 @@ pub(crate) struct NewFile(PathBuf);
 
 impl NewFile {
     /// Returns the name of a download.
-    ///
-    /// # Errors
-    /// None.
     pub(crate) fn create(_: &Path, extension: &str) -> std::io::Result<Self> {
         Ok(Self(format!("warpbeam-001.{extension}").into()))
     }

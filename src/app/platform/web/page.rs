@@ -46,7 +46,6 @@ pub(crate) struct Address {
 }
 
 impl Address {
-    /// Reads the address of the page.
     pub(crate) fn read() -> Self {
         let Some(window) = web_sys::window() else { return Self::default() };
         let location = window.location();
@@ -121,7 +120,6 @@ pub(super) fn listen(proxy: EventLoopProxy<()>) {
     report.forget();
 }
 
-/// Shows the title of the page.
 pub(crate) fn set_title(_: &Window, title: &str) {
     if let Some(document) = browser::document().filter(|document| document.title() != title) {
         document.set_title(title);
@@ -148,9 +146,6 @@ pub(crate) fn ask_before_leaving(asks: bool) {
 }
 
 /// Saves the drawn frame as an image.
-///
-/// # Errors
-/// Message of the browser.
 pub(crate) fn save_frame(window: &Window, name: &str) -> Result<(), String> {
     let name = name.to_owned();
     let done = Closure::once_into_js(move |blob: Option<Blob>| {

@@ -12,10 +12,7 @@ pub(crate) fn file() -> Option<PathBuf> {
     storage().map(|_| PathBuf::from("warpbeam.settings"))
 }
 
-/// Reads settings or a copy.
-///
-/// # Errors
-/// [`io::ErrorKind::NotFound`] if the browser has no item of this name.
+/// Reads settings or a copy; the error is [`io::ErrorKind::NotFound`] if the browser has no item of this name.
 pub(crate) fn read(file: &Path) -> io::Result<String> {
     let text = storage().zip(file.to_str()).and_then(|(storage, name)| storage.get_item(name).ok().flatten());
     text.ok_or_else(|| io::ErrorKind::NotFound.into())
@@ -29,9 +26,6 @@ pub(crate) struct CopyPlace {
 
 /// Returns the item of an earlier visit with this number, and beyond them a new one. Visits in other tabs that have
 /// unsaved edits count as earlier ones.
-///
-/// # Errors
-/// The browser is set to keep nothing.
 pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<CopyPlace>> {
     let prefix = format!("warpbeam.{}.", folder.display());
     let storage = storage().ok_or_else(|| io::Error::other("the browser is set to keep nothing"))?;
@@ -43,18 +37,12 @@ pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<CopyPlace>
 }
 
 /// Writes settings or a copy.
-///
-/// # Errors
-/// The browser refuses it.
 pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
     let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
     storage.set_item(name, text).map_err(|error| io::Error::other(browser::message(&error)))
 }
 
 /// Removes a copy, if there is one.
-///
-/// # Errors
-/// The browser refuses it.
 pub(crate) fn remove(name: &Path) -> io::Result<()> {
     let Some((storage, name)) = storage().zip(name.to_str()) else { return Ok(()) };
     storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))

@@ -19,9 +19,6 @@ pub(crate) fn open(opening: impl Future<Output = ()> + 'static) {
 }
 
 /// Starts the event loop, which runs as long as the page is open.
-///
-/// # Errors
-/// None.
 pub(crate) fn run<A: ApplicationHandler + 'static>(
     event_loop: EventLoop<()>,
     app: A,

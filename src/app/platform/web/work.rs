@@ -22,9 +22,6 @@ thread_local! {
 }
 
 /// Starts `work` after the current frame.
-///
-/// # Errors
-/// None.
 pub(crate) fn start(_: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     browser::later(&Closure::once_into_js(work), 0);
     Ok(())
@@ -87,9 +84,6 @@ impl Debug for Worker {
 }
 
 /// Sends a request to a worker; `receive` is called with its messages.
-///
-/// # Errors
-/// The browser cannot start another worker.
 pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> Received + 'static) -> io::Result<Worker> {
     let failed = |error: JsValue| io::Error::other(browser::message(&error));
     let own = match IDLE.with_borrow_mut(Vec::pop) {
