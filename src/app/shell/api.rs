@@ -307,7 +307,7 @@ impl Lab {
 
     /// Records the size of the window, points, for the settings.
     pub fn set_window_size(&mut self, size: [f32; 2]) {
-        self.settings.set_size(size);
+        self.settings.size = size;
     }
 
     /// Returns the settings to be saved.

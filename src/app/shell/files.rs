@@ -87,7 +87,7 @@ impl Lab {
     /// Shows the file dialog, and processes its answer.
     pub(super) fn ask_for_file(&mut self, ctx: &Context) {
         let Some(mut dialog) = self.dialog.take() else { return };
-        let Some(answer) = dialog.show(ctx, self.settings.recent()) else {
+        let Some(answer) = dialog.show(ctx, &self.settings.recent) else {
             self.dialog = Some(dialog);
             return;
         };

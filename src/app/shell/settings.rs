@@ -35,9 +35,9 @@ pub struct Settings {
     /// Name of the field that colours the body.
     color: String,
     /// Size of the window, points.
-    size: [f32; 2],
+    pub(super) size: [f32; 2],
     /// Recent scene files, the last one first.
-    recent: Vec<PathBuf>,
+    pub(super) recent: Vec<PathBuf>,
 }
 
 impl Default for Settings {
@@ -119,11 +119,6 @@ impl Settings {
         if SIDES.contains(&width) && SIDES.contains(&height) { self.size } else { Self::default().size }
     }
 
-    /// Stores the size of the window, points.
-    pub fn set_size(&mut self, size: [f32; 2]) {
-        self.size = size;
-    }
-
     /// Returns the field that colours the body.
     #[must_use]
     pub fn color(&self) -> Field {
@@ -133,12 +128,6 @@ impl Settings {
     /// Stores the field that colours the body.
     pub fn set_color(&mut self, field: Field) {
         field.name().clone_into(&mut self.color);
-    }
-
-    /// Returns the recent scene files, the last one first.
-    #[must_use]
-    pub fn recent(&self) -> &[PathBuf] {
-        &self.recent
     }
 
     /// Adds a file to the recent scene files.
@@ -167,11 +156,11 @@ mod tests {
         settings.drawer = Some(Drawer::Motion);
         settings.language = Language::Chinese;
         settings.set_color(Field::RotationAngle);
-        settings.set_size([900.0, 700.0]);
+        settings.size = [900.0, 700.0];
         (0..30).for_each(|i| settings.add_recent(Path::new(&format!("scene-{i}.toml"))));
         settings.add_recent(Path::new("scene-25.toml"));
-        assert_eq!(settings.recent().len(), MAX_RECENT);
-        assert!(settings.recent()[0].ends_with("scene-25.toml") && settings.recent()[1].ends_with("scene-29.toml"));
+        assert_eq!(settings.recent.len(), MAX_RECENT);
+        assert!(settings.recent[0].ends_with("scene-25.toml") && settings.recent[1].ends_with("scene-29.toml"));
         settings.save(&Settings::default(), &file).unwrap();
         assert_eq!(Settings::load(&file), (settings.clone(), None));
         // An earlier version had the load curve in a drawer.

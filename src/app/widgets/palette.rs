@@ -104,10 +104,6 @@ const LIGHT: Palette = Palette {
 };
 
 impl Palette {
-    pub(crate) fn of(theme: Theme) -> Self {
-        if theme == Theme::Dark { DARK } else { LIGHT }
-    }
-
     /// Returns the palette that matches `visuals`.
     pub(crate) fn new(visuals: &Visuals) -> Self {
         if visuals.dark_mode { DARK } else { LIGHT }
@@ -197,9 +193,9 @@ pub(crate) fn install(ctx: &egui::Context) {
     }
     ctx.data_mut(|data| data.insert_temp(installed, true));
     add_font(ctx);
-    for theme in [Theme::Dark, Theme::Light] {
+    for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
         ctx.style_mut_of(theme, |style| {
-            style.visuals = Palette::of(theme).visuals();
+            style.visuals = palette.visuals();
             let sizes = [
                 (TextStyle::Body, BODY, FontFamily::Proportional),
                 (TextStyle::Button, BODY, FontFamily::Proportional),
