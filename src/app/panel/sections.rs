@@ -38,22 +38,8 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         "Normal force, shear force and bending moment that the part in front of the section exerts on the part behind",
     ));
     let (low, high) = input.simulation.mesh().bounds();
-    type Set = fn(&mut SectionLine, f64);
-    let rows: [(NumberField, f64, Set); 3] = [
-        (
-            NumberField::new("Cut x", limits::COORDINATE, low.x..=high.x).tip("Point of the section at rest"),
-            line.at.x,
-            |line, x| line.at.x = x,
-        ),
-        (
-            NumberField::new("Cut y", limits::COORDINATE, low.y..=high.y).tip("Point of the section at rest"),
-            line.at.y,
-            |line, y| line.at.y = y,
-        ),
-        (NORMAL, line.angle.to_degrees(), |line, angle| line.angle = angle.to_radians()),
-    ];
-    for (field, value, set) in rows {
-        let Some(new) = panel.number(ui, &field, value, None) else { continue };
+    let mut row = |field: &NumberField, value: f64, set: &dyn Fn(&mut SectionLine, f64)| {
+        let Some(new) = panel.number(ui, field, value, None) else { return };
         let mut moved = line;
         set(&mut moved, new);
         match input.shown.section_forces(moved) {
@@ -61,7 +47,13 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
                 .edit(field.label, |scene| scene.sections.get_mut(chosen).into_iter().for_each(|line| *line = moved)),
             Err(error) => _ = panel.state.messages.insert(field.label, (&error).into()),
         }
+    };
+    for (axis, label) in ["Cut x", "Cut y"].into_iter().enumerate() {
+        let field =
+            NumberField::new(label, limits::COORDINATE, low[axis]..=high[axis]).tip("Point of the section at rest");
+        row(&field, line.at[axis], &|line, at| line.at[axis] = at);
     }
+    row(&NORMAL, line.angle.to_degrees(), &|line, angle| line.angle = angle.to_radians());
     ui.horizontal(|ui| {
         let is_open = panel.view.plots() == Some(Drawer::Section);
         if scene.analysis == Analysis::Static && ui.selectable_label(is_open, tr("Stress")).clicked() {

@@ -93,12 +93,9 @@ impl Gallery {
             }
             ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
             ui.label(tr("New beam:"));
+            let tip = tr("Start a beam of your own; the panel has its length and height");
             for (name, scene) in [("clamped left", clamped as fn() -> Scene), ("on two supports", on_two_supports)] {
-                if ui
-                    .button(tr(name))
-                    .on_hover_text(tr("Start a beam of your own; the panel has its length and height"))
-                    .clicked()
-                {
+                if ui.button(tr(name)).on_hover_text(tip).clicked() {
                     actions.push(Action::New(Box::new(scene())));
                     ui.close();
                 }
