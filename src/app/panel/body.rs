@@ -94,21 +94,15 @@ impl CellsThatFollow {
 pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
     const SPAN: f64 = 10.0;
     let Some(original) = &panel.input.original.beam else { return };
-    let sides = [
-        (
-            NumberField::new("Length", keys::range("beam.length"), original.length / SPAN..=original.length * SPAN)
-                .logarithmic(original.length / SPAN)
-                .tip("Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it."),
-            [beam.length, original.length],
-        ),
-        (
-            NumberField::new("Height", keys::range("beam.height"), original.height / SPAN..=original.height * SPAN)
-                .logarithmic(original.height / SPAN)
-                .tip("Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it."),
-            [beam.height, original.height],
-        ),
-    ];
-    for (axis, (field, [present, original])) in sides.into_iter().enumerate() {
+    const LENGTH: &str =
+        "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.";
+    const HEIGHT: &str =
+        "Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it.";
+    let sides = [("Length", keys::range("beam.length"), LENGTH), ("Height", keys::range("beam.height"), HEIGHT)];
+    for (axis, (label, limit, tip)) in sides.into_iter().enumerate() {
+        let [present, original] = [beam, original].map(|beam| [beam.length, beam.height][axis]);
+        let field = NumberField::new(label, limit, original / SPAN..=original * SPAN);
+        let field = field.logarithmic(original / SPAN).tip(tip);
         let Some(new) = panel.number(ui, &field, present, Some(original)) else { continue };
         let cells = panel.state.cells.count(axis, [present, new], beam.cells[axis]);
         panel.edit(field.label, |scene| {

@@ -82,9 +82,8 @@ pub(super) fn show(
     let panel = &mut Panel { input, scene, state, view, actions };
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
-        let palette = Palette::new(ui.visuals());
         if !scene.about.is_empty() {
-            let about = spaced(RichText::new(tr(&scene.about)), SMALL).small().color(palette.secondary);
+            let about = spaced(RichText::new(tr(&scene.about)), SMALL).small().weak();
             ui.add(Label::new(about).wrap());
         }
         if panel.view.mode == Mode::Compare {

@@ -19,13 +19,12 @@ pub(super) fn summary(input: &Readout<'_>) -> String {
 
 pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
     let simulation = input.simulation;
-    let secondary = Palette::new(ui.visuals()).secondary;
     ui.spacing_mut().item_spacing.y = 3.0;
     let mut row = |name: &str, value: String, tip: &str| {
         let (name, tip) = (tr(name), tr(tip));
         ui.horizontal_top(|ui| {
             let left = ui.cursor().left();
-            let label = ui.label(RichText::new(name).small().color(secondary)).on_hover_text(tip);
+            let label = ui.label(RichText::new(name).small().weak()).on_hover_text(tip);
             ui.add_space((left + NAME_WIDTH - label.rect.right() - ui.spacing().item_spacing.x).max(0.0));
             ui.add(Label::new(RichText::new(value).size(13.0)).wrap()).on_hover_text(tip);
         });
@@ -46,28 +45,21 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     if let Some(state) = state_text(input) {
         row("State", state, "State of the body that is drawn");
     }
-    row(
-        "Iterations",
-        {
-            let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
-            match input.is_fallback {
-                true => fill!("%{n} to the state that is drawn, residual %{residual}", n, residual),
-                false => fill!("%{n} since the last change, residual %{residual}", n, residual),
-            }
-        },
-        "Iterations since the last change, from the state before it; the status has those from rest. Residual: out-of-balance force over the sum of the elements' absolute \
-         forces",
-    );
+    let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
+    let text = match input.is_fallback {
+        true => fill!("%{n} to the state that is drawn, residual %{residual}", n, residual),
+        false => fill!("%{n} since the last change, residual %{residual}", n, residual),
+    };
+    let tip = "Iterations since the last change, from the state before it; the status has those from rest. Residual: \
+               out-of-balance force over the sum of the elements' absolute forces";
+    row("Iterations", text, tip);
     displacement_rows(row, simulation);
-    let text = errors.own.zip(input.reference.and_then(Reference::first)).map_or_else(
-        || UNKNOWN.to_owned(),
-        |(error, reference)| {
-            let whole = engineering(reference.displacement.norm(), "m");
-            let own = percent(reference.own_error_percent);
-            fill!("%{error} ± %{own} of %{whole}", error = percent(error), own, whole)
-        },
-    );
-    row("Error", text, &error_tip(input.reference, input.reference_failure));
+    let text = errors.own.zip(input.reference.and_then(Reference::first)).map(|(error, reference)| {
+        let whole = engineering(reference.displacement.norm(), "m");
+        let own = percent(reference.own_error_percent);
+        fill!("%{error} ± %{own} of %{whole}", error = percent(error), own, whole)
+    });
+    row("Error", known(text), &error_tip(input.reference, input.reference_failure));
     quality_rows(row, input);
     let Some(search) = simulation.equilibrium() else { return };
     let (factor, steps) = (search.load_factor(), search.load_steps());
@@ -83,17 +75,14 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if method == MethodKind::Warped {
         let own = || search.certificate()?.fixed_point_rho;
-        let known = if input.is_fallback { own() } else { rho(input) };
-        let text = known.filter(|_| simulation.status().is_success()).map_or_else(
-            || UNKNOWN.to_owned(),
-            |rho| {
-                let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
-                let load = load_text(input.shown.scene()).filter(|_| input.is_fallback);
-                load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
-            },
-        );
+        let rho = if input.is_fallback { own() } else { rho(input) };
+        let text = rho.filter(|_| simulation.status().is_success()).map(|rho| {
+            let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
+            let load = load_text(input.shown.scene()).filter(|_| input.is_fallback);
+            load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
+        });
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
-        row("ρ", text, tip);
+        row("ρ", known(text), tip);
     }
     // The energy is a sum over all elements, which is too expensive for every frame of a motion.
     if simulation.is_at_rest() {
@@ -113,6 +102,11 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     frame_row(row, input, ("Frame", "Computing time of the iterations of one displayed frame"));
 }
 
+/// Returns a text, or the sign for an unknown number.
+fn known(text: Option<String>) -> String {
+    text.unwrap_or_else(|| UNKNOWN.to_owned())
+}
+
 /// Function that shows a row of the result: name, value, and tooltip.
 type ResultRow<'a> = dyn FnMut(&str, String, &str) + 'a;
 
@@ -129,29 +123,26 @@ fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
 /// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     let quality = input.session.quality();
-    let known = input.shown.status().is_success() && quality.is_of(input.shown);
-    let error = quality.stress.mesh_error_percent.filter(|_| known);
-    let text = error.map_or_else(|| UNKNOWN.to_owned(), |error| fill!("%{error} (estimate)", error = percent(error)));
+    let is_known = input.shown.status().is_success() && quality.is_of(input.shown);
+    let error = quality.stress.mesh_error_percent.filter(|_| is_known);
+    let text = known(error.map(|error| fill!("%{error} (estimate)", error = percent(error))));
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
                the nodes";
     row("Error in energy", text, tip);
-    let text = match quality.stress.largest.filter(|_| known) {
-        Some(largest) => {
-            let (stress, at) =
-                (engineering(three_digits(largest.von_mises), "Pa"), engineering_pair(largest.at.into(), "m"));
-            match quality.stress.singularity {
-                Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress, place = at),
-                None => fill!("%{stress} at %{place}", stress, place = at),
-            }
+    let text = quality.stress.largest.filter(|_| is_known).map(|largest| {
+        let stress = engineering(three_digits(largest.von_mises), "Pa");
+        let place = engineering_pair(largest.at.into(), "m");
+        match quality.stress.singularity {
+            Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress, place),
+            None => fill!("%{stress} at %{place}", stress, place),
         }
-        None => UNKNOWN.to_owned(),
-    };
+    });
     let tip = tr("Largest von Mises stress (Cauchy), and its point at rest; no yielding is modelled").to_owned();
     let tip = std::iter::once(tip).chain(quality.stress.singularity.as_ref().map(said)).collect::<Vec<_>>().join("; ");
-    row("Stress", text, &tip);
+    row("Stress", known(text), &tip);
     let strain = engineering(three_digits(100.0 * quality.deformation.max_strain), "%");
-    let warnings: Vec<String> = quality.warnings().filter(|_| known).map(|warning| said(&warning)).collect();
-    let text = match (known, warnings.is_empty()) {
+    let warnings: Vec<String> = quality.warnings().filter(|_| is_known).map(|warning| said(&warning)).collect();
+    let text = match (is_known, warnings.is_empty()) {
         (false, _) => UNKNOWN.to_owned(),
         (true, true) => strain,
         (true, false) => fill!("%{strain}: too large", strain),
@@ -180,11 +171,9 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     row("Speed", factor, tip);
     let counts = motion.counts();
     let halvings = (counts.halvings > 0).then(|| count(counts.halvings, "halving"));
-    row(
-        "Steps",
-        joined([counts.steps.to_string(), count(counts.solves, "back substitution")].into_iter().chain(halvings)),
-        "Time steps since the start; a step that does not converge is halved",
-    );
+    let text =
+        joined([counts.steps.to_string(), count(counts.solves, "back substitution")].into_iter().chain(halvings));
+    row("Steps", text, "Time steps since the start; a step that does not converge is halved");
     if let Some(decision) = motion.decision() {
         let factors = count(counts.factorizations, "factorization");
         let linear = count(counts.linear_steps, "step");
@@ -201,7 +190,7 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
     let drift = drift(input.simulation);
-    row("Drift", drift.map_or_else(|| UNKNOWN.to_owned(), drift_text), DRIFT_TIP);
+    row("Drift", known(drift.map(drift_text)), DRIFT_TIP);
     if let Some((_, force)) = input.simulation.mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }

@@ -35,20 +35,11 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, number: usize, support: &
         });
     }
     let reach = reach(0.1 * panel.input.simulation.system().size());
-    for (axis, component, label, tip) in [
-        (
-            Axis::X,
-            0,
-            "Move x",
-            "Prescribed displacement of the support to the right, m. Numbers with a unit can be typed, such as 3 mm.",
-        ),
-        (
-            Axis::Y,
-            1,
-            "Move y",
-            "Prescribed displacement of the support upwards, m. Numbers with a unit can be typed, such as -3 mm.",
-        ),
-    ] {
+    const RIGHT: &str =
+        "Prescribed displacement of the support to the right, m. Numbers with a unit can be typed, such as 3 mm.";
+    const UP: &str =
+        "Prescribed displacement of the support upwards, m. Numbers with a unit can be typed, such as -3 mm.";
+    for (axis, component, label, tip) in [(Axis::X, 0, "Move x", RIGHT), (Axis::Y, 1, "Move y", UP)] {
         if support.fix.contains(&axis) {
             let field = NumberField::new(label, limits::COORDINATE, -reach..=reach).tip(tip);
             let own = |scene: &Scene| Some(scene.supports.get(number)?.displacement[component]);

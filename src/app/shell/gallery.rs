@@ -91,7 +91,7 @@ impl Gallery {
             if ui.button(tr("Open a file…")).on_hover_text(tip).clicked() {
                 actions.push(Action::OpenFile);
             }
-            ui.label(RichText::new(tr("or drop one on the window")).small().color(palette.secondary));
+            ui.label(RichText::new(tr("or drop one on the window")).small().weak());
             ui.label(tr("New beam:"));
             let tip = tr("Start a beam of your own; the panel has its length and height");
             for (name, scene) in [("clamped left", clamped as fn() -> Scene), ("on two supports", on_two_supports)] {
@@ -108,7 +108,7 @@ impl Gallery {
         // If the gallery was opened with a key, an entry gets the keyboard focus.
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());
         for (analysis, heading) in GROUPS {
-            ui.label(RichText::new(tr(heading)).small().color(palette.secondary));
+            ui.label(RichText::new(tr(heading)).small().weak());
             let group: Vec<&GalleryEntry> = ENTRIES.iter().filter(|(_, scene)| scene.analysis == analysis).collect();
             for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {

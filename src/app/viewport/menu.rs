@@ -172,13 +172,9 @@ pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> boo
 
 /// Returns the scene with a section through the middle of the body.
 pub(crate) fn with_middle_section(scene: &Scene, system: &System) -> Scene {
-    let middle = system.beam().map_or_else(
-        || {
-            let (low, high) = system.mesh().bounds();
-            system.mesh().node(system.mesh().nearest_node(0.5 * (low + high)))
-        },
-        |beam| bent(beam, 0.5, 0.0),
-    );
+    let (low, high) = system.mesh().bounds();
+    let node = || system.mesh().node(system.mesh().nearest_node(0.5 * (low + high)));
+    let middle = system.beam().map_or_else(node, |beam| bent(beam, 0.5, 0.0));
     edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, middle))))
 }
 

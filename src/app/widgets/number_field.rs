@@ -218,14 +218,10 @@ impl NumberField {
     /// Returns the whole tooltip: the description, and how to restore the original.
     fn full_tip(&self, original: Option<f64>) -> String {
         let tip = tr(self.tooltip);
-        original.map_or_else(
-            || tip.to_owned(),
-            |original| {
-                let value = editable(original, self.limit.unit);
-                let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value);
-                format!("{tip}\n{back}")
-            },
-        )
+        let Some(original) = original else { return tip.to_owned() };
+        let value = editable(original, self.limit.unit);
+        let back = fill!("Double click, or Delete on the slider: %{value}, as in the scene.", value);
+        format!("{tip}\n{back}")
     }
 
     /// Returns the value after the arrow keys pressed in this frame. A step is 1 for whole numbers, one 360th of a

@@ -245,11 +245,8 @@ impl App {
             self.lab.say(&self.ctx, fill!("Not copied: %{reason}", reason));
             self.ctx.request_repaint();
         }
-        open.bare.input.handle_platform_output_with_event_loop(
-            &open.bare.window,
-            event_loop,
-            std::mem::take(&mut output.platform_output),
-        );
+        let platform = std::mem::take(&mut output.platform_output);
+        open.bare.input.handle_platform_output_with_event_loop(&open.bare.window, event_loop, platform);
         let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         open.graphics.stage.set_textures(&open.graphics.gpu, &mut output.textures_delta);
         let screen = open.graphics.screen(output.pixels_per_point);

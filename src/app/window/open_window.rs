@@ -160,11 +160,9 @@ impl OpenWindow {
                 "the surface stays out of date"
             }
             Current::Lost => {
-                self.graphics.surface = self
-                    .graphics
-                    .instance
-                    .create_surface(self.bare.window.clone())
-                    .map_err(|e| AppError::Window(format!("the surface was lost: {e}")))?;
+                let made = self.graphics.instance.create_surface(self.bare.window.clone());
+                let lost = |error| AppError::Window(format!("the surface was lost: {error}"));
+                self.graphics.surface = made.map_err(lost)?;
                 self.configure();
                 "the surface was lost"
             }

@@ -34,10 +34,10 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
             drawn = number(three_digits(angle.atan().to_degrees())),
             growth = percent(100.0 * angle * angle)
         );
-        ui.label(RichText::new(text).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(text).small().weak());
     }
     ui.add_space(6.0);
-    let sources = RichText::new(tr(SOURCES)).size(SMALL).color(palette.secondary);
+    let sources = RichText::new(tr(SOURCES)).small().weak();
     ui.add(Label::new(spaced(sources, SMALL)).wrap());
 }
 
@@ -86,7 +86,7 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: C
         let galley = egui::WidgetText::from(text).into_galley(ui, None, f32::INFINITY, egui::TextStyle::Body);
         painter.galley(pos2(x, rect.center().y - 0.5 * galley.size().y), galley, palette.text);
     };
-    put(rect.left(), RichText::new(&name).size(SMALL).color(palette.secondary));
+    put(rect.left(), RichText::new(&name).small().weak());
     put(rect.left() + NAME, RichText::new(&text).size(HEADLINE).color(color));
     let left = rect.left() + NAME + NUMBER;
     let bar = Rect::from_min_max(pos2(left, rect.center().y - 4.0), pos2(rect.right(), rect.center().y + 4.0));

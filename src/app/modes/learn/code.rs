@@ -108,12 +108,8 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
 pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
     let simulation = shown.simulation;
     if !describes(simulation) {
-        return not_triangles(
-            ui,
-            "These lines are for the method warped with three-node triangles only.",
-            learn,
-            actions,
-        );
+        let text = "These lines are for the method warped with three-node triangles only.";
+        return not_triangles(ui, text, learn, actions);
     }
     ui.horizontal_wrapped(|ui| {
         let next = ("Next line", "The next line; the line that solves makes an iteration (N)", true);

@@ -50,17 +50,13 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
 
 /// Shows the slider between the two views, and the strain of the selected triangle.
 pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let palette = Palette::new(ui.visuals());
-    let small = |text: &str| RichText::new(text).size(SMALL).color(palette.secondary);
     ui.horizontal(|ui| {
         ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
-        let name = "Rotated back";
         let slider = ui.add(Slider::new(&mut learn.rotation_part, 0.0..=1.0).show_value(false));
-        let label = ui.label(tr(name));
-        slider
-            .labelled_by(label.id)
-            .on_hover_text(tr("From the bent beam to its triangles, each rotated back by its own R"));
+        let label = ui.label(tr("Rotated back"));
+        let tip = tr("From the bent beam to its triangles, each rotated back by its own R");
+        slider.labelled_by(label.id).on_hover_text(tip);
     });
     ui.add_space(6.0);
     let Some(triangle) = Triangle::of(shown.simulation, learn.picked) else {
@@ -75,7 +71,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         across = signed_percent(s.m22 - 1.0),
         shear = signed_percent(2.0 * s.m12),
     ));
-    ui.label(small(tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.")));
+    let text = tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.");
+    ui.label(RichText::new(text).small().weak());
 }
 
 /// Formats a strain as a signed percentage.

@@ -76,11 +76,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         }
     });
     ui.add_space(4.0);
-    ui.label(
-        RichText::new(tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing."))
-            .size(SMALL)
-            .color(palette.secondary),
-    );
+    let text = tr("S is symmetric: it stretches along two axes at right angles, and rotates nothing.");
+    ui.label(RichText::new(text).small().weak());
 }
 
 /// Formats a rotation angle with its sign.

@@ -36,7 +36,6 @@ pub(super) fn errors(scene: &Scene, observe: Observer<'_>) -> Option<Vec<Element
 
 /// Shows one button per element.
 pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let palette = Palette::new(ui.visuals());
     let scene = shown.scene;
     let known = learn.errors.get(scene);
     for element in scene.elements() {
@@ -55,7 +54,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         if button.clicked() && !chosen {
             actions.push(Action::edit("Element", scene, |scene| scene.set_element(element)));
         }
-        ui.add(Label::new(RichText::new(tr(element.entry().about)).size(SMALL).color(palette.secondary)).wrap());
+        ui.add(Label::new(RichText::new(tr(element.entry().about)).small().weak()).wrap());
         ui.add_space(2.0);
     }
     if known.is_none() {
@@ -64,6 +63,6 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         } else {
             "No reference solution of this scene is known."
         };
-        ui.label(RichText::new(tr(text)).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr(text)).small().weak());
     }
 }

@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         clamped = all - free,
         free,
     );
-    ui.add(Label::new(spaced(RichText::new(note), SMALL).size(SMALL).color(palette.secondary)).wrap());
+    ui.add(Label::new(spaced(RichText::new(note), SMALL).small().weak()).wrap());
 }
 
 /// Shows the matrix of the body before the supports are applied, and the rows and columns that they remove.

@@ -351,7 +351,7 @@ fn text(ui: &mut Ui, card: &Card) {
         });
     });
     ui.add_space(2.0);
-    let symbols = RichText::new(tr(card.symbols)).size(SMALL).color(palette.secondary);
+    let symbols = RichText::new(tr(card.symbols)).small().weak();
     ui.add(Label::new(spaced(symbols, SMALL)).wrap());
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {

@@ -107,7 +107,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
     if is_warped && shown.session.facts().rho.is_pending(shown.scene) {
-        ui.label(RichText::new(tr("Computing \u{3c1}.")).size(SMALL).color(palette.secondary));
+        ui.label(RichText::new(tr("Computing \u{3c1}.")).small().weak());
     }
 }
 
