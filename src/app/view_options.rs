@@ -299,10 +299,6 @@ impl ViewOptions {
         (self.mode == Mode::Measure).then_some(tab)
     }
 
-    pub(crate) fn shows_panel(&self) -> bool {
-        if self.narrow { self.sheet } else { self.panel }
-    }
-
     /// Colours the body with `field`; a fixed colour range is dropped if the field changes.
     pub(crate) fn color_with(&mut self, field: Field) {
         if self.field != field {

@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_801),
+    ("app", &["src/app"], 24_775),
     ("study", &["src/study"], 6_889),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 21_445),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_560;
+const SRC: usize = 59_534;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

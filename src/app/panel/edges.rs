@@ -199,7 +199,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         say_if_on_node(ui, &format!("load.{i}"));
         let Some(change) = change else { continue };
         if matches!(change, EdgeChange::Remove) {
-            panel.state.discard_force(i);
+            // The same force stays chosen if it still exists.
+            let chosen = panel.state.force.filter(|chosen| *chosen != i);
+            panel.state.force = chosen.map(|chosen| if chosen > i { chosen - 1 } else { chosen });
         }
         panel.edit(SECTION, |scene| match (change, &mut scene.loads[i]) {
             (EdgeChange::Remove, _) => _ = scene.loads.remove(i),

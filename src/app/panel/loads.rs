@@ -1,6 +1,6 @@
 //! Panel section of force, gravity and moment.
 
-use crate::app::panel::{Panel, PanelState, combo, edges};
+use crate::app::panel::{Panel, combo, edges};
 use crate::app::prelude::*;
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
@@ -17,13 +17,6 @@ fn forces(scene: &Scene) -> impl Iterator<Item = (usize, &Place, [f64; 2])> {
         Load::Force { place, force, .. } => Some((i, place, *force)),
         _ => None,
     })
-}
-
-/// Returns the force that the sliders set: the chosen one, or the first.
-fn chosen_force(scene: &Scene, state: &PanelState) -> Option<(usize, [f64; 2])> {
-    let mut all = forces(scene).map(|(i, _, force)| (i, force));
-    let first = all.next();
-    all.find(|(i, _)| Some(*i) == state.force).or(first)
 }
 
 fn gravity_of(scene: &Scene) -> Option<[f64; 2]> {
@@ -50,7 +43,9 @@ pub(super) fn summary(scene: &Scene) -> String {
 /// Shows the magnitude and the direction of the force; nothing if the scene has none.
 pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let (input, scene) = (panel.input, panel.scene);
-    let Some((chosen, force)) = chosen_force(scene, panel.state) else { return };
+    let mut all = forces(scene).map(|(i, _, force)| (i, force));
+    let first = all.next();
+    let Some((chosen, force)) = all.find(|(i, _)| Some(*i) == panel.state.force).or(first) else { return };
     choose(ui, panel, chosen);
     let (magnitude, direction) = polar_form(force);
     let as_opened = forces(input.original).find(|(i, ..)| *i == chosen);

@@ -54,12 +54,6 @@ impl PanelState {
         }
     }
 
-    /// Updates the chosen force after the removal of a load: the same force stays chosen if it still exists.
-    fn discard_force(&mut self, load: usize) {
-        self.force =
-            self.force.filter(|force| *force != load).map(|force| if force > load { force - 1 } else { force });
-    }
-
     /// Returns the direction of a force of zero, degrees.
     pub(super) fn force_direction(&self) -> f64 {
         self.force_direction.unwrap_or(DOWN)

@@ -336,7 +336,9 @@ impl Lab {
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let input = self.readout();
         let palette = Palette::new(ui.visuals());
-        let remedy = self.remedy(&input, &diagnosis::errors(&input));
+        // The other modes have remedies of their own, and the story goes on by itself.
+        let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Measure) && self.story.is_none();
+        let remedy = diagnosis::remedy(&input, &diagnosis::errors(&input)).filter(|_| offers);
         let (status, bad) = diagnosis::summary(&input, remedy.as_ref());
         let color = if bad { palette.error } else { palette.text };
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 2));
@@ -360,12 +362,6 @@ impl Lab {
                 });
             });
         });
-    }
-
-    /// Returns the remedy for an error; the other modes have remedies of their own, and the story goes on by itself.
-    fn remedy(&self, input: &Readout<'_>, errors: &Errors) -> Option<diagnosis::Remedy> {
-        let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Measure) && self.story.is_none();
-        diagnosis::remedy(input, errors).filter(|_| offers)
     }
 
     /// Shows the progress of the background solve, with a button that cancels it.

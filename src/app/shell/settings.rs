@@ -4,7 +4,7 @@ use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use toml::Table;
+use toml::{Table, Value};
 
 use crate::app::ThemeChoice;
 use crate::app::language::Language;
@@ -76,18 +76,16 @@ impl Settings {
             Err(error) => Err(error.to_string()),
         };
         match read {
-            Ok(table) => (Self::of(table), None),
+            Ok(mut table) => {
+                let alone = |key: &str, value: &Value| Table::from_iter([(key.to_owned(), value.clone())]);
+                table.retain(|key, value| alone(key, value).try_into::<Self>().is_ok());
+                (Self::deserialize(table).unwrap_or_default(), None)
+            }
             Err(reason) => {
                 let message = fill!("%{file} could not be read: %{reason}", file = file.display(), reason);
                 (Self::default(), Some(message))
             }
         }
-    }
-
-    /// Takes the valid values of a table.
-    fn of(mut table: Table) -> Self {
-        table.retain(|key, value| Table::from_iter([(key.to_owned(), value.clone())]).try_into::<Self>().is_ok());
-        Self::deserialize(table).unwrap_or_default()
     }
 
     /// Writes the settings that differ from `before` to a file, whose other settings stay: another window may have

@@ -64,16 +64,16 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 // Remarks have the room that the numbers leave.
-                let texts: Vec<Texts> = entries.iter().map(|entry| Texts::of(ui, &palette, entry, wide)).collect();
+                let texts: Vec<Texts> = entries.into_iter().map(|entry| Texts::of(ui, &palette, entry, wide)).collect();
                 let gaps = ui.spacing().item_spacing.x * texts.len().saturating_sub(1) as f32;
                 let mut room = ui.available_width() - gaps - texts.iter().map(Texts::width).sum::<f32>();
-                for (entry, texts) in entries.into_iter().zip(texts) {
-                    let (is_error, remark) = (entry.name == ERROR, texts.remark_width());
+                for texts in texts {
+                    let (is_error, remark) = (texts.entry.name == ERROR, texts.remark_width());
                     let has_remark = remark <= room;
                     let slot = if is_error && wide { ERROR_REMARK.max(remark) } else { remark };
                     let slot = if slot <= room { slot } else { remark };
                     room -= if has_remark { slot } else { 0.0 };
-                    number(ui, &palette, entry, texts, has_remark.then_some(slot));
+                    number(ui, &palette, texts, has_remark.then_some(slot));
                 }
             });
         });
@@ -189,15 +189,15 @@ const GAP: f32 = 6.0;
 const BAR: Vec2 = vec2(56.0, 6.0);
 
 struct Texts {
+    entry: BarNumber,
     title: Arc<Galley>,
     number: Arc<Galley>,
     number_width: f32,
-    has_bar: bool,
     remark: Option<Arc<Galley>>,
 }
 
 impl Texts {
-    fn of(ui: &Ui, palette: &Palette, entry: &BarNumber, wide: bool) -> Self {
+    fn of(ui: &Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Self {
         let painter = ui.painter();
         let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
         // A remark about a number that needs attention needs it too.
@@ -209,14 +209,14 @@ impl Texts {
             // A minimum width keeps what follows in place when the number of digits changes.
             number_width: number.size().x.max(if wide { 62.0 } else { 0.0 }),
             number,
-            has_bar: wide && entry.ratio.is_some(),
             remark: (!entry.word.is_empty()).then(|| small(&entry.word, remark_color)),
+            entry: BarNumber { ratio: entry.ratio.filter(|_| wide), ..entry },
         }
     }
 
     /// Returns the width without the remark, points.
     fn width(&self) -> f32 {
-        let bar = if self.has_bar { BAR.x + GAP } else { 0.0 };
+        let bar = if self.entry.ratio.is_some() { BAR.x + GAP } else { 0.0 };
         self.title.size().x + GAP + self.number_width + bar
     }
 
@@ -226,12 +226,12 @@ impl Texts {
 }
 
 /// Shows a name, its number, its bar and, in its slot if there is one, its remark. The width of a slot is in points.
-fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, slot: Option<f32>) -> Response {
-    let BarNumber { name, value, word, tip, color, ratio } = entry;
+fn number(ui: &mut Ui, palette: &Palette, texts: Texts, slot: Option<f32>) {
     let remark_width = texts.remark_width();
     let size = vec2(texts.width() + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
-    let Texts { title, number, number_width, has_bar, remark } = texts;
-    let (ratio, remark) = (ratio.filter(|_| has_bar), remark.filter(|_| slot.is_some()));
+    let Texts { entry: BarNumber { name, value, word, tip, color, ratio }, title, number, number_width, remark } =
+        texts;
+    let remark = remark.filter(|_| slot.is_some());
     let word = if remark.is_some() { word.as_ref() } else { "" };
     let name = tr(name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -239,10 +239,9 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, slot: 
     let mut x = rect.left();
     let mut put = |galley: Arc<Galley>, width: f32, bold: bool| {
         let at = pos2(x, middle - 0.5 * galley.size().y);
-        if bold {
-            semibold(ui.painter(), at, &galley, color);
-        } else {
-            ui.painter().galley(at, galley, color);
+        match bold {
+            true => semibold(ui.painter(), at, &galley, color),
+            false => ui.painter().galley(at, galley, color),
         }
         x += width + GAP;
     };
@@ -260,7 +259,7 @@ fn number(ui: &mut Ui, palette: &Palette, entry: BarNumber, texts: Texts, slot: 
         ui.painter().vline(bar.center().x, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
-    response.on_hover_text(tip)
+    response.on_hover_text(tip);
 }
 
 /// Returns the text of the current phase of a background solve.

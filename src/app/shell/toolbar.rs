@@ -62,8 +62,8 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
                 actions.push(action);
             }
         };
-        let tip = "Show or hide the controls (P)";
-        button(Icon::Panel, "Panel", view.shows_panel(), tip, Action::Toggle(Toggle::Panel));
+        let (tip, is_open) = ("Show or hide the controls (P)", if view.narrow { view.sheet } else { view.panel });
+        button(Icon::Panel, "Panel", is_open, tip, Action::Toggle(Toggle::Panel));
         // The other language is named in that language, for users who do not read the current one.
         button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
         button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);

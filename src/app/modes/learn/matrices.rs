@@ -117,7 +117,11 @@ fn cells(
             if stored(i, j) {
                 let corner = rect.min + vec2(j as f32, i as f32) * cell;
                 let own = Rect::from_min_size(corner, vec2(cell - gap, cell - gap));
-                ui.painter().rect_filled(own, 0.0, color_of(&map, matrix[(i, j)], largest));
+                // The square root makes small entries visible, too.
+                let value = matrix[(i, j)];
+                let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
+                let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
+                ui.painter().rect_filled(own, 0.0, Color32::from_rgb(r, g, b));
             }
         }
     }
@@ -130,11 +134,4 @@ fn cells(
         response.on_hover_text_at_pointer(format!("{value}\n{places}"));
     }
     rect
-}
-
-fn color_of(map: &colormap::ColorMap, value: f64, largest: f64) -> Color32 {
-    // The square root makes small entries visible, too.
-    let part = if largest > 0.0 { (value.abs() / largest).sqrt().copysign(value) } else { 0.0 };
-    let [r, g, b] = map.color(colormap::position(part, [-1.0, 1.0]));
-    Color32::from_rgb(r, g, b)
 }

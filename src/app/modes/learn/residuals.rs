@@ -72,14 +72,15 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
     axes(&painter, rect, &palette, (bottom, HIGHEST), most, &place);
     let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
-    dashed(&inside, place(0.0, asked), place(most, asked), Stroke::new(1.0, palette.secondary));
+    let dashed = |ends: [Pos2; 2], stroke| inside.extend(Shape::dashed_line(&ends, stroke, 6.0, 4.0));
+    dashed([place(0.0, asked), place(most, asked)], Stroke::new(1.0, palette.secondary));
     if let Some(rho) = rho {
         // A converging line ends at the last residual; a diverging one starts at the lowest.
         let mut points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
         let anchor = if rho < 1.0 { points.next_back() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
         let (k, r) = anchor.unwrap_or((0.0, 0.0));
         let line = |at: f64| place(at, r + (at - k) * rho.log10());
-        dashed(&inside, line(0.0), line(most), Stroke::new(1.8, palette.exact));
+        dashed([line(0.0), line(most)], Stroke::new(1.8, palette.exact));
     }
     let color = palette.method(shown.scene.solver.method);
     let points: Vec<_> = residuals.iter().enumerate().map(|(i, &r)| place(i as f64 + 1.0, decade(r))).collect();
@@ -133,8 +134,4 @@ fn axes(
         painter.text(at + vec2(0.0, 3.0), Align2::CENTER_TOP, format!("{k}"), font.clone(), palette.secondary);
     }
     painter.line_segment([rect.left_bottom(), rect.right_bottom()], grid);
-}
-
-fn dashed(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
-    painter.extend(Shape::dashed_line(&[from, to], stroke, 6.0, 4.0));
 }
