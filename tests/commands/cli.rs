@@ -3,10 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-#[cfg(target_os = "linux")]
-use crate::common::process::{on_a_terminal, start, wait_for};
 use crate::common::*;
-use warpbeam::scene::{Analysis, registry};
 
 #[test]
 fn scenes_lists_every_scene_with_its_sentence() {
@@ -14,15 +11,6 @@ fn scenes_lists_every_scene_with_its_sentence() {
     for id in scene_ids() {
         assert!(text.lines().any(|line| line.starts_with(id)), "{id}");
         assert!(text.contains(&scene(id).about), "{id}");
-    }
-}
-
-#[test]
-fn every_scene_file_is_in_the_registry() {
-    for extension in ["toml", "png"] {
-        let files = fs::read_dir("assets/scenes").unwrap().map(|file| file.unwrap().path());
-        let count = files.filter(|file| file.extension().is_some_and(|e| e == extension)).count();
-        assert_eq!(count, registry::BUILT_IN.len(), "{extension}");
     }
 }
 
@@ -71,14 +59,6 @@ fn json_of_a_motion_has_its_energy_ledger() {
 }
 
 #[test]
-fn the_axial_bar_has_the_analytic_displacement_energy_and_reaction() {
-    let json = solve_json(&["stretch"]);
-    assert!((json["probes"][0]["u"][0].as_f64().unwrap() - 0.4).abs() < 1e-9);
-    assert!((json["energy"]["elastic"].as_f64().unwrap() - 10_000.0).abs() < 1e-3);
-    assert!((json["reaction"]["force"][0].as_f64().unwrap() + 50_000.0).abs() < 1e-3);
-}
-
-#[test]
 fn set_changes_any_value() {
     let json = solve_json(&["cantilever", "--set", "beam.cells=[10,1]", "--set", "solver.method=linear"]);
     assert_eq!((json["dofs"].as_u64(), json["method"].as_str()), (Some(120), Some("linear")));
@@ -87,18 +67,6 @@ fn set_changes_any_value() {
     assert!((double.y / single.y - 2.0).abs() < 1e-9);
     // A table that the file does not contain.
     assert!(solve_json(&["shear", "--set", "solver.tolerance=1e-4"])["residual"].as_f64().unwrap() > 1e-8);
-}
-
-#[test]
-fn exit_code_1_for_a_solve_that_does_not_converge_and_the_result_is_still_printed() {
-    for (set, status) in [("solver.max_iterations=2", "not_converged"), ("load.0.force=[0,-9000]", "diverged")] {
-        let output = warpbeam(&["solve", "cantilever", "--json", "--set", set]);
-        let json = parsed(&output);
-        assert_eq!((output.status.code(), json["status"].as_str()), (Some(1), Some(status)));
-        assert!(status == "diverged" || json["iterations"] == 2);
-    }
-    let words = stdout(&warpbeam(&["solve", "cantilever", "--set", "load.0.force=[0,-9000]"]));
-    assert!(words.contains("too large for this method"), "{words}");
 }
 
 #[test]
@@ -119,13 +87,13 @@ fn results_are_written_as_csv_and_vtu() {
 }
 
 /// Returns the columns and the rows of a CSV file of numbers.
-fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+pub fn read_table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let text = fs::read_to_string(path).unwrap();
     (table(&text).0.into_iter().map(str::to_owned).collect(), numbers(&text))
 }
 
 /// Returns `true` if a number equals one in a JSON text, which `serde_json` parses to all but the last digit.
-fn same(number: f64, json: &serde_json::Value) -> bool {
+pub fn same(number: f64, json: &serde_json::Value) -> bool {
     (number - json.as_f64().unwrap()).abs() <= 1e-14 * number.abs()
 }
 
@@ -226,113 +194,14 @@ fn a_motion_is_written_as_a_series_of_states() {
     assert!(!folder.path().join("rest.pvd").exists());
 }
 
-/// The result is still printed. A reader that closes its pipe is no error.
-#[cfg(target_os = "linux")]
-#[test]
-fn failed_writes_end_with_exit_code_2() {
-    let folder = tempfile::tempdir().unwrap();
-    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    for args in [&["solve", "article", "--json"][..], &["solve", "swing"], &["scenes"], &["curve", "elastica"]] {
-        let output = program(folder.path(), args).stdout(full()).output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{args:?}");
-        assert!(stderr(&output).contains("standard output: "), "{args:?}: {}", stderr(&output));
-    }
-    for (id, name) in
-        [("article", "x.csv"), ("swing", "x.csv"), ("article", "x.vtu"), ("swing", "x.vtu"), ("swing", "x.pvd")]
-    {
-        let path = folder.path().join(name);
-        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
-        let output = warpbeam_in(folder.path(), &["solve", id, "--out", name, "--json"]);
-        fs::remove_file(path).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{id} {name}");
-        assert!(stderr(&output).contains("x."), "{id} {name}: {}", stderr(&output));
-        assert!(["converged", "finished"].map(Into::into).contains(&parsed(&output)["status"]), "{id} {name}");
-    }
-    let (reader, writer) = std::io::pipe().unwrap();
-    drop(reader);
-    let output = program(folder.path(), &["solve", "article"]).stdout(writer).output().unwrap();
-    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
-}
-
-/// Ctrl-C ends a long command, which writes its results up to then.
-#[cfg(target_os = "linux")]
-#[test]
-fn an_interrupted_command_writes_its_partial_result() {
-    let folder = tempfile::tempdir().unwrap();
-    let interrupted = |args: &[&str], path: &str, bytes: u64| {
-        let running = start(folder.path(), args);
-        let is_long = || fs::metadata(folder.path().join(path)).is_ok_and(|file| file.len() > bytes);
-        wait_for("a part of the result", || running.listens() && (path.is_empty() || is_long()));
-        let output = running.interrupt();
-        assert_eq!(output.status.code(), Some(1), "{args:?}: {}", stderr(&output));
-        output
-    };
-    let long = ["solve", "swing", "--set", "dynamics.duration=1e5", "--out"];
-    let output = interrupted(&[&long[..], &["swing.csv", "--json"]].concat(), "swing.csv", 20_000);
-    assert!(stderr(&output).contains("partial"), "{}", stderr(&output));
-    let json = parsed(&output);
-    assert_eq!(json["status"], "stopped");
-    let (header, rows) = read_table(&folder.path().join("swing.csv"));
-    assert!(rows.iter().all(|row| row.len() == header.len()));
-    assert_eq!(rows.len() as u64 - 1, json["steps"].as_u64().unwrap());
-    assert!(same(rows.last().unwrap()[0], &json["time"]));
-
-    let output = interrupted(&[&long[..], &["series.pvd"]].concat(), "series_0000.vtu", 0);
-    assert!(stdout(&output).contains("stopped at"), "{}", stdout(&output));
-    let pvd = fs::read_to_string(folder.path().join("series.pvd")).unwrap();
-    assert!(roxmltree::Document::parse(&pvd).unwrap().descendants().any(|n| n.has_tag_name("DataSet")));
-
-    let output = interrupted(&["extremes", "--out", "atlas"], "", 0);
-    assert!(stderr(&output).contains("not in the atlas"), "{}", stderr(&output));
-    let atlas = fs::read_to_string(folder.path().join("atlas/extremes.csv")).unwrap();
-    let (header, rows) = table(&atlas);
-    assert!(rows.iter().all(|row| row.len() == header.len()));
-
-    for (args, missing) in [
-        (&["study", "cantilever", "--out", "trade"][..], "the finer meshes|nothing has been measured"),
-        (&["tune", "cantilever", "--error", "0.001%"], "nothing has been measured|finer meshes"),
-    ] {
-        let text = stderr(&interrupted(args, "", 0));
-        assert!(missing.split('|').any(|words| text.contains(words)), "{args:?}: {text}");
-    }
-}
-
-/// A progress bar is drawn on a terminal only.
-#[cfg(target_os = "linux")]
-#[test]
-fn long_commands_show_a_progress_bar_on_a_terminal() {
-    let args = ["solve", "swing", "--set", "dynamics.duration=60"];
-    assert_eq!(ends_in(Path::new("."), 0, &args)[1], "");
-    let (code, text) = on_a_terminal(Path::new("."), &args);
-    assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains(" of 60 s, ") && text.contains(" s per second") && text.contains(" left"), "{text}");
-}
-
-pub const GOOD: &str = r#"name = "Bar"
-[beam]
-length = 2.0
-height = 1.0
-cells = [4, 2]
-
-[material]
-young = 1.0e6
-poisson = 0.3
-
-[[support]]
-edge = "left"
-fix = ["x", "y"]
-
-[[load]]
-kind = "force"
-edge = "right"
-force = [0.0, -10.0]
-"#;
+pub const GOOD: &str = include_str!("../data/files/bar.toml");
 
 #[test]
 fn a_certificate_can_be_left_out() {
     let json = solve_json(&["elastica", "--no-certificate"]);
     assert!(json["stable"].is_null() && json["fixed_point_rho"].is_null());
     assert_eq!(json["time_us"]["certify"], 0.0);
+    assert!(solve_json(&["jump", "--reference=none", "--no-certificate"])["jumped"].is_null());
     assert!(!stdout(&warpbeam(&["solve", "elastica", "--no-certificate"])).contains("ρ"));
 }
 
@@ -342,7 +211,7 @@ fn small_motions_have_digits() {
     let set = ["material.young=210 GPa", "load.0.force=[0 N, -1 kN]"];
     let args = ["cantilever", "--set", set[0], "--set", set[1]];
     let u = solve_u(&args).y;
-    let text = stdout(&warpbeam(&[&["solve"], &args[..]].concat()));
+    let text = solve_text(&args);
     assert!((-1e-3..-1e-7).contains(&u), "{u}");
     let digits = |u: f64| format!("{}", format!("{u:.3e}").parse::<f64>().unwrap());
     assert!(text.contains(&format!(", {}) µm", digits(1e6 * u))), "{u}: {text}");
@@ -350,44 +219,6 @@ fn small_motions_have_digits() {
     assert!(text.lines().last().unwrap().starts_with("time ") && text.contains(", certify "), "{text}");
     let curve = stdout(&warpbeam(&["curve", "cantilever", "--set", set[0]]));
     assert!(curve.contains("tip displacement, µm"), "{curve}");
-}
-
-/// The path `-` is standard input; the scene's mesh file is found from the current folder.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_scene_is_read_from_standard_input() {
-    use std::io::Write as _;
-    let folder = tempfile::tempdir().unwrap();
-    let solve = |text: &str, code: i32, message: &str| {
-        let mut program = program(folder.path(), &["solve", "-", "--json"]);
-        let pipe = std::process::Stdio::piped;
-        let mut running = program.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn().unwrap();
-        running.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
-        let output = running.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
-        assert!(stderr(&output).contains(message), "{}", stderr(&output));
-        stdout(&output)
-    };
-    assert!(solve(GOOD, 0, "").contains("\"scene\": \"Bar\""));
-    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
-    let beam = "[beam]\nlength = 2.0\nheight = 1.0\ncells = [4, 2]\n";
-    let mesh = GOOD.replacen(beam, "[mesh]\nfile = \"square.msh\"\n", 1);
-    solve(&mesh.replace("\"left\"", "\"wall\"").replace("edge = \"right\"", "at = [1.0, 1.0]"), 0, "");
-    // An error that only the meshing finds names the line of the scene, also of a scene from standard input.
-    solve(&GOOD.replacen("\"right\"", "\"rihgt\"", 1), 2, "-:17: load.0.edge: expected one of");
-    solve("", 2, "-:1: name: expected a title, got nothing");
-}
-
-/// A path need not be valid UTF-8.
-#[cfg(target_os = "linux")]
-#[test]
-fn paths_are_any_bytes() {
-    use std::os::unix::ffi::OsStrExt as _;
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(std::ffi::OsStr::from_bytes(b"sc\xffne.toml"));
-    fs::write(&path, GOOD).unwrap();
-    let output = program(folder.path(), &["solve"]).arg(&path).output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 #[test]
@@ -491,23 +322,6 @@ fn curve_follows_an_arch_through_its_limit_load() {
     for of in ["crown", "support.0"] {
         succeeds_in(folder.path(), &["curve", "snap", "--picture", "snap.svg", "--of", of]);
     }
-}
-
-/// Under a force beyond its limit load the arch jumps, which is reported; a bending beam does not jump.
-#[test]
-fn a_jump_is_reported() {
-    let json = solve_json(&["jump", "--reference=none"]);
-    assert_eq!((&json["jumped"], &json["stable"]), (&true.into(), &true.into()));
-    let at = json["jumped_at"].as_f64().unwrap();
-    assert!((at * 90.0 - 80.8).abs() < 0.5, "{at}");
-    assert!(json["probes"][0]["u"][1].as_f64().unwrap() < -0.012, "{json}");
-    let text = stdout(&warpbeam(&["solve", "jump", "--reference=none"]));
-    assert!(text.contains("jumped: beyond the limit point at 89."), "{text}");
-    for scene in [&["cantilever"][..], &["column"], &["jump", "--set", "load.0.force=[0 N, -70 N]"]] {
-        let json = solve_json(&[scene, &["--reference=none"]].concat());
-        assert_eq!((&json["jumped"], &json["jumped_at"]), (&false.into(), &serde_json::Value::Null), "{scene:?}");
-    }
-    assert!(solve_json(&["jump", "--reference=none", "--no-certificate"])["jumped"].is_null());
 }
 
 /// The reaction of every support is in JSON and in the text output. Displacements and rotations may have units.
@@ -734,11 +548,7 @@ fn a_tuned_scene_keeps_its_mesh() {
     for folder in [&from, &to] {
         fs::create_dir(folder).unwrap();
     }
-    fs::write(from.join("square.msh"), include_str!("../data/square.msh")).unwrap();
-    let scene = "name = \"Square\"\nmesh.file = \"square.msh\"\nmaterial = { young = 1e4, poisson = 0.3 }\n\
-        support = [{ edge = \"wall\", fix = [\"x\", \"y\"] }]\nprobe = [{ name = \"corner\", at = [1, 0] }]\n\
-        load = [{ kind = \"gravity\", acceleration = [0, -0.1] }]\n";
-    fs::write(from.join("square.toml"), scene).unwrap();
+    write_square(&from, &[SQUARE_PROBE, SQUARE_LOAD].join("\n"));
     let tuned = to.join("tuned.toml");
     let tuned = tuned.to_str().unwrap();
     for (folder, source) in [(Path::new("."), from.join("square.toml")), (from.as_path(), "square.toml".into())] {

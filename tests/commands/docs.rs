@@ -7,29 +7,18 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::common::files::rust_files;
-use crate::common::{scene, scene_ids, succeeds_in, warpbeam};
+use crate::common::files::{files_of, rust_files};
+use crate::common::*;
 use serde_json::{Value, json};
-use warpbeam::Scene;
 use warpbeam::scene::keys::{KEYS, Key, KeyKind, Need};
 use warpbeam::scene::limits::Limit;
-use warpbeam::scene::registry;
 
 // Links.
 
 /// Returns every document, sorted.
 fn documents() -> Vec<PathBuf> {
-    let mut files = markdown_files(Path::new("docs"));
+    let mut files = files_of(Path::new("docs"), "md");
     files.extend(["README.md", "README.zh-CN.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(PathBuf::from));
-    files
-}
-
-fn markdown_files(folder: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let (folders, mut files): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| path.is_dir());
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "md"));
-    files.extend(folders.iter().flat_map(|folder| markdown_files(folder)));
     files
 }
 
@@ -144,17 +133,13 @@ fn every_link_to_code_leads_to_a_definition() {
 }
 
 #[test]
-fn the_map_names_every_page() {
+fn the_map_names_every_page_and_the_readmes_link_outwards() {
     let map = std::fs::read_to_string("docs/README.md").unwrap();
     let listed: BTreeSet<_> = links(&map).into_iter().map(|link| link.target).collect();
-    for file in markdown_files(Path::new("docs")) {
+    for file in files_of(Path::new("docs"), "md") {
         let name = file.strip_prefix("docs").unwrap().to_str().unwrap();
         assert!(name == "README.md" || listed.contains(name), "docs/README.md does not name {name}");
     }
-}
-
-#[test]
-fn the_readmes_are_short_and_link_outwards() {
     for file in ["README.md", "README.zh-CN.md"] {
         let text = std::fs::read_to_string(file).unwrap();
         assert!(text.len() <= 6500, "{file} has {} bytes", text.len());
@@ -183,12 +168,7 @@ fn check_part(file: &str, name: &str, expected: &str) {
 // Keys of a scene.
 
 /// Scene at rest with every kind of load, support, probe and section.
-const AT_REST: &str = "name = \"A\"\n[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\n[material]\nyoung = 1e6\n\
-    poisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n[[support]]\nat = [10.0, 0.0]\nfix = [\"y\"]\n\
-    [[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -1.0]\n[[load]]\nkind = \"force\"\nat = [5.0, 0.5]\n\
-    force = [0.0, -1.0]\n[[load]]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n[[load]]\nkind = \"moment\"\n\
-    edge = \"right\"\nmoment = 1.0\n[[probe]]\nname = \"a\"\nedge = \"right\"\n[[probe]]\nname = \"b\"\nat = [5.0, 0.0]\n\
-    [[section]]\nat = [5.0, 0.0]\n";
+const AT_REST: &str = include_str!("../data/files/at-rest.toml");
 
 /// Returns a scene that has the table of a key, and the place of the key in it.
 fn scene_for(key: &Key) -> (toml::Table, Vec<String>) {
@@ -359,8 +339,22 @@ fn reference_of_keys() -> String {
 }
 
 #[test]
-fn the_reference_of_scene_files_is_current() {
+fn generated_parts_are_current() {
     check_part("docs/reference/scene-file.md", "keys", &reference_of_keys());
+    let mut text = String::from("| command | does | options |\n|---|---|---|\n");
+    for command in warpbeam::cli::command().get_subcommands() {
+        let about = command.get_about().unwrap().to_string();
+        let long = command.get_arguments().filter_map(|argument| Some(format!("`--{}`", argument.get_long()?)));
+        let options = long.collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "| `{}` | {} | {options} |", command.get_name(), about.split(". ").next().unwrap());
+    }
+    check_part("docs/reference/commands.md", "commands", text.trim_end());
+    let mut text = String::from("| scene | | |\n|---|---|---|\n");
+    for id in scene_ids() {
+        let scene = scene(id);
+        let _ = writeln!(text, "| `{id}` | ![{}](../../assets/scenes/{id}.png) | {} |", scene.name, scene.about);
+    }
+    check_part("docs/guide/gallery.md", "gallery", text.trim_end());
 }
 
 /// Scenes in the documents are read; pieces of a scene are read as part of one.
@@ -369,7 +363,7 @@ fn every_scene_in_the_documents_is_read() {
     const WHOLE: &str = "[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\n[material]\nyoung = 1e6\npoisson = 0.3\n\
         [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n";
     let mut count = 0;
-    for file in markdown_files(Path::new("docs")) {
+    for file in files_of(Path::new("docs"), "md") {
         let text = std::fs::read_to_string(&file).unwrap();
         for block in text.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default()) {
             let tables = block.find("\n[").map_or(0, |at| at + 1);
@@ -543,28 +537,6 @@ fn the_schema_is_current_and_accepts_the_built_in_scenes() {
 
 // Commands, keys and results.
 
-#[test]
-fn the_reference_of_commands_is_current() {
-    let mut text = String::from("| command | does | options |\n|---|---|---|\n");
-    for command in warpbeam::cli::command().get_subcommands() {
-        let about = command.get_about().unwrap().to_string();
-        let long = command.get_arguments().filter_map(|argument| Some(format!("`--{}`", argument.get_long()?)));
-        let options = long.collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "| `{}` | {} | {options} |", command.get_name(), about.split(". ").next().unwrap());
-    }
-    check_part("docs/reference/commands.md", "commands", text.trim_end());
-}
-
-#[test]
-fn the_gallery_is_current() {
-    let mut text = String::from("| scene | | |\n|---|---|---|\n");
-    for id in scene_ids() {
-        let scene = scene(id);
-        let _ = writeln!(text, "| `{id}` | ![{}](../../assets/scenes/{id}.png) | {} |", scene.name, scene.about);
-    }
-    check_part("docs/guide/gallery.md", "gallery", text.trim_end());
-}
-
 /// Returns the first cell of every row of the tables in a section of a document, each code span in it for itself.
 fn first_cells(text: &str, section: &str) -> BTreeSet<String> {
     let (_, rest) = text.split_once(&format!("\n## {section}\n")).unwrap_or_else(|| panic!("no section {section}"));
@@ -627,12 +599,7 @@ fn the_reference_of_results_has_every_column_of_csv() {
     let documented: BTreeSet<_> = sections.flat_map(|section| first_cells(&text, section)).collect();
     let missing: Vec<_> = columns.difference(&documented).collect();
     assert!(missing.is_empty(), "not in docs/reference/results.md: {missing:?}");
-}
-
-/// The headers of the tables that one solve writes are in the reference, and the reference has no other columns.
-#[test]
-fn the_reference_of_results_has_the_columns_that_solve_writes() {
-    let text = std::fs::read_to_string("docs/reference/results.md").unwrap();
+    // The headers of the tables that one solve writes are in the reference.
     let folder = tempfile::tempdir().unwrap();
     let short = ["--set", "dynamics.duration=0.05", "--reference=none"];
     let supports = ["left_", "right_", "support.2_"].map(|name| (name, "SUPPORT_"));

@@ -1,6 +1,8 @@
 //! Tests of the example programs.
 #![allow(dead_code, reason = "the examples' own `main` is not called here")]
 
+use crate::common::*;
+
 #[path = "../../examples/figures.rs"]
 mod figures;
 #[path = "../../examples/game_loop.rs"]
@@ -18,20 +20,28 @@ mod swing_energy;
 #[path = "../../examples/warped.rs"]
 mod warped;
 
-use crate::common::solve_u;
-use warpbeam::IntegratorKind;
-
 #[test]
-fn the_game_keeps_its_beam_in_motion() {
+fn the_examples_have_their_results() {
     let (finished, tip) = game_loop::play().unwrap();
     // A frame that runs out of time leaves the rest to the next one, on any machine.
     assert!(finished > 0 && tip > 0.1 && tip < 4.0, "{finished} {tip}");
+    let report = mesh_study::report("assets/scenes".as_ref()).unwrap();
+    assert!(report.contains("stable Some(true)") && report.contains("an error of 1 % costs"), "{report}");
+    let (distance, force) = grab::drag().unwrap();
+    assert!(distance < 0.05 && force > 1.0 && force.is_finite(), "{distance} {force}");
+    let (elements, largest) = own_mesh::hook().unwrap();
+    assert_eq!(elements, 144);
+    // The section at the crown carries 50 N at a lever of 0.95 m: 6 M / (t h²) = 3.2 kPa without curvature.
+    assert!((2e3..8e3).contains(&largest), "{largest}");
+    // The method on one page is that of the program.
+    let (solved, tip) = (solve_u(&["article", "--set", "solver.tolerance=1e-13"]), warped::tip().unwrap());
+    assert!((tip.x - solved.x).hypot(tip.y - solved.y) < 1e-10 * solved.norm(), "{tip:?}, {solved}");
 }
 
 #[test]
 fn the_load_curve_leaves_linear_theory_where_the_exact_beam_does() {
     let csv = load_curve::curve().unwrap();
-    let rows = crate::common::numbers(&csv);
+    let rows = numbers(&csv);
     assert_eq!(rows.len(), 20);
     for row in &rows {
         let [alpha, linear, newton, exact] = row[..] else { unreachable!("{row:?}") };
@@ -40,33 +50,6 @@ fn the_load_curve_leaves_linear_theory_where_the_exact_beam_does() {
     }
     // Mattiasson 1981 for α = 10.
     assert!((rows[19][3] - 0.8106).abs() < 0.001, "{:?}", rows[19]);
-}
-
-#[test]
-fn the_mesh_is_studied() {
-    let report = mesh_study::report("assets/scenes".as_ref()).unwrap();
-    assert!(report.contains("stable Some(true)") && report.contains("an error of 1 % costs"), "{report}");
-}
-
-#[test]
-fn the_grabbed_tip_follows_the_pointer() {
-    let (distance, force) = grab::drag().unwrap();
-    assert!(distance < 0.05 && force > 1.0 && force.is_finite(), "{distance} {force}");
-}
-
-#[test]
-fn the_hook_is_bent_as_a_curved_beam() {
-    let (elements, largest) = own_mesh::hook().unwrap();
-    assert_eq!(elements, 144);
-    // The section at the crown carries 50 N at a lever of 0.95 m: 6 M / (t h²) = 3.2 kPa without curvature.
-    assert!((2e3..8e3).contains(&largest), "{largest}");
-}
-
-/// The method on one page is that of the program.
-#[test]
-fn the_page_of_the_method_solves_the_beam_of_the_article() {
-    let (solved, tip) = (solve_u(&["article", "--set", "solver.tolerance=1e-13"]), warped::tip().unwrap());
-    assert!((tip.x - solved.x).hypot(tip.y - solved.y) < 1e-10 * solved.norm(), "{tip:?}, {solved}");
 }
 
 #[test]

@@ -62,11 +62,7 @@ fn a_partitioned_mesh_has_its_edges() {
         assert!((tip / whole - 1.0).abs() < 1e-6, "{mesh}: {tip}");
         assert_eq!(json["reaction"]["force"][1].as_f64().map(f64::round), Some(1000.0), "{mesh}");
     }
-}
-
-/// A mesh file whose names are in Latin-1 is read, and the names are those that the user sees.
-#[test]
-fn names_in_latin_1_are_read() {
+    // Names in Latin-1 are those that the user sees.
     assert!(solved("s_latin1.toml").0 < 0.0);
     let wrong = warpbeam(&["solve", &file("s_latin1.toml"), "--set", "load.0.edge=nowhere"]);
     assert!(stderr(&wrong).contains("süd"), "{}", stderr(&wrong));
@@ -119,6 +115,7 @@ fn columns_have_names_of_their_own() {
         let names: Vec<&str> = names.split(',').collect();
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{names:?}");
         assert!(columns.iter().all(|column| names.contains(column)), "{names:?}");
+        assert_eq!(text[..end].contains("\"a, \"\"b\"\"\nc"), args[0] == "solve", "{text}");
     }
 }
 

@@ -16,19 +16,12 @@ fn side(png: &[u8]) -> u32 {
 }
 
 #[test]
-fn the_manifest_of_windows_keeps_explorer_from_opening_a_console() {
+fn the_manifest_of_windows_and_the_property_list_of_macos_fit() {
     let text = std::fs::read_to_string("assets/windows-manifest.xml").unwrap();
     let manifest = Document::parse(&text).unwrap();
     let policy = manifest.descendants().find(|node| node.has_tag_name(POLICY)).unwrap();
     assert_eq!(policy.text(), Some("detached"));
-}
-
-/// Name of the setting in <https://learn.microsoft.com/windows/console/console-allocation-policy>.
-const POLICY: (&str, &str) = ("http://schemas.microsoft.com/SMI/2024/WindowsSettings", "consoleAllocationPolicy");
-
-/// The keys of the property list have the values with which `scripts/package` fills the bundle.
-#[test]
-fn the_property_list_of_macos_names_the_files_of_the_bundle() {
+    // The keys of the property list have the values with which `scripts/package` fills the bundle.
     let text = std::fs::read_to_string("assets/Info.plist").unwrap();
     let list = Document::parse_with_options(&text, ParsingOptions { allow_dtd: true, ..Default::default() }).unwrap();
     let value = |key: &str| {
@@ -41,6 +34,9 @@ fn the_property_list_of_macos_names_the_files_of_the_bundle() {
     assert_eq!(value("CFBundleShortVersionString"), "@VERSION@");
     assert_eq!(value("CFBundleVersion"), "@VERSION@");
 }
+
+/// Name of the setting in <https://learn.microsoft.com/windows/console/console-allocation-policy>.
+const POLICY: (&str, &str) = ("http://schemas.microsoft.com/SMI/2024/WindowsSettings", "consoleAllocationPolicy");
 
 /// The icons contain images of the sides that their directories state.
 #[test]

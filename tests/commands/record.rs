@@ -31,18 +31,12 @@ fn decode_gif(path: &Path) -> Movie {
     Movie { size: [width, height], frames }
 }
 
-fn decode_png(path: &Path) -> ([usize; 2], Vec<u8>) {
-    let mut reader = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap())).read_info().unwrap();
-    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut rgba).unwrap();
-    reader.finish().unwrap();
-    ([info.width as usize, info.height as usize], rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect())
-}
-
 /// The numbered pictures of a folder, in RGB. It has nothing else.
 fn decode_folder(folder: &Path) -> Vec<([usize; 2], Vec<u8>)> {
     let count = fs::read_dir(folder).unwrap().count();
-    (1..=count).map(|k| decode_png(&folder.join(format!("frame-{k:04}.png")))).collect()
+    let pictures = (1..=count).map(|k| pictures::read_png(&folder.join(format!("frame-{k:04}.png"))));
+    let rgb = |rgba: &[u8]| rgba.chunks(4).flat_map(|pixel| pixel[..3].to_vec()).collect();
+    pictures.map(|picture| (picture.size.map(|side| side as usize), rgb(&picture.rgba))).collect()
 }
 
 fn record(folder: &Path, args: &[&str]) -> String {
@@ -133,7 +127,7 @@ fn the_story_is_recorded_in_place_of_a_scene() {
 fn a_search_is_recorded_iteration_by_iteration() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let iterations = crate::common::solve_json(&["elastica"])["iterations"].as_u64().unwrap() as usize;
+    let iterations = solve_json(&["elastica"])["iterations"].as_u64().unwrap() as usize;
     record(folder, &["elastica", "--size", "200x200", "-o", "a.gif"]);
     record(folder, &["elastica", "--size", "200x200", "-o", "frames"]);
     let movie = decode_gif(&folder.join("a.gif"));
@@ -144,16 +138,11 @@ fn a_search_is_recorded_iteration_by_iteration() {
     let args = ["record", "cantilever", "--set", "load.0.force=[0,-9000]", "--size", "64x64", "-o", "diverged"];
     assert!(ends_in(folder, 1, &args)[1].contains("diverged"));
     assert!(decode_folder(&folder.join("diverged")).len() > 1);
-}
-
-/// A motion that explodes is recorded up to that point.
-#[test]
-fn an_unstable_motion_is_recorded_and_reported() {
-    let folder = tempfile::tempdir().unwrap();
+    // A motion that explodes is recorded up to that point.
     let args = ["record", "swing", "--set", "dynamics.integrator=symplectic-euler", "--size", "64x64", "-o", "a.gif"];
-    let [_, said] = ends_in(folder.path(), 1, &args);
+    let [_, said] = ends_in(folder, 1, &args);
     assert!(said.contains("stopped: the motion exploded"), "{said}");
-    let frames = decode_gif(&folder.path().join("a.gif")).frames.len();
+    let frames = decode_gif(&folder.join("a.gif")).frames.len();
     assert!((1..51).contains(&frames), "{frames}");
 }
 
@@ -161,28 +150,24 @@ fn an_unstable_motion_is_recorded_and_reported() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_recording_is_shorter_and_valid() {
-    use crate::common::process::{start, wait_for};
+    use crate::common::process::{Signal, interrupted};
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.gif", "frames"] {
         let path = folder.path().join(name);
         // Slow motion: the motion is short, and its pictures are many.
-        let running = start(folder.path(), &["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name]);
-        wait_for("some pictures", || match name {
+        let args = ["record", "swing", "--speed", "0.001", "--size", "128x128", "-o", name];
+        let output = interrupted(folder.path(), &args, Signal::SIGINT, || match name {
             "frames" => fs::read_dir(&path).is_ok_and(|pictures| pictures.count() > 10),
             _ => fs::metadata(&path).is_ok_and(|file| file.len() > 30_000),
         });
-        let output = running.interrupt();
-        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         assert!(stderr(&output).contains("the recording is partial"), "{}", stderr(&output));
         let pictures = if name == "a.gif" { decode_gif(&path).frames.len() } else { decode_folder(&path).len() };
         assert!((1..50_000).contains(&pictures));
         let said = format!("{pictures} picture");
         assert!(stdout(&output).contains(&said), "{said}: {}", stdout(&output));
     }
-    let running = start(folder.path(), &["record", "swing", "--seconds", "1e5", "-o", "none.gif"]);
-    wait_for("an ear for signals", || running.listens());
-    let output = running.interrupt();
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let args = ["record", "swing", "--seconds", "1e5", "-o", "none.gif"];
+    let output = interrupted(folder.path(), &args, Signal::SIGINT, || true);
     assert!(stderr(&output).contains("nothing was written"), "{}", stderr(&output));
     assert!(!folder.path().join("none.gif").exists());
 }

@@ -28,7 +28,7 @@ fn forces_of_a_cantilever_are_those_of_statics() {
     let back = &sections(&[&small[..], &["--at", "2.5,0.1", "--angle", "180deg"]].concat())["sections"][0];
     let sum = one["moment"].as_f64().unwrap() + back["moment"].as_f64().unwrap();
     assert!(sum.abs() < 1e-11, "{sum}");
-    assert_eq!(back["angle"].as_f64(), Some(std::f64::consts::PI));
+    assert_eq!(back["angle"].as_f64(), Some(PI));
     let text = stdout(&warpbeam(&[&["section"], &small[..], &["--at", "2.5"]].concat()));
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("shear force V -1 mN") && words.contains("bending moment M -7.5 mN m"), "{text}");
@@ -41,23 +41,17 @@ fn forces_of_a_cantilever_are_those_of_statics() {
 /// The largest value of a diagram is beside the load where it jumps, however few sections are printed.
 #[test]
 fn the_largest_value_is_beside_a_jump() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = "name = \"loaded in the middle\"\n[beam]\nlength = 10.0\nheight = 1.0\ncells = [20, 2]\nelement = \"q4\"\n\
-                 [material]\nyoung = 1e6\npoisson = 0.3\n\
-                 [[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n\
-                 [[load]]\nkind = \"force\"\nat = [5.0, 0.5]\nforce = [1e-3, 0.0]\n";
-    fs::write(folder.path().join("middle.toml"), scene).unwrap();
+    let middle = "tests/data/scenes/loaded-in-the-middle.toml";
     for count in ["2", "3", "12"] {
-        let output = warpbeam_in(folder.path(), &["section", "middle.toml", "--along", count]);
+        let output = warpbeam(&["section", middle, "--along", count]);
         let text = stdout(&output);
         assert!(text.contains("largest N: 1 mN, at x = "), "{text} {}", stderr(&output));
         let rows = text.lines().skip(2).take_while(|line| !line.is_empty()).count();
         assert_eq!(rows, count.parse::<usize>().unwrap(), "{text}");
     }
     // Between a force that pulls to the left and the one beyond it, N is larger than in any of the sections asked for.
-    let two = format!("{scene}[[load]]\nkind = \"force\"\nat = [5.5, 0.5]\nforce = [-3e-3, 0.0]\n");
-    fs::write(folder.path().join("two.toml"), two).unwrap();
-    let text = stdout(&warpbeam_in(folder.path(), &["section", "two.toml", "--along", "2"]));
+    let two = "load=[{kind=\"force\",at=[5,0.5],force=[1e-3,0]},{kind=\"force\",at=[5.5,0.5],force=[-3e-3,0]}]";
+    let text = stdout(&warpbeam(&["section", middle, "--along", "2", "--set", two]));
     assert!(text.contains("largest N: -3 mN, at x = 5"), "{text}");
 }
 

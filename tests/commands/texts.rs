@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::cli::GOOD;
-use crate::common::{stderr, stdout, warpbeam_in};
+use crate::common::*;
 
 const FILE: &str = "tests/golden/texts.txt";
 

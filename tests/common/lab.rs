@@ -7,13 +7,11 @@ pub use egui::accesskit::Role;
 pub use egui::{Event, Key, Modifiers, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 pub use egui_kittest::kittest::{NodeT, Queryable};
-pub use nalgebra::Vector2;
-pub use warpbeam::app::Lab;
+pub use warpbeam::app::*;
+pub use warpbeam::format::*;
 use warpbeam::render::Camera;
-use warpbeam::scene::{Load, Source};
-pub use warpbeam::{MethodKind, Scene, Simulation, Status};
 
-pub use super::{scene, scene_with};
+pub use super::*;
 
 /// Returns a lab with a scene of this name.
 pub fn lab_of(name: &str, scene: Scene) -> Lab {
@@ -165,10 +163,24 @@ impl Ui {
         self.text(text);
     }
 
-    pub fn type_into(&mut self, label: &str, text: &str) {
-        unfold(self, label);
+    /// Opens or closes the fold whose header begins so.
+    pub fn fold(&mut self, header: &str) {
+        self.get_by_label_contains(header).scroll_to_me();
+        self.run_steps(4);
+        self.get_by_label_contains(header).click();
+        self.run_steps(8);
+        self.run_ok();
+    }
+
+    /// Puts the cursor into a number field.
+    pub fn enter(&mut self, label: &str) {
         self.get_by_role_and_label(Role::SpinButton, label).click();
         self.run();
+    }
+
+    pub fn type_into(&mut self, label: &str, text: &str) {
+        unfold(self, label);
+        self.enter(label);
         self.replace_text(text);
         self.key(Key::Enter);
     }
@@ -212,6 +224,12 @@ impl Ui {
 
     pub fn rect(&self, role: Role, label: &str) -> Rect {
         self.get_by_role_and_label(role, label).rect()
+    }
+
+    /// Returns the first label or value with this beginning.
+    pub fn starting(&self, start: &str) -> String {
+        let all = self.texts();
+        all.iter().find(|text| text.starts_with(start)).unwrap_or_else(|| panic!("no {start:?}: {all:?}")).clone()
     }
 
     /// Returns every label and value.
@@ -436,9 +454,7 @@ pub fn unfold(ui: &mut Ui, label: &str) {
     for (fold, labels) in FOLDS {
         let is_open = ui.query_all_by_label(labels[0]).next().is_some();
         if is_open != labels.contains(&label) {
-            ui.get_by_label_contains(fold).click();
-            ui.run_steps(8);
-            ui.run();
+            ui.fold(fold);
         }
     }
 }

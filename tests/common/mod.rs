@@ -14,11 +14,26 @@ pub mod pictures;
 pub mod process;
 pub mod random;
 
+pub use std::f64::consts::{PI, TAU};
+pub use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use warpbeam::scene::{Analysis, Scene, Source, open, registry};
-use warpbeam::{Simulation, Status};
+pub use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+pub use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
+pub use warpbeam::element::{ELEMENTS, Tangent};
+pub use warpbeam::method::METHODS;
+pub use warpbeam::rotation::polar;
+pub use warpbeam::scene::{Source, open, registry};
+pub use warpbeam::study::{Claim, LoadPath};
+pub use warpbeam::*;
+
+pub use random::Random;
+
+/// Observer that lets everything go on.
+pub fn go_on(_: Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
 
 /// Returns `true` where sweeps run in full: by `scripts/test --all`.
 pub fn sweeps_run_in_full() -> bool {
@@ -50,12 +65,30 @@ pub fn ids_of(analysis: Analysis) -> Vec<&'static str> {
     scene_ids().into_iter().filter(|id| scene(id).analysis == analysis).collect()
 }
 
+/// Solves a scene, whatever the end.
+pub fn ended(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.solve();
+    simulation
+}
+
+/// Solves a scene; fails unless it ends so.
+pub fn ends_as(scene: &Scene, status: &Status) -> Simulation {
+    let simulation = ended(scene);
+    let (element, method) = (scene.element(), scene.solver.method);
+    let what = format!("{}, {element:?} {method:?}, {:?}", scene.name, scene.dynamics.integrator);
+    assert_eq!(simulation.status(), status, "{what}: residual {:e}", simulation.residual());
+    simulation
+}
+
 /// Solves a scene; fails unless it converges.
 pub fn solved(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(scene).unwrap();
-    let status = simulation.solve().clone();
-    assert_eq!(status, Status::Converged, "{}: residual {:e}", scene.name, simulation.residual());
-    simulation
+    ends_as(scene, &Status::Converged)
+}
+
+/// Runs a motion; fails unless it finishes.
+pub fn run(scene: &Scene) -> Simulation {
+    ends_as(scene, &Status::Finished)
 }
 
 /// Runs the program.
@@ -129,13 +162,29 @@ pub fn numbers(text: &str) -> Vec<Vec<f64>> {
     table(text).1.iter().map(|row| row.iter().map(|value| value.parse().unwrap()).collect()).collect()
 }
 
+/// Returns the exit code and the JSON object of `solve --json`, whatever the end.
+pub fn solve_end(args: &[&str]) -> (Option<i32>, serde_json::Value) {
+    let output = warpbeam(&[&["solve", "--json"], args].concat());
+    (output.status.code(), parsed(&output))
+}
+
+/// Returns the text of `solve`, whatever the end.
+pub fn solve_text(args: &[&str]) -> String {
+    stdout(&warpbeam(&[&["solve"], args].concat()))
+}
+
+/// Returns the path of a scene of `tests/data/scenes`.
+pub fn file(name: &str) -> String {
+    format!("tests/data/scenes/{name}.toml")
+}
+
 /// Returns the output of `solve --json`; fails unless the solve converges.
 pub fn solve_json(args: &[&str]) -> serde_json::Value {
     serde_json::from_str(&succeeds(&[&["solve", "--json"], args].concat())).unwrap()
 }
 
 /// Returns the displacement of the first probe, as `solve --json` prints it.
-pub fn solve_u(args: &[&str]) -> nalgebra::Vector2<f64> {
+pub fn solve_u(args: &[&str]) -> Vector2<f64> {
     let json = solve_json(args);
     [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap()).into()
 }
@@ -145,41 +194,62 @@ pub fn solve_error(args: &[&str]) -> f64 {
     solve_json(args)["probes"][0]["error_percent"].as_f64().unwrap()
 }
 
+/// Returns the dense matrix of a tangent of a state over the free unknowns, and the forces there.
+pub fn dense(problem: &Problem, state: &State, tangent: Tangent) -> (DMatrix<f64>, Forces) {
+    let pattern = problem.system().pattern();
+    let (mut matrix, mut forces) = (Matrix::new(pattern), Forces::new(state.displacement().len()));
+    problem.linearize(state, &mut forces, Some((tangent, &mut matrix)));
+    (columns(problem, |unit, image| matrix.multiply(pattern, unit, image)), forces)
+}
+
+/// Returns the matrix of a linear map over the free unknowns.
+pub fn columns(problem: &Problem, mut map: impl FnMut(&[f64], &mut [f64])) -> DMatrix<f64> {
+    let n = problem.system().dofs();
+    let mut dense = DMatrix::zeros(n, n);
+    for column in 0..n {
+        let mut unit = vec![0.0; n];
+        unit[column] = 1.0;
+        map(&unit, dense.column_mut(column).as_mut_slice());
+    }
+    dense
+}
+
+/// Returns all pairs of the entries of two lists.
+pub fn pairs<A: Clone, B>(a: impl IntoIterator<Item = A>, b: impl IntoIterator<Item = B> + Clone) -> Vec<(A, B)> {
+    a.into_iter().flat_map(|a| b.clone().into_iter().map(move |b| (a.clone(), b))).collect()
+}
+
+/// Returns the largest displacement, m.
+pub fn largest(u: &[Vector2<f64>]) -> f64 {
+    u.iter().map(|u| u.norm()).fold(0.0, f64::max)
+}
+
+/// Checks that a nodal vector is the gradient of a function, by central differences.
+pub fn check_gradient(of: &[Vector2<f64>], step: f64, bound: f64, value: impl Fn(usize, Vector2<f64>) -> f64) {
+    for (node, expected) in of.iter().enumerate() {
+        let along = |axis: Vector2<f64>| (value(node, axis * step) - value(node, axis * -step)) / (2.0 * step);
+        let found = Vector2::new(along(Vector2::x()), along(Vector2::y()));
+        assert!((found - expected).amax() < bound, "node {node}: {found} {expected}");
+    }
+}
+
 /// Returns the largest distance of the points of two lists.
-pub fn largest_distance(a: &[nalgebra::Vector2<f64>], b: &[nalgebra::Vector2<f64>]) -> f64 {
+pub fn largest_distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// Row of `tests/data/cantilever.csv`. Lengths are in units of the beam's length.
-#[derive(Debug)]
-pub struct Row {
-    pub gravity: bool,
-    pub length_over_height: f64,
-    pub alpha: f64,
-    /// Angle of the load, rad.
-    pub angle: f64,
-    pub reissner: nalgebra::Vector2<f64>,
+/// Writes the scene of a square with sides of 1 m, held at its wall, and its mesh into a folder; `more` has its loads.
+pub fn write_square(folder: &Path, more: &str) -> String {
+    std::fs::write(folder.join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let body = "name = \"Square\"\nmesh.file = \"square.msh\"\nmaterial = { young = 1e4, poisson = 0.3 }\n";
+    let text = format!("{body}support = [{{ edge = \"wall\", fix = [\"x\", \"y\"] }}]\n{more}\n");
+    std::fs::write(folder.join("square.toml"), &text).unwrap();
+    text
 }
 
-/// Reads the reference table of clamped beams.
-pub fn cantilever_table() -> Vec<Row> {
-    let text = include_str!("../data/cantilever.csv");
-    text.lines()
-        .filter(|line| !line.starts_with('#'))
-        .skip(1)
-        .map(|line| {
-            let (kind, numbers) = line.split_once(',').unwrap();
-            let v: Vec<f64> = numbers.split(',').map(|n| n.parse().unwrap()).collect();
-            Row {
-                gravity: kind == "gravity",
-                length_over_height: v[0],
-                alpha: v[1],
-                angle: v[2].to_radians(),
-                reissner: nalgebra::Vector2::new(v[5], v[6]),
-            }
-        })
-        .collect()
-}
+/// Load of [`write_square`], and its probe.
+pub const SQUARE_LOAD: &str = "load = [{ kind = \"gravity\", acceleration = [0, -0.1] }]";
+pub const SQUARE_PROBE: &str = "probe = [{ name = \"corner\", at = [1, 0] }]";
 
 /// Returns a cantilever of height 1 and thickness 1 under the downward tip load P, given as α = P L² / (E I).
 pub fn cantilever(length_over_height: f64, alpha: f64, set: &[&str]) -> Scene {

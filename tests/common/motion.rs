@@ -1,11 +1,8 @@
 //! Functions shared by tests of dynamics.
 
-use nalgebra::{DMatrix, DVector, Vector2};
-use warpbeam::assembly::{Forces, Mass, Matrix};
-use warpbeam::element::Tangent;
-use warpbeam::{IntegratorKind, Momentum, Scene, Simulation, Status};
+use warpbeam::assembly::Mass;
 
-use super::scene;
+use super::*;
 
 /// Returns a built-in scene with another integrator, time step, number of solves per step and duration.
 pub fn with(id: &str, kind: IntegratorKind, time_step: f64, iterations: u32, duration: f64) -> Scene {
@@ -13,12 +10,6 @@ pub fn with(id: &str, kind: IntegratorKind, time_step: f64, iterations: u32, dur
     (scene.dynamics.integrator, scene.dynamics.time_step) = (kind, time_step);
     (scene.dynamics.iterations, scene.dynamics.duration) = (iterations, duration);
     scene
-}
-
-pub fn run(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(scene).unwrap();
-    assert_eq!(*simulation.solve(), Status::Finished);
-    simulation
 }
 
 /// Holds the body with the mouse spring at a point.
@@ -51,29 +42,19 @@ pub fn lowest_frequency(simulation: &Simulation) -> f64 {
 fn vibration(simulation: &Simulation) -> (DVector<f64>, f64) {
     let system = simulation.system();
     let (n, nodes) = (system.dofs(), system.mesh().nodes().len());
-    let mut sparse = Matrix::new(system.pattern());
-    let mut forces = Forces::new(nodes);
-    simulation.problem().linearize(&system.at_rest(), &mut forces, Some((Tangent::WARPED, &mut sparse)));
     let mass = Mass::new(system, simulation.scene().material.area_density());
-    let (mut stiffness, mut inertia) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
-    let (mut column, mut nodal, mut moved) =
-        (vec![0.0; n], vec![Vector2::zeros(); nodes], vec![Vector2::zeros(); nodes]);
-    for i in 0..n {
-        let mut unit = vec![0.0; n];
-        unit[i] = 1.0;
-        sparse.multiply(system.pattern(), &unit, &mut column);
-        stiffness.set_column(i, &DVector::from_column_slice(&column));
-        nodal.fill(Vector2::zeros());
-        system.pattern().add_free(&unit, 1.0, &mut nodal);
+    let (stiffness, _) = dense(simulation.problem(), &system.at_rest(), Tangent::WARPED);
+    let inertia = columns(simulation.problem(), |unit, image| {
+        let (mut nodal, mut moved) = (vec![Vector2::zeros(); nodes], vec![Vector2::zeros(); nodes]);
+        system.pattern().add_free(unit, 1.0, &mut nodal);
         // Explicit integrators have lumped masses.
         if simulation.scene().dynamics.integrator.entry().is_explicit() {
             moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect();
         } else {
             mass.multiply(&nodal, &mut moved);
         }
-        system.pattern().restrict(&moved, &mut column);
-        inertia.set_column(i, &DVector::from_column_slice(&column));
-    }
+        system.pattern().restrict(&moved, image);
+    });
     // Inverse iteration.
     let cholesky = stiffness.cholesky().unwrap();
     let (mut mode, mut growth) = (DVector::from_element(n, 1.0), 1.0);

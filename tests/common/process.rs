@@ -7,7 +7,8 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use nix::pty::openpty;
-use nix::sys::signal::{Signal, kill};
+pub use nix::sys::signal::Signal;
+use nix::sys::signal::kill;
 use nix::unistd::Pid;
 
 use super::program;
@@ -26,12 +27,12 @@ impl Drop for Running {
 }
 
 /// Starts the program with its output piped.
-pub fn start(folder: &Path, args: &[&str]) -> Running {
+fn start(folder: &Path, args: &[&str]) -> Running {
     Running(Some(program(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()))
 }
 
 /// Waits until `condition` returns `true`. Fails after 300 s.
-pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
+fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     const NEVER: Duration = Duration::from_secs(300);
     let began = Instant::now();
     while !condition() {
@@ -46,23 +47,22 @@ impl Running {
     }
 
     /// Returns `true` if the process handles SIGINT itself.
-    pub fn listens(&self) -> bool {
+    fn listens(&self) -> bool {
         const SIGINT_BIT: u64 = 1 << 1;
         let status = fs::read_to_string(format!("/proc/{}/status", self.id())).unwrap();
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
         u64::from_str_radix(caught.trim(), 16).unwrap() & SIGINT_BIT != 0
     }
+}
 
-    /// Sends SIGINT (Ctrl-C) and waits for the program's end.
-    pub fn interrupt(self) -> Output {
-        self.end_by(Signal::SIGINT)
-    }
-
-    /// Sends a signal and waits for the program's end.
-    pub fn end_by(mut self, signal: Signal) -> Output {
-        kill(Pid::from_raw(self.id() as i32), signal).unwrap();
-        self.0.take().unwrap().wait_with_output().unwrap()
-    }
+/// Starts the program, and sends a signal once it handles signals and a condition holds; fails unless the exit code is 1.
+pub fn interrupted(folder: &Path, args: &[&str], signal: Signal, mut is_time: impl FnMut() -> bool) -> Output {
+    let mut running = start(folder, args);
+    wait_for("a handler of signals, and a part of the result", || running.listens() && is_time());
+    kill(Pid::from_raw(running.id() as i32), signal).unwrap();
+    let output = running.0.take().unwrap().wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{args:?}: {}", super::stderr(&output));
+    output
 }
 
 /// Runs the program with standard error on a terminal; returns its exit code and the text written there.

@@ -1,8 +1,6 @@
 //! Random scenes from a fixed seed.
 
-use std::fmt::Write as _;
-
-use warpbeam::Scene;
+use warpbeam::{Axis, ElementKind, Material, Plane, Scene};
 
 /// A fixed sequence of well-mixed 64-bit numbers (splitmix64, Steele et al. 2014).
 #[derive(Debug)]
@@ -32,6 +30,10 @@ impl Random {
     }
 }
 
+const BOTH: &[Axis] = &[Axis::X, Axis::Y];
+const PLANES: &[Plane] = &[Plane::Stress, Plane::Strain];
+const ELEMENTS: &[ElementKind] = &[ElementKind::T3, ElementKind::T6, ElementKind::Q4];
+
 /// Returns a static rectangle of aspect 0.1 to 1000 with supports, loads and a probe of every kind, on a coarse mesh.
 pub fn scene(seed: u64) -> Scene {
     let mut random = Random(seed.wrapping_mul(0x5851_F42D_4C95_7F2D));
@@ -40,14 +42,13 @@ pub fn scene(seed: u64) -> Scene {
     let [length, height] = [aspect.max(1.0), (1.0 / aspect).max(1.0)];
     let (lies, long, short) = (length >= height, length.max(height), length.min(height));
     let poisson = random.one_of(&[0.0, 0.3, 0.45, 0.49, 0.499, 0.4999]);
-    let plane = random.one_of(&["stress", "strain"]);
-    let (element, most) = random.one_of(&[("t3", 40), ("t6", 20), ("q4", 40)]);
-    let (along, across) = (4 + random.below(most), 1 + random.below(4));
-    let cells = if lies { [along, across] } else { [across, along] };
-    let mut toml = format!(
-        "name = \"random {seed}\"\n[beam]\nlength = {length}\nheight = {height}\ncells = {cells:?}\nelement = \"{element}\"\n\
-         [material]\nyoung = 1e6\npoisson = {poisson}\nplane = \"{plane}\"\n"
-    );
+    let material = Material { plane: random.one_of(PLANES), ..Material::new(1e6, poisson) };
+    let element = random.one_of(ELEMENTS);
+    let most = if element == ElementKind::T6 { 20 } else { 40 };
+    let (along, across) = (4 + random.below(most) as u32, 1 + random.below(4) as u32);
+    let [along, across] = if lies { [along, across] } else { [across, along] };
+    let mut scene = Scene::beam(length, height).with_cells(along, across).with_element(element).with_material(material);
+    scene.name = format!("random {seed}");
     let [start, end] = if lies { ["left", "right"] } else { ["bottom", "top"] };
     let side = random.one_of(if lies { &["top", "bottom"] } else { &["left", "right"] });
     // Returns a point by its position along and across the rectangle.
@@ -56,59 +57,43 @@ pub fn scene(seed: u64) -> Scene {
         false => [(across + 0.5) * length, (along - 0.5) * height],
     };
     let vector = |along: f64, across: f64| if lies { [along, across] } else { [across, along] };
-    let across_axis = if lies { "y" } else { "x" };
-    let clamp = |edge: &str| format!("[[support]]\nedge = \"{edge}\"\nfix = [\"x\", \"y\"]\n");
+    let across_axis = if lies { Axis::Y } else { Axis::X };
     let kind = random.below(6);
-    toml += &match kind {
-        0 | 1 => clamp(start),
-        2 => clamp(start) + &clamp(end),
+    scene = match kind {
+        0 | 1 => scene.clamp(start),
+        2 => scene.clamp(start).clamp(end),
         3 => {
             let (a, b) = (at(random.between(0.0, 0.3), -0.5), at(random.between(0.7, 1.0), -0.5));
-            format!(
-                "[[support]]\nat = {a:?}\nfix = [\"x\", \"y\"]\n[[support]]\nat = {b:?}\nfix = [\"{across_axis}\"]\n"
-            )
+            scene.support(a, BOTH).support(b, &[across_axis])
         }
-        4 => clamp(start) + &format!("[[support]]\nedge = \"{end}\"\nfix = [\"{across_axis}\"]\n"),
+        4 => scene.clamp(start).support(end, &[across_axis]),
         _ => {
             let moved = vector(0.0, random.between(-0.02, 0.02) * long);
             let turn = if random.unit() < 0.3 { random.between(-0.2, 0.2) } else { 0.0 };
-            clamp(start) + &format!("{}displacement = {moved:?}\nturn = {turn}\n", clamp(end))
+            scene.clamp(start).clamp(end).moved(moved, turn)
         }
     };
     let is_cantilever = kind < 2;
     let slender = long / short > 3.0;
     let unit = if slender { 1e6 * short.powi(3) / 12.0 / long.powi(2) } else { 1e5 * short };
+    let loaded = if is_cantilever { end } else { side };
     for _ in 0..=random.below(2) {
         let size = unit * 10f64.powf(random.between(-2.0, 0.5));
         // Across the rectangle, or inclined by up to a right angle towards tension.
         let angle = random.between(0.0, std::f64::consts::FRAC_PI_2);
         let sign = random.one_of(&[-1.0, 1.0]);
         let force = vector(size * angle.cos() * if is_cantilever { 1.0 } else { 0.1 }, sign * size * angle.sin());
-        let loaded = if is_cantilever { end } else { side };
-        let _ = match random.below(4) {
-            0 => write!(toml, "[[load]]\nkind = \"force\"\nedge = \"{loaded}\"\nforce = {force:?}\n"),
-            1 => {
-                let point = at(random.between(0.3, 1.0), random.between(-0.5, 0.5));
-                write!(toml, "[[load]]\nkind = \"force\"\nat = {point:?}\nforce = {force:?}\n")
-            }
-            2 => {
-                let acceleration = force.map(|f| f / (1000.0 * length * height));
-                write!(toml, "[[load]]\nkind = \"gravity\"\nacceleration = {acceleration:?}\n")
-            }
-            _ => {
-                let moment = sign * size * long * if is_cantilever { 1.0 } else { 0.1 };
-                write!(toml, "[[load]]\nkind = \"moment\"\nedge = \"{loaded}\"\nmoment = {moment}\n")
-            }
+        scene = match random.below(4) {
+            0 => scene.force(loaded, force),
+            1 => scene.force(at(random.between(0.3, 1.0), random.between(-0.5, 0.5)), force),
+            2 => scene.gravity(force.map(|f| f / (1000.0 * length * height))),
+            _ => scene.moment(loaded, sign * size * long * if is_cantilever { 1.0 } else { 0.1 }),
         };
     }
-    let _ = match random.below(2) {
-        0 => write!(toml, "[[probe]]\nname = \"probe\"\nedge = \"{}\"\n", if is_cantilever { end } else { side }),
-        _ => {
-            let point = at(random.between(0.3, 1.0), random.between(-0.5, 0.5));
-            write!(toml, "[[probe]]\nname = \"probe\"\nat = {point:?}\n")
-        }
-    };
-    Scene::from_toml(&toml).unwrap_or_else(|error| panic!("{error}\n{toml}"))
+    match random.below(2) {
+        0 => scene.probe("probe", loaded),
+        _ => scene.probe("probe", at(random.between(0.3, 1.0), random.between(-0.5, 0.5))),
+    }
 }
 
 /// Returns a static scene on a coarse mesh with forces, and in some scenes supports, at points between nodes; a probe at
@@ -117,47 +102,35 @@ pub fn scene_with_points(seed: u64) -> Scene {
     let mut random = Random(seed.wrapping_mul(0x5851_F42D_4C95_7F2D));
     let random = &mut random;
     let length = random.between(1.5, 6.0);
-    let (element, along, across) = (random.one_of(&["t3", "t6", "q4"]), 3 + random.below(4), 1 + random.below(4));
-    let (poisson, plane) = (random.one_of(&[0.0, 0.3, 0.45]), random.one_of(&["stress", "strain"]));
-    let mut toml = format!(
-        "name = \"points {seed}\"\n[beam]\nlength = {length}\nheight = 1.0\ncells = [{along}, {across}]\nelement = \"{element}\"\n\
-         [material]\nyoung = 1e6\npoisson = {poisson}\nplane = \"{plane}\"\n"
-    );
+    let element = random.one_of(ELEMENTS);
+    let (along, across) = (3 + random.below(4) as u32, 1 + random.below(4) as u32);
+    let poisson = random.one_of(&[0.0, 0.3, 0.45]);
+    let material = Material { plane: random.one_of(PLANES), ..Material::new(1e6, poisson) };
+    let mut scene = Scene::beam(length, 1.0).with_cells(along, across).with_element(element).with_material(material);
+    scene.name = format!("points {seed}");
     let mut points: Vec<[f64; 2]> = Vec::new();
     // On an outline, near it, or anywhere.
     let mut point = |random: &mut Random| {
         let anywhere = random.between(-0.5, 0.5);
-        let at = [random.between(0.02, 1.0) * length, random.one_of(&[-0.5, 0.5, 0.49, 0.0, anywhere])];
-        points.push(at);
-        at
+        points.push([random.between(0.02, 1.0) * length, random.one_of(&[-0.5, 0.5, 0.49, 0.0, anywhere])]);
+        points[points.len() - 1]
     };
-    let clamp = "[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n";
-    let held = |at: [f64; 2], fix: &str, moved: f64| {
-        format!("[[support]]\nat = {at:?}\nacts_on = \"point\"\nfix = {fix}\ndisplacement = [0.0, {moved}]\n")
+    scene = match random.below(4) {
+        0 | 1 => scene.clamp("left"),
+        2 => (0..=random.below(2)).fold(scene.clamp("left"), |scene, _| {
+            let fix = random.one_of(&[&[Axis::Y][..], &[Axis::X], BOTH]);
+            let is_moved = random.unit() < 0.4 && fix.contains(&Axis::Y);
+            let moved = if is_moved { random.between(-0.03, 0.03) } else { 0.0 };
+            scene.point_support(point(random), fix).moved([0.0, moved], 0.0)
+        }),
+        _ => scene.point_support(point(random), BOTH).point_support(point(random), &[Axis::Y]),
     };
-    match random.below(4) {
-        0 | 1 => toml += clamp,
-        2 => {
-            toml += clamp;
-            for _ in 0..=random.below(2) {
-                let fix = random.one_of(&["[\"y\"]", "[\"x\"]", "[\"x\", \"y\"]"]);
-                let moved = if random.unit() < 0.4 && fix.contains('y') { random.between(-0.03, 0.03) } else { 0.0 };
-                toml += &held(point(random), fix, moved);
-            }
-        }
-        _ => toml += &(held(point(random), "[\"x\", \"y\"]", 0.0) + &held(point(random), "[\"y\"]", 0.0)),
-    }
     for _ in 0..=random.below(3) {
         let size = 1e6 / 12.0 / (length * length) * 10f64.powf(random.between(-2.0, -0.5));
         let angle = random.between(-3.2, 3.2);
-        let force = [size * angle.cos(), size * angle.sin()];
-        let at = point(random);
-        let _ = write!(toml, "[[load]]\nkind = \"force\"\nat = {at:?}\nacts_on = \"point\"\nforce = {force:?}\n");
+        scene = scene.point_force(point(random), [size * angle.cos(), size * angle.sin()]);
     }
     point(random);
-    for (i, at) in points.iter().enumerate() {
-        let _ = write!(toml, "[[probe]]\nname = \"p{i}\"\nat = {at:?}\n");
-    }
-    toml += "[[probe]]\nname = \"end\"\nedge = \"right\"\n";
-    Scene::from_toml(&toml).unwrap_or_else(|error| panic!("{error}\n{toml}"))
+    let probes = points.iter().enumerate();
+    probes.fold(scene, |scene, (i, at)| scene.probe(&format!("p{i}"), *at)).probe("end", "right")
 }

@@ -8,13 +8,15 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use peak_alloc::PeakAlloc;
 use warpbeam::element::ELEMENTS;
+use warpbeam::scene::registry;
 use warpbeam::scene::units::parse;
-use warpbeam::scene::{ElementKind, Scene, registry};
 use warpbeam::study::LoadPath;
-use warpbeam::{Field, Mesh, Progress, Simulation, Status};
+use warpbeam::{Axis, ElementKind, Field, Material, Mesh, MethodKind, Progress, Scene, Simulation, Status};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
+
+const BOTH: &[Axis] = &[Axis::X, Axis::Y];
 
 /// Number of random paths that `cargo test` follows.
 const ITERATIONS: usize = 100;
@@ -142,59 +144,43 @@ impl<'a> Choices<'a> {
     }
 
     /// Returns the scene of a body, 1 m high, held at edges and points that may move, up to 100 times its critical load.
-    fn moved_scene(&mut self) -> String {
+    fn moved_scene(&mut self) -> Scene {
         let length = 1.0 + 40.0 * self.unit().powi(2);
-        let mut text = format!(
-            "name = \"Random\"\n[beam]\nlength = {length}\nheight = 1.0\nrise = {}\ncells = [{}, {}]\nelement = \"{}\"\n\
-             [material]\nyoung = 1e6\npoisson = {}\n",
-            if self.below(4) == 0 { self.within(0.3 * length) } else { 0.0 },
-            1 + self.below(10),
-            1 + self.below(2),
-            self.of(&["t3", "t6", "q4"]),
-            0.49 * self.unit(),
-        );
+        let rise = if self.below(4) == 0 { self.within(0.3 * length) } else { 0.0 };
+        let (along, across, element) = (1 + self.below(10) as u32, 1 + self.below(2) as u32, self.of(ELEMENTS).kind);
+        let mut scene = Scene::beam(length, 1.0).with_rise(rise).with_cells(along, across).with_element(element);
+        scene.material = Material::new(1e6, 0.49 * self.unit());
         for edge in ["left", "right", "top"] {
-            let turn = self.within(400.0);
-            let [x, y] = [self.unit() * length, self.within(0.5)];
+            let turn = self.within(400.0).to_radians();
+            let at = [self.unit() * length, self.within(0.5)];
             let by = [self.within(0.5 * length), self.within(0.5 * length)];
             let (kind, moves) = (self.below(7), self.below(2) == 0);
-            text += &match kind {
-                0 | 1 if edge != "top" => {
-                    format!("[[support]]\nedge = \"{edge}\"\nfix = [\"x\", \"y\"]\nturn = \"{turn}°\"\n")
-                }
+            let by = if moves { by } else { [0.0; 2] };
+            scene = match kind {
+                0 | 1 if edge != "top" => scene.clamp(edge).moved(by, turn),
                 2..=4 => {
-                    let fix = self.of(&["\"x\", \"y\"", "\"x\", \"y\"", "\"y\""]);
-                    let acts_on = self.of(&["point", "point", "point", "node"]);
-                    format!("[[support]]\nat = [{x}, {y}]\nacts_on = \"{acts_on}\"\nfix = [{fix}]\n")
+                    let fix = self.of(&[BOTH, BOTH, &[Axis::Y]]);
+                    let is_node = self.below(4) == 0;
+                    let held = if is_node { scene.support(at, fix) } else { scene.point_support(at, fix) };
+                    held.moved(if fix == BOTH { by } else { [0.0; 2] }, 0.0)
                 }
-                _ => continue,
+                _ => scene,
             };
-            if moves && (text.ends_with("\"x\", \"y\"]\n") || kind < 2) {
-                text += &format!("displacement = {by:?}\n");
-            }
         }
         // π² EI/L² is about the critical load.
         let critical = 1e6 / length.powi(2);
         for _ in 0..self.below(3) {
             let size = critical * 10f64.powf(self.within(2.0));
             let (x, force) = (self.unit() * length, [self.within(size), self.within(size)]);
-            text += &match self.below(4) {
-                0 => {
-                    format!("[[load]]\nkind = \"moment\"\nedge = \"right\"\nmoment = {}\n", self.within(size * length))
-                }
-                1 => format!("[[load]]\nkind = \"force\"\nat = [{x}, 0.0]\nacts_on = \"point\"\nforce = {force:?}\n"),
-                2 => {
-                    let acceleration = force.map(|force| force / (1000.0 * length));
-                    format!("[[load]]\nkind = \"gravity\"\nacceleration = {acceleration:?}\n")
-                }
-                _ => format!("[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = {force:?}\n"),
+            scene = match self.below(4) {
+                0 => scene.moment("right", self.within(size * length)),
+                1 => scene.point_force([x, 0.0], force),
+                2 => scene.gravity(force.map(|force| force / (1000.0 * length))),
+                _ => scene.force("right", force),
             };
         }
-        text += &format!(
-            "[[probe]]\nname = \"p\"\nedge = \"right\"\n[solver]\nmethod = \"{}\"\n",
-            self.of(&["newton", "newton", "auto", "warped"])
-        );
-        text
+        let methods = [MethodKind::Newton, MethodKind::Newton, MethodKind::Auto, MethodKind::Warped];
+        scene.probe("p", "right").with_method(self.of(&methods))
     }
 
     /// Returns the text with some pieces replaced, removed, doubled or inserted.
@@ -222,17 +208,17 @@ impl<'a> Choices<'a> {
 struct Counts([AtomicU32; 2]);
 
 impl Counts {
-    fn solve(&self, text: &str) {
-        for (count, yes) in self.0.iter().zip(solve(text)) {
+    fn solve(&self, scene: &Scene) {
+        for (count, yes) in self.0.iter().zip(solve(scene)) {
             count.fetch_add(u32::from(yes), Ordering::Relaxed);
         }
     }
 }
 
-/// Solves the scene of a text. Returns `true` if it could be set up, and if it converged.
-fn solve(text: &str) -> [bool; 2] {
-    let Ok(scene) = Scene::from_toml(text) else { return [false; 2] };
-    let Ok(mut simulation) = Simulation::new(&scene) else { return [false; 2] };
+/// Solves a scene. Returns `true` if it could be set up, and if it converged.
+fn solve(scene: &Scene) -> [bool; 2] {
+    let Ok(mut simulation) = Simulation::new(scene) else { return [false; 2] };
+    let text = scene.to_toml().unwrap();
     simulation.solve();
     assert_ne!(*simulation.status(), Status::Running);
     assert!(simulation.iterations() <= scene.solver.max_iterations);
@@ -251,7 +237,9 @@ fn solve(text: &str) -> [bool; 2] {
 fn the_solver_solves_or_refuses_small_scenes() {
     let counts = Counts::default();
     bolero::check!().with_iterations(8000).with_max_len(256).for_each(|bytes: &[u8]| {
-        counts.solve(&Choices::new(bytes).scene());
+        if let Ok(scene) = Scene::from_toml(&Choices::new(bytes).scene()) {
+            counts.solve(&scene);
+        }
         memory_is_bounded();
     });
     let [set_up, converged] = counts.0.map(AtomicU32::into_inner);
@@ -264,8 +252,9 @@ fn the_solver_solves_or_refuses_small_scenes() {
 fn paths_are_followed_or_refused() {
     let counts = Counts::default();
     bolero::check!().with_iterations(ITERATIONS).with_max_len(256).for_each(|bytes: &[u8]| {
-        let text = Choices::new(bytes).moved_scene();
-        counts.solve(&text);
+        let scene = Choices::new(bytes).moved_scene();
+        counts.solve(&scene);
+        let text = scene.to_toml().unwrap();
         // A path may be long: it is cancelled as by a user.
         let watched = || {
             let left = AtomicU32::new(200);
@@ -276,7 +265,6 @@ fn paths_are_followed_or_refused() {
                 Err(_) => ControlFlow::Break(()),
             }
         };
-        let Ok(scene) = Scene::from_toml(&text) else { return };
         if let Some(path) = LoadPath::observed(&scene, &watched()) {
             let states = path.states.iter().flat_map(|state| {
                 let reactions = state.reactions.iter().flat_map(|r| [r.force.x, r.force.y, r.moment]);

@@ -2,13 +2,8 @@
 //! an edit of a force, or a pull of the mouse spring.
 
 use crate::common::motion::grab;
-use crate::common::{ids_of, scene};
+use crate::common::*;
 use allocation_counter::measure;
-use nalgebra::Vector2;
-use warpbeam::element::ELEMENTS;
-use warpbeam::method::METHODS;
-use warpbeam::scene::Analysis;
-use warpbeam::{IntegratorKind, LoadId, MethodKind, Simulation};
 
 /// Number of first steps that may allocate, because some memory is allocated on first use.
 const FIRST: u32 = 3;
@@ -20,9 +15,7 @@ fn allocations(mut work: impl FnMut()) -> u64 {
 #[test]
 fn time_steps_allocate_nothing() {
     for id in ids_of(Analysis::Dynamic) {
-        for (integrator, element) in
-            IntegratorKind::all().map(IntegratorKind::entry).flat_map(|i| ELEMENTS.iter().map(move |e| (i, e)))
-        {
+        for (integrator, element) in pairs(IntegratorKind::all().map(IntegratorKind::entry), ELEMENTS) {
             for (iterations, method) in [(1, MethodKind::Newton), (0, MethodKind::Newton), (1, MethodKind::Linear)] {
                 let mut scene = scene(id);
                 scene.set_element(element.kind);
@@ -59,8 +52,7 @@ fn iterations_allocate_nothing() {
         let mut scene = scene("cantilever");
         scene.set_element(element.kind);
         scene.solver.method = method.kind;
-        let mut simulation = Simulation::new(&scene).unwrap();
-        simulation.solve();
+        let mut simulation = ended(&scene);
         for force in [900.0, 920.0, 600.0] {
             simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -force])).unwrap();
             simulation.solve();

@@ -1,18 +1,11 @@
 //! Every public constructor with short, long, empty, non-finite and out-of-range input gives typed errors and no panic.
 
-use crate::common::{scene, solved};
-use nalgebra::{Matrix2, Vector2};
-use warpbeam::assembly::{Problem, SystemError};
-use warpbeam::element::{ELEMENTS, side_weights};
+use crate::common::*;
+use warpbeam::element::side_weights;
 use warpbeam::format::{count, number};
-use warpbeam::rotation::{Rotation, polar};
-use warpbeam::scene::{Source, open};
+use warpbeam::scene::open;
 use warpbeam::solver::{Factor, Symbolic};
-use warpbeam::study::{LoadCurve, Reference};
-use warpbeam::{
-    Axis, Diagonals, ElementKind, GmshError, IntegratorKind, LoadId, Material, MaterialPoint, Mesh, MeshError,
-    MethodKind, Plane, Scene, Simulation, SimulationError, StateError, Status,
-};
+use warpbeam::study::LoadCurve;
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];
 
@@ -94,7 +87,7 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
         assert!(Simulation::with_system(&scene, system.clone()).is_err());
         assert!(Problem::new(&scene, system.clone()).is_err());
         assert!(Reference::of(&scene).is_err());
-        assert!(LoadCurve::new(&scene, &|_| std::ops::ControlFlow::Continue(())).is_none(), "{scene:?}");
+        assert!(LoadCurve::new(&scene, &go_on).is_none(), "{scene:?}");
         // With another mesh, the scene's own geometry is not used; everything else is validated.
         if scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok() {
             let of_geometry = |e: String| e.starts_with("beam") || e.starts_with("mesh");
@@ -126,15 +119,7 @@ fn builders_set_what_a_file_sets() {
         .probe("tip", "right")
         .section([4.0, 0.5], 0.1);
     rest.name = "all".to_owned();
-    let file = "name = 'all'\n[beam]\nlength = 10\nheight = 0.7\nrise = 0.5\ncells = [7, 2]\nelement = 't3'\ndiagonals = 'same'\n\
-        [material]\nyoung = 1e5\npoisson = 0.2\ndensity = 7\nthickness = 0.2\nplane = 'strain'\n[solver]\nmethod = 'auto'\n\
-        [[support]]\nedge = 'left'\nfix = ['x', 'y']\ndisplacement = [-0.1, 0.2]\nturn = 0.3\n\
-        [[support]]\nedge = 'right'\nfix = ['y']\n[[support]]\nat = [5.1, 0.8]\nacts_on = 'point'\nfix = ['x']\n\
-        [[load]]\nkind = 'force'\nedge = 'top'\nforce = [1, 2]\n\
-        [[load]]\nkind = 'force'\nat = [2.3, 0.1]\nacts_on = 'point'\nforce = [3, 4]\n\
-        [[load]]\nkind = 'moment'\nedge = 'right'\nmoment = 5\n[[load]]\nkind = 'gravity'\nacceleration = [0, -6]\n\
-        [[probe]]\nname = 'tip'\nedge = 'right'\n[[section]]\nat = [4, 0.5]\nangle = 0.1\n";
-    assert_eq!(rest, Scene::from_toml(file).unwrap());
+    assert_eq!(rest, Scene::from_toml(include_str!("../data/files/all-keys.toml")).unwrap());
     let mut moving = Scene::mesh_file("../meshes/cook.msh", "").unwrap().with_scale(0.01).gravity([0.0, -1.0]);
     moving = moving.pulse(0.1, 0.2).moving(IntegratorKind::ImplicitEuler, 0.05).starting([0.3, 0.4], 0.5);
     let file = format!(
@@ -178,7 +163,7 @@ fn invalid_sources_and_assignments_are_refused() {
 }
 
 #[test]
-fn elements_and_meshes_take_any_point() {
+fn meshes_solvers_rotations_and_formats_take_any_number() {
     let mesh = Mesh::beam(Scene::beam(2.0, 1.0).beam.as_ref().unwrap()).unwrap();
     for bad in BAD {
         assert_eq!(mesh.locate(Vector2::new(bad, 0.0)), None);
@@ -194,10 +179,6 @@ fn elements_and_meshes_take_any_point() {
         assert_eq!(element.jacobian(&[], [0.1, 0.1]), Matrix2::zeros());
         assert!(matches!(Mesh::from_gmsh("", element.kind), Err(GmshError::Syntax { line: 1, .. })));
     }
-}
-
-#[test]
-fn solvers_take_empty_and_singular_matrices() {
     let empty = Symbolic::new(&[0], &[]).unwrap();
     assert_eq!(empty.size(), 0);
     let mut factor = Factor::new(&empty).unwrap();
@@ -211,10 +192,6 @@ fn solvers_take_empty_and_singular_matrices() {
     let mut b = [2.0];
     factor.solve_in_place(&mut b);
     assert_eq!(b, [-0.5]);
-}
-
-#[test]
-fn rotations_and_formats_take_any_number() {
     for (bad, word) in BAD.into_iter().zip(["NaN", "inf", "-inf", "1e300", "-1e300"]) {
         let rotation = polar(&Matrix2::new(bad, 0.0, 0.0, 1.0));
         assert_eq!(rotation, bad.is_finite().then_some(Rotation { c: bad.signum(), s: 0.0 }), "{bad}");

@@ -1,9 +1,6 @@
 //! Tests of `auto`: it skips work that is not needed, and its result is within the requested error of the equilibrium.
 
-use crate::common::{ids_of, sampled, scene};
-use warpbeam::method::{AutoReport, Decision};
-use warpbeam::scene::Analysis;
-use warpbeam::{Load, MethodKind, Scene, Simulation, Status};
+use crate::common::*;
 
 fn scaled(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
@@ -12,9 +9,7 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
 }
 
 fn run(scene: &Scene, method: MethodKind) -> Simulation {
-    let mut simulation = Simulation::new(&scene.clone().with_method(method)).unwrap();
-    simulation.solve();
-    simulation
+    ended(&scene.clone().with_method(method))
 }
 
 /// Returns the distance of two results at the first probe, percent of the second's displacement.
@@ -126,11 +121,7 @@ fn auto_does_not_solve_an_unchanged_scene_again() {
         assert!(auto.iterations() > 0 && report(&auto).decision != Decision::Unchanged);
         assert!(auto.displacement() != before);
     }
-}
-
-/// Repeated small loads cost one factorization in total, and three back substitutions per frame.
-#[test]
-fn under_small_loads_nothing_is_factorized() {
+    // Repeated small loads cost one factorization in total, and three back substitutions per frame.
     let mut scene = scaled(&scene("cantilever"), 1e-3);
     scene.solver.method = MethodKind::Auto;
     let mut auto = run(&scene, MethodKind::Auto);
@@ -166,7 +157,7 @@ fn an_unstable_linear_solution_is_not_taken() {
     let mut column = scene("elastica");
     let beam = column.beam.clone().unwrap();
     let bending = column.material.young * column.material.thickness * beam.height.powi(3) / 12.0;
-    let euler = std::f64::consts::PI.powi(2) * bending / (4.0 * beam.length.powi(2));
+    let euler = PI.powi(2) * bending / (4.0 * beam.length.powi(2));
     for (share, decides_linear) in [(0.5, true), (0.9, true), (1.1, false), (1.5, false)] {
         column.loads = vec![Load::force("right", [-share * euler, 0.0])];
         let auto = run(&column, MethodKind::Auto);

@@ -5,12 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::random::{self, Random};
-use crate::common::solved;
-use warpbeam::assembly::{Forces, Kinematics};
-use warpbeam::nalgebra::{DMatrix, Vector2};
-use warpbeam::study::{Advice, Claim, Extent, LoadPath, PathSummary, Study};
-use warpbeam::{Axis, Demand, ElementKind, MethodKind, Place, Scene, Simulation, Status};
+use crate::common::*;
+use warpbeam::nalgebra::DMatrix;
+use warpbeam::study::{Advice, PathSummary};
 
 /// Number of claims of each kind, and those that are false.
 #[derive(Debug, Default)]
@@ -29,7 +26,7 @@ impl Claims {
 }
 
 fn path_of(simulation: &Simulation) -> Option<PathSummary> {
-    LoadPath::to_result(simulation, &|_| std::ops::ControlFlow::Continue(()))
+    LoadPath::to_result(simulation, &go_on)
 }
 
 /// Returns the claims of a result, without an error.
@@ -83,7 +80,7 @@ fn critical(claims: &[Claim]) -> Option<f64> {
 /// Returns the largest distance of a node between two displacements, m, relative to the largest displacement.
 fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
     let largest = a.iter().chain(b).map(|u| u.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    crate::common::largest_distance(a, b) / largest
+    largest_distance(a, b) / largest
 }
 
 /// Returns the smallest eigenvalue of the exact stiffness relative to the largest, from central differences of forces.
@@ -161,7 +158,7 @@ fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
 #[test]
 fn claims_about_random_scenes_are_true() {
     let first: u64 = std::env::var("WARPBEAM_SEED").map_or(11_000, |seed| seed.parse().unwrap());
-    let count = if crate::common::sweeps_run_in_full() { 300 } else { 30 };
+    let count = if sweeps_run_in_full() { 300 } else { 30 };
     let (mut claims, mut unsolved) = (Claims::default(), 0);
     for seed in (first..).take(count) {
         let mut scene = random::scene(seed);
@@ -173,7 +170,7 @@ fn claims_about_random_scenes_are_true() {
             unsolved += 1;
             continue;
         }
-        let scale = newton.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        let scale = largest(newton.displacement());
         for claim in claims_of(&mut newton) {
             claims.check_result(&claim, seed, &newton);
         }
@@ -209,7 +206,7 @@ fn claims_about_random_scenes_are_true() {
 #[test]
 fn claims_near_critical_loads_are_true() {
     let first: u64 = std::env::var("WARPBEAM_SEED").map_or(500, |seed| seed.parse().unwrap());
-    let count = if crate::common::sweeps_run_in_full() { 60 } else { 12 };
+    let count = if sweeps_run_in_full() { 60 } else { 12 };
     let mut claims = Claims::default();
     // After a long step of the last ones, a second mode is closer to 0 than the one that has buckled, or the stiffness of
     // the mode is far from its tangent; the second limit point of 71_039 is just below the first.
@@ -219,7 +216,7 @@ fn claims_near_critical_loads_are_true() {
         // A row of triangles is not symmetric, which would be an imperfection of its own.
         let mut beam = Scene::beam(slenderness, 1.0).with_cells(16, 1).with_element(ElementKind::Q4);
         (beam.material.young, beam.material.poisson) = (1e6, random.between(0.0, 0.45));
-        let euler = std::f64::consts::PI.powi(2) * 1e6 / 12.0 / slenderness.powi(2);
+        let euler = PI.powi(2) * 1e6 / 12.0 / slenderness.powi(2);
         let near = random.between(1.2, 2.5);
         let newton = |scene: Scene| solved(&scene.with_method(MethodKind::Newton));
         match seed % 3 {
@@ -316,10 +313,10 @@ fn claims_near_critical_loads_are_true() {
 /// Claims of a study agree with its table.
 #[test]
 fn claims_of_a_study_are_those_of_its_table() {
-    let scene = crate::common::scene("cantilever");
-    let study = Study::new(&scene, Extent::Quick, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+    let scene = scene("cantilever");
+    let study = Study::new(&scene, Extent::Quick, &go_on).unwrap();
     let csv = study.table();
-    let (names, rows) = crate::common::table(&csv);
+    let (names, rows) = table(&csv);
     let of = |row: &[&str], name: &str| -> f64 {
         row[names.iter().position(|n| *n == name).unwrap()].parse().unwrap_or(f64::INFINITY)
     };

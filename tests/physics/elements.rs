@@ -1,11 +1,9 @@
 //! Compares elements with independent numbers. Tests that every element must pass are in `tests/registry`, those of the
 //! stiffness of triangles in `src/article/stiffness`.
 
-use nalgebra::{DMatrix, DVector, Matrix2, SMatrix, Vector2};
-use warpbeam::assembly::{Forces, Matrix, Problem, System};
-use warpbeam::element::{Lame, Tangent, side_weights, warped_strain};
-use warpbeam::rotation::{Rotation, polar};
-use warpbeam::{ElementKind, Load, Material, Mesh, MethodKind, Plane, Scene, Simulation, State, Status};
+use crate::common::*;
+use nalgebra::SMatrix;
+use warpbeam::element::{Lame, side_weights, warped_strain};
 
 fn material(plane: Plane) -> Material {
     Material { young: 100.0, poisson: 0.3, density: 1.0, thickness: 0.5, plane }
@@ -21,13 +19,10 @@ fn uniaxial_stress_gives_the_strains_of_the_book() {
         let stress = lame.stress(&strain);
         assert!((stress - Matrix2::new(p, 0.0, 0.0, 0.0)).amax() < 1e-13, "E {young} ν {nu} p {p}: {stress}");
     }
-}
-
-#[test]
-fn plane_strain_has_no_strain_out_of_the_plane() {
+    // Hooke's law in space has no strain out of the plane in plane strain.
     let m = material(Plane::Strain);
     let Lame { lambda, mu } = m.lame();
-    // Hooke's law in space: ε_zz = (σ_zz − ν (σ_xx + σ_yy)) / E = 0.
+    // ε_zz = (σ_zz − ν (σ_xx + σ_yy)) / E = 0.
     let strain = Matrix2::new(0.01, 0.002, 0.002, -0.004);
     let stress = m.lame().stress(&strain);
     let szz = m.out_of_plane_stress(stress.trace());
@@ -43,7 +38,7 @@ fn dead_force(scene: &Scene) -> Vec<Vector2<f64>> {
 /// On a mesh with curved sides, gravity is the weight of the true area, and the parts of a traction sum to its force.
 #[test]
 fn loads_on_curved_elements_add_up() {
-    let mut scene = crate::common::scene("bracket");
+    let mut scene = scene("bracket");
     let area = 1.2 * 0.3 + 0.9 * 0.3 + 0.2 * 0.2 * (1.0 - std::f64::consts::FRAC_PI_4);
     scene.loads = vec![Load::gravity([0.0, -9.81])];
     let total = |scene: &Scene| dead_force(scene).iter().sum::<Vector2<f64>>();
@@ -59,7 +54,7 @@ fn loads_on_curved_elements_add_up() {
 /// A force at a point acts unchanged on the nearest node: the reaction is its opposite, and it does work.
 #[test]
 fn a_force_at_a_point_pulls_the_nearest_node() {
-    let mut scene = crate::common::scene("cantilever");
+    let mut scene = scene("cantilever");
     scene.loads.clear();
     let scene = scene.force([9.97, 0.51], [3.0, -7.0]);
     let forces = dead_force(&scene);
@@ -68,7 +63,7 @@ fn a_force_at_a_point_pulls_the_nearest_node() {
     assert_eq!(pulled.len(), 1);
     assert_eq!(system.mesh().nodes()[pulled[0]], Vector2::new(10.0, 0.5));
     assert_eq!(forces[pulled[0]], Vector2::new(3.0, -7.0));
-    let result = crate::common::solved(&scene).solution();
+    let result = solved(&scene).solution();
     assert!((result.reaction.force + Vector2::new(3.0, -7.0)).norm() < 1e-4);
     assert!(result.probes[0].u.y < 0.0 && result.energy.external > 0.0);
 }
@@ -76,42 +71,10 @@ fn a_force_at_a_point_pulls_the_nearest_node() {
 /// A quadrilateral that is far from a parallelogram.
 const QUAD: [[f64; 2]; 4] = [[0.1, -0.2], [2.0, 0.3], [1.5, 1.4], [-0.3, 1.0]];
 
-/// Returns the stiffness of Taylor, Beresford and Wilson's element in its textbook form: 3 × 12 strain matrices at 2 × 2
-/// points, gradients of modes scaled with the ratio of the Jacobians, and the last four unknowns condensed.
-fn textbook_q4(material: &Material) -> SMatrix<f64, 8, 8> {
-    let gauss = 1.0 / 3f64.sqrt();
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let jacobian = |xi: f64, eta: f64| {
-        let mut j = Matrix2::zeros();
-        for ([a, b], x) in corners.iter().zip(QUAD) {
-            let (dxi, deta) = (0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi));
-            j += Matrix2::new(dxi * x[0], dxi * x[1], deta * x[0], deta * x[1]);
-        }
-        j
-    };
-    let centre = jacobian(0.0, 0.0);
-    let mut all = SMatrix::<f64, 12, 12>::zeros();
-    for [p, q] in corners {
-        let (xi, eta) = (p * gauss, q * gauss);
-        let j = jacobian(xi, eta);
-        let mut strain = SMatrix::<f64, 3, 12>::zeros();
-        let mut put = |a: usize, g: Vector2<f64>| {
-            strain[(0, 2 * a)] = g.x;
-            strain[(1, 2 * a + 1)] = g.y;
-            strain[(2, 2 * a)] = g.y;
-            strain[(2, 2 * a + 1)] = g.x;
-        };
-        for (i, [a, b]) in corners.iter().enumerate() {
-            put(i, j.try_inverse().unwrap() * (Vector2::new(0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi))));
-        }
-        let ratio = centre.determinant() / j.determinant();
-        put(4, centre.try_inverse().unwrap() * Vector2::new(-2.0 * xi, 0.0) * ratio);
-        put(5, centre.try_inverse().unwrap() * Vector2::new(0.0, -2.0 * eta) * ratio);
-        let weight = material.thickness * j.determinant();
-        all += strain.transpose() * material.elasticity_matrix() * strain * weight;
-    }
-    let (uu, uc) = (all.fixed_view::<8, 8>(0, 0), all.fixed_view::<8, 4>(0, 8));
-    uu - uc * all.fixed_view::<4, 4>(8, 8).try_inverse().unwrap() * uc.transpose()
+/// Returns the stiffness of [`QUAD`] as Taylor, Beresford and Wilson's element, computed by `tests/data/q4.py`.
+fn textbook_q4(plane: Plane) -> SMatrix<f64, 8, 8> {
+    let values = include_str!("../data/q4.csv").split([',', '\n']).filter_map(|value| value.parse().ok());
+    SMatrix::from_row_iterator(values.skip(if plane == Plane::Stress { 0 } else { 64 }).take(64))
 }
 
 /// Returns the problem of a single free quadrilateral.
@@ -121,37 +84,22 @@ fn one_quad(scene: &Scene) -> Problem {
     Problem::new(scene, System::with_mesh(scene, mesh).unwrap().into()).unwrap()
 }
 
-/// Returns a tangent of a single free quadrilateral, and the forces on its nodes.
-fn tangent_of(problem: &Problem, state: &State, tangent: Tangent) -> (DMatrix<f64>, Vec<Vector2<f64>>) {
-    let (mut matrix, mut forces) = (Matrix::new(problem.system().pattern()), Forces::new(4));
-    problem.linearize(state, &mut forces, Some((tangent, &mut matrix)));
-    let mut dense = DMatrix::zeros(8, 8);
-    for column in 0..8 {
-        let (mut unit, mut image) = ([0.0; 8], [0.0; 8]);
-        unit[column] = 1.0;
-        matrix.multiply(problem.system().pattern(), &unit, &mut image);
-        dense.set_column(column, &DVector::from_column_slice(&image));
-    }
-    (dense, forces.internal().to_vec())
-}
-
 /// The element equals the textbook's: its force in linear theory is Ke u, and its A at rest is Ke.
 #[test]
 fn q4_is_the_textbooks_element() {
-    use warpbeam::scene::Analysis;
     for plane in [Plane::Stress, Plane::Strain] {
         let mut scene = Scene::named("One").with_material(material(plane));
         scene.analysis = Analysis::Dynamic;
-        let (problem, ke) = (one_quad(&scene), textbook_q4(&material(plane)));
+        let (problem, ke) = (one_quad(&scene), textbook_q4(plane));
         let rest = problem.system().at_rest();
-        let (matrix, _) = tangent_of(&problem, &rest, Tangent::EXACT);
+        let (matrix, _) = dense(&problem, &rest, Tangent::EXACT);
         assert!((&matrix - ke).amax() < 1e-12 * ke.norm(), "{plane:?}: {matrix} {ke}");
         for column in 0..8 {
             let mut u = vec![Vector2::zeros(); 4];
             u[column / 2][column % 2] = 1.0;
-            let (_, forces) = tangent_of(&problem, &rest.with_displacement(u).unwrap(), Tangent::WARPED);
+            let (_, forces) = dense(&problem, &rest.with_displacement(u).unwrap(), Tangent::WARPED);
             for row in 0..8 {
-                let (force, expected) = (forces[row / 2][row % 2], ke[(row, column)]);
+                let (force, expected) = (forces.internal()[row / 2][row % 2], ke[(row, column)]);
                 assert!((force - expected).abs() < 1e-12 * ke.norm(), "{plane:?} {row} {column}: {force} {expected}");
             }
         }
@@ -163,8 +111,8 @@ fn q4_is_the_textbooks_element() {
 fn q4_energy_is_the_linear_energy_in_the_rotated_frame() {
     const STEP: f64 = 1e-5;
     let mut scene = Scene::named("One").with_material(material(Plane::Strain));
-    scene.analysis = warpbeam::scene::Analysis::Dynamic;
-    let (problem, ke) = (one_quad(&scene), textbook_q4(&material(Plane::Strain)));
+    scene.analysis = Analysis::Dynamic;
+    let (problem, ke) = (one_quad(&scene), textbook_q4(Plane::Strain));
     let rest = QUAD.map(Vector2::from);
     let element = ElementKind::Q4.entry();
     let to_rest = element.jacobian(&rest, [0.0; 2]).try_inverse().unwrap();
@@ -181,7 +129,7 @@ fn q4_energy_is_the_linear_energy_in_the_rotated_frame() {
     let u = x.chunks(2).zip(rest).map(|(x, rest)| Vector2::new(x[0], x[1]) - rest).collect::<Vec<_>>();
     let state = problem.system().state_of(&u).unwrap();
     assert!((problem.elastic_energy(&state) - written_out(&x)).abs() < 1e-12 * written_out(&x));
-    let (matrix, forces) = tangent_of(&problem, &state, Tangent::EXACT);
+    let (matrix, forces) = dense(&problem, &state, Tangent::EXACT);
     let scale = ke.norm();
     let moved = |steps: &[(usize, f64)]| {
         let mut x = x;
@@ -191,7 +139,7 @@ fn q4_energy_is_the_linear_energy_in_the_rotated_frame() {
     let mut numeric = DMatrix::zeros(8, 8);
     for i in 0..8 {
         let slope = (moved(&[(i, STEP)]) - moved(&[(i, -STEP)])) / (2.0 * STEP);
-        assert!((slope - forces[i / 2][i % 2]).abs() < 1e-6 * scale, "{i}: {slope}");
+        assert!((slope - forces.internal()[i / 2][i % 2]).abs() < 1e-6 * scale, "{i}: {slope}");
         for j in 0..8 {
             let h = 20.0 * STEP;
             let at = |a: f64, b: f64| moved(&[(i, a * h), (j, b * h)]);
@@ -246,11 +194,10 @@ fn q4_bends_with_few_cells() {
         ("elastica", [40, 1], 0.1),
     ];
     for (id, [along, across], bound) in cases {
-        let scene = crate::common::scene(id).with_element(ElementKind::Q4).with_cells(along, across);
+        let scene = scene(id).with_element(ElementKind::Q4).with_cells(along, across);
         let scene = scene.with_method(MethodKind::Newton);
-        let reference = warpbeam::Reference::of(&scene).unwrap().first().unwrap();
-        let mut simulation = Simulation::new(&scene).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged);
+        let reference = Reference::of(&scene).unwrap().first().unwrap();
+        let mut simulation = solved(&scene);
         assert_eq!(simulation.certify().stable, Some(true));
         let solution = simulation.solution();
         let error = reference.error_percent(&solution.probes[0]).unwrap();
@@ -268,8 +215,7 @@ fn q4_locks_neither_in_shear_nor_in_volume() {
     for length in [10.0, 100.0] {
         let scene = Scene::beam(length, 1.0).with_element(ElementKind::Q4).with_cells(20, 1).with_material(material);
         let scene = scene.clamp("left").force("right", [0.0, -load]).with_method(MethodKind::Newton);
-        let mut simulation = Simulation::new(&scene.probe("tip", "right")).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged);
+        let simulation = solved(&scene.probe("tip", "right"));
         let bending = load * length.powi(3) / (3.0 * young / (1.0 - nu * nu) / 12.0);
         let shear = load * length / (5.0 / 6.0 * young / (2.0 * (1.0 + nu)));
         let error = 100.0 * (-simulation.solution().probes[0].u.y / (bending + shear) - 1.0);
@@ -282,13 +228,13 @@ fn q4_locks_neither_in_shear_nor_in_volume() {
 #[test]
 fn q4_positive_part_of_g_is_positive() {
     let mut scene = Scene::named("One").with_material(material(Plane::Stress));
-    scene.analysis = warpbeam::scene::Analysis::Dynamic;
+    scene.analysis = Analysis::Dynamic;
     let problem = one_quad(&scene);
     let twist = [1.0, -1.0, 1.0, -1.0].map(|h| Vector2::new(0.2, 0.3) * h);
     let u: Vec<_> = QUAD.iter().zip(twist).map(|(x, twist)| Vector2::from(*x) * 0.5 + twist).collect();
     let state = problem.system().state_of(&u).unwrap();
     let [exact, definite, warped] =
-        [Tangent::EXACT, Tangent::DEFINITE, Tangent::WARPED].map(|tangent| tangent_of(&problem, &state, tangent).0);
+        [Tangent::EXACT, Tangent::DEFINITE, Tangent::WARPED].map(|tangent| dense(&problem, &state, tangent).0);
     let rounding = 1e-12 * exact.norm();
     let over_exact = (&definite - &exact).symmetric_eigenvalues();
     assert!(over_exact.min() > -rounding && over_exact.max() > 1e-3 * exact.norm(), "{over_exact}");

@@ -3,51 +3,19 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::{scene, scene_ids, stderr, stdout, warpbeam};
-use nalgebra::Vector2;
-use warpbeam::assembly::System;
-use warpbeam::{ElementKind, GmshError, Mesh, MeshError, Scene, Simulation};
+use crate::common::*;
 
 /// Two triangles, the second clockwise; the left side is a physical curve.
-const SQUARE: &str = r#"$MeshFormat
-4.1 0 8
-$EndMeshFormat
-$PhysicalNames
-2
-1 7 "wall"
-2 9 "body"
-$EndPhysicalNames
-$Comments
-anything
-$EndComments
-$Entities
-0 1 1 0
-5 0 0 0 0 1 0 1 7 0
-1 0 0 0 1 1 0 1 9 1 5
-$EndEntities
-$Nodes
-1 5 1 5
-2 1 0 5
-1
-2
-3
-4
-5
-0 0 0
-1 0 0
-1 1 0
-0 1 0
-9 9 0
-$EndNodes
-$Elements
-2 3 1 3
-1 5 1 1
-1 4 1
-2 1 2 2
-2 1 2 3
-3 1 4 3
-$EndElements
-"#;
+const SQUARE: &str = include_str!("../data/files/square-with-a-loose-node.msh");
+/// The square, and a third triangle that shares no node with it.
+const PARTS: &str = include_str!("../data/files/parts.msh");
+/// The square, and two triangles that share one node with it; in the ring, a third one closes them.
+const HINGED: &str = include_str!("../data/files/hinged.msh");
+const RING: &str = include_str!("../data/files/ring.msh");
+/// Two quadrilaterals side by side, the second clockwise; the left side is a physical curve.
+const QUADS: &str = include_str!("../data/files/quads.msh");
+/// A triangle and a quadrilateral.
+const MIXED: &str = include_str!("../data/files/mixed.msh");
 
 #[test]
 fn a_small_file_is_read() {
@@ -120,6 +88,12 @@ fn unusable_mesh_files_are_refused_with_the_line() {
     assert!(matches!(error, GmshError::Mesh(MeshError::Degenerate { element: 1, .. })), "{error}");
     assert!(error.to_string().contains("element 1 has no area"), "{error}");
     assert!(matches!(Mesh::from_gmsh("", ElementKind::T3), Err(GmshError::Syntax { .. })));
+    // A plane up to rounding is a plane.
+    for (z, flat) in [("1e-12", true), ("-3e-10", true), ("1e-6", false)] {
+        let text = SQUARE.replacen("1 1 0\n0 1 0\n", &format!("1 1 {z}\n0 1 0\n"), 1);
+        assert_eq!(Mesh::from_gmsh(&text, ElementKind::T3).is_ok(), flat, "{z}");
+        assert_eq!(Mesh::from_gmsh_scaled(&text, ElementKind::T3, 1e-3).is_ok(), flat, "{z}");
+    }
 }
 
 /// A file that is truncated anywhere, or has any byte replaced, gives an error or a mesh, never a panic or a hang.
@@ -181,7 +155,7 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
     let binary = SQUARE.replacen("4.1 0 8", "4.1 1 8", 1);
     fs::write(folder.path().join("binary.msh"), [&binary.as_bytes()[..40], &[0xff, 0, 0xfe]].concat()).unwrap();
     fs::write(folder.path().join("unnamed.msh"), SQUARE.replacen("1 7 0\n", "0 0\n", 1)).unwrap();
-    fs::write(folder.path().join("parts.msh"), in_parts()).unwrap();
+    fs::write(folder.path().join("parts.msh"), PARTS).unwrap();
     for (file, edge, code, message) in [
         ("square.msh", "wall", 0, ""),
         ("missing.msh", "wall", 2, "scene.toml:3: mesh.file:"),
@@ -198,16 +172,8 @@ fn a_scene_file_names_its_mesh_relative_to_itself() {
     }
 }
 
-/// Returns the square, and a third triangle that shares no node with it.
-fn in_parts() -> String {
-    let text = SQUARE.replacen("1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n", "1 7 1 7\n2 1 0 7\n1\n2\n3\n4\n5\n6\n7\n", 1);
-    let text = text.replacen("9 9 0\n", "9 9 0\n10 9 0\n9 10 0\n", 1);
-    let text = text.replacen("2 3 1 3", "2 4 1 4", 1).replacen("2 1 2 2\n", "2 1 2 3\n", 1);
-    text.replacen("3 1 4 3\n", "3 1 4 3\n4 5 6 7\n", 1)
-}
-
 /// Sets up a body on a mesh file, held at its wall, with further keys and supports.
-fn on_mesh(mesh: &str, keys: &str, support: &str) -> Result<Simulation, warpbeam::SimulationError> {
+fn on_mesh(mesh: &str, keys: &str, support: &str) -> Result<Simulation, SimulationError> {
     let text = format!(
         "name = \"Parts\"\n{keys}[mesh]\nfile = \"parts.msh\"\n[material]\nyoung = 1e6\npoisson = 0.3\n\
          [[support]]\nedge = \"wall\"\nfix = [\"x\", \"y\"]\n{support}"
@@ -220,7 +186,7 @@ fn on_mesh(mesh: &str, keys: &str, support: &str) -> Result<Simulation, warpbeam
 /// Several parts with separate supports are accepted, and in motion a part may be free.
 #[test]
 fn held_parts_are_solved() {
-    let scene = |support: &str, keys: &str| on_mesh(&in_parts(), keys, support);
+    let scene = |support: &str, keys: &str| on_mesh(PARTS, keys, support);
     let pin = |x: f64, y: f64| format!("[[support]]\nat = [{x:?}, {y:?}]\nfix = [\"x\", \"y\"]\n");
     assert!(scene("", "").is_err());
     assert!(scene(&pin(9.0, 9.0), "").is_err());
@@ -231,31 +197,14 @@ fn held_parts_are_solved() {
 /// It can rotate about the node, whose number is named. Another support or a second common node holds it.
 #[test]
 fn a_part_connected_at_one_node_only_is_refused() {
-    let hinged = |second: &str| {
-        let text = SQUARE.replacen("1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n", "1 7 1 7\n2 1 0 7\n1\n2\n3\n4\n5\n6\n7\n", 1);
-        let text = text.replacen("9 9 0\n", "2 1 0\n2 2 0\n1 2 0\n", 1);
-        let text = text.replacen("2 3 1 3", "2 5 1 5", 1).replacen("2 1 2 2\n", "2 1 2 4\n", 1);
-        text.replacen("3 1 4 3\n", &format!("3 1 4 3\n4 3 5 6\n5 3 6 7\n{second}"), 1)
-    };
     let scene = |mesh: &str, support: &str| on_mesh(mesh, "", support);
-    let error = scene(&hinged(""), "").unwrap_err().to_string();
+    let error = scene(HINGED, "").unwrap_err().to_string();
     assert!(error.contains("a part that is connected only at node 3 at (1, 1) and can rotate about it"), "{error}");
     // A support in the direction of the hinge does not prevent the rotation.
-    assert!(scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"x\"]\n").is_err());
-    let mut held = scene(&hinged(""), "[[support]]\nat = [2.0, 1.0]\nfix = [\"y\"]\n").unwrap();
-    assert_eq!(*held.solve(), warpbeam::Status::Converged);
-    // A third triangle from node 5 to node 2 closes a ring.
-    let ring = hinged("6 2 5 3\n").replacen("2 5 1 5", "2 6 1 6", 1).replacen("2 1 2 4\n", "2 1 2 5\n", 1);
-    assert!(scene(&ring, "").is_ok());
-}
-
-#[test]
-fn a_plane_up_to_rounding_is_a_plane() {
-    for (z, flat) in [("1e-12", true), ("-3e-10", true), ("1e-6", false)] {
-        let text = SQUARE.replacen("1 1 0\n0 1 0\n", &format!("1 1 {z}\n0 1 0\n"), 1);
-        assert_eq!(Mesh::from_gmsh(&text, ElementKind::T3).is_ok(), flat, "{z}");
-        assert_eq!(Mesh::from_gmsh_scaled(&text, ElementKind::T3, 1e-3).is_ok(), flat, "{z}");
-    }
+    assert!(scene(HINGED, "[[support]]\nat = [2.0, 1.0]\nfix = [\"x\"]\n").is_err());
+    let mut held = scene(HINGED, "[[support]]\nat = [2.0, 1.0]\nfix = [\"y\"]\n").unwrap();
+    assert_eq!(*held.solve(), Status::Converged);
+    assert!(scene(RING, "").is_ok());
 }
 
 #[test]
@@ -298,51 +247,6 @@ fn a_mesh_has_the_unit_and_the_element_of_its_file() {
     }
 }
 
-/// Two quadrilaterals side by side, the second clockwise; the left side is a physical curve.
-const QUADS: &str = r#"$MeshFormat
-4.1 0 8
-$EndMeshFormat
-$PhysicalNames
-1
-1 7 "wall"
-$EndPhysicalNames
-$Entities
-0 1 1 0
-5 0 0 0 0 1 0 1 7 0
-1 0 0 0 2 1 0 0 1 5
-$EndEntities
-$Nodes
-1 6 1 6
-2 1 0 6
-1
-2
-3
-4
-5
-6
-0 0 0
-1 0 0
-2 0 0
-2 1 0
-1 1 0
-0 1 0
-$EndNodes
-$Elements
-2 3 1 3
-1 5 1 1
-1 6 1
-2 1 3 2
-2 1 2 5 6
-3 2 5 4 3
-$EndElements
-"#;
-
-/// Returns the file as a mesh of triangles and quadrilaterals.
-fn mixed() -> String {
-    let quads = QUADS.replacen("2 3 1 3\n1 5", "3 3 1 3\n1 5", 1);
-    quads.replacen("2 1 3 2\n2 1 2 5 6\n3 2 5 4 3", "2 1 3 1\n2 1 2 5 6\n2 1 2 1\n3 2 3 4", 1)
-}
-
 #[test]
 fn quadrilaterals_are_read() {
     let mesh = Mesh::from_gmsh(QUADS, ElementKind::Q4).unwrap();
@@ -364,13 +268,12 @@ fn quadrilaterals_are_read() {
 
 #[test]
 fn elements_of_another_shape_are_refused_with_a_remedy() {
-    let mixed = mixed();
     let cases = [
         (QUADS, ElementKind::T3, "expected triangles for t3, got 2 quadrilaterals of 2: set element = \"q4\""),
         (QUADS, ElementKind::T6, "expected triangles for t6, got 2 quadrilaterals of 2: set element = \"q4\""),
         (SQUARE, ElementKind::Q4, "expected quadrilaterals for q4, got 2 triangles of 2: set element = \"t3\" or \"t6"),
-        (&mixed, ElementKind::Q4, "expected quadrilaterals for q4, got 1 triangles of 2: mesh the part again"),
-        (&mixed, ElementKind::T3, "expected triangles for t3, got 1 quadrilaterals of 2: mesh the part again"),
+        (MIXED, ElementKind::Q4, "expected quadrilaterals for q4, got 1 triangles of 2: mesh the part again"),
+        (MIXED, ElementKind::T3, "expected triangles for t3, got 1 quadrilaterals of 2: mesh the part again"),
     ];
     for (file, element, expected) in cases {
         let error = Mesh::from_gmsh(file, element).unwrap_err().to_string();
@@ -391,16 +294,15 @@ fn a_scene_of_quadrilaterals_needs_no_element() {
         load = [{ kind = "gravity", acceleration = [0.0, -9.81] }]
         probe = [{ name = "tip", at = [2.0, 0.5] }]
     "#;
-    let open = |text: &str| warpbeam::Scene::from_toml_in(text, folder.path()).unwrap();
+    let open = |text: &str| Scene::from_toml_in(text, folder.path()).unwrap();
     let scene = open(text);
     assert_eq!(scene.element(), ElementKind::Q4);
     assert_eq!(scene.elements().collect::<Vec<_>>(), [ElementKind::Q4]);
-    let mut simulation = warpbeam::Simulation::new(&scene).unwrap();
-    assert_eq!(*simulation.solve(), warpbeam::Status::Converged);
+    let simulation = solved(&scene);
     // Its reference solution is computed on the refined mesh of the same element.
-    let reference = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().displacement;
+    let reference = Reference::of(&scene).unwrap().first().unwrap().displacement;
     assert!(reference.y < 0.0 && (simulation.solution().probes[0].u - reference).norm() < 0.2 * reference.norm());
     let asked = open(&text.replace("mesh.file", "mesh.element = \"t3\"\n        mesh.file"));
-    let error = warpbeam::Simulation::new(&asked).unwrap_err().to_string();
+    let error = Simulation::new(&asked).unwrap_err().to_string();
     assert!(error.contains("set element = \"q4\""), "{error}");
 }

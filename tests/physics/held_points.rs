@@ -1,16 +1,8 @@
-//! Tests of supports at points between nodes: their points stay, and statics, work and motion are those of the points.
+//! Tests of supports and forces at points between nodes: their points stay, and statics, work and motion are those of the
+//! points.
 
-use nalgebra::Vector2;
-use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem, System};
-use warpbeam::element::{ELEMENTS, Tangent};
+use crate::common::*;
 use warpbeam::study::moved_points;
-use warpbeam::{
-    Axis, ElementKind, IntegratorKind, Material, MethodKind, Place, Reference, Scene, SectionLine, Simulation, Status,
-    Support,
-};
-
-use crate::common::random::Random;
-use crate::common::solved;
 
 const BOTH: &[Axis] = &[Axis::X, Axis::Y];
 
@@ -209,8 +201,7 @@ fn a_body_swings_about_its_point() {
         scene = scene.with_material(Material::new(2e7, 0.3)).point_support([0.13, 0.03], BOTH);
         scene = scene.gravity([0.0, -9.81]).probe("point", [0.13, 0.03]).moving(integrator, step);
         (scene.dynamics.iterations, scene.dynamics.duration) = (iterations, 0.3);
-        let mut simulation = Simulation::new(&scene).unwrap();
-        assert_eq!(*simulation.solve(), Status::Finished, "{integrator:?}");
+        let simulation = run(&scene);
         let point = simulation.probe("point").unwrap();
         assert!(point.norm() < 1e-9, "{integrator:?}: {point}");
         // A rigid body about the point: φ'' = g × d / (I/m), integrated in small steps.
@@ -240,6 +231,19 @@ fn scene_files_have_the_point_of_a_support() {
     assert_eq!(scene.supports[0].place, Place::At([3.4, 0.1]));
     let error = Scene::from_toml(&toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1)).unwrap_err().to_string();
     assert!(error.contains("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"), "{error}");
+    // So have loads.
+    let [point, node] =
+        [Load::point_force([3.3, 0.1], [0.0, -1.0]), Load::force([3.3, 0.1], [0.0, -1.0])].map(|load| {
+            let mut scene = Scene::beam(10.0, 1.0).clamp("left");
+            scene.loads.push(load);
+            scene.to_toml().unwrap()
+        });
+    assert!(point.contains("acts_on = \"point\"") && !node.contains("acts_on"), "{point} {node}");
+    let edge = Scene::from_toml(&point.replace("at = [3.3, 0.1]", "edge = \"right\"")).unwrap_err().to_string();
+    assert!(edge.contains("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"), "{edge}");
+    let gravity =
+        point.replace("force = [0.0, -1.0]", "acceleration = [0.0, -1.0]").replace("\"force\"", "\"gravity\"");
+    assert!(Scene::from_toml(&gravity).is_err());
 }
 
 /// A width of the outline, also at a corner, or of a line in the body, holds the mean displacement over it:
@@ -270,5 +274,33 @@ fn widths_have_a_limit_on_finer_meshes() {
         assert!(error < 0.02 && own < 1.0, "{at:?}: {error}, {own} %");
         let [pin, roller] = [0, 1].map(|i| solved(&scene).support_reactions()[i].force.y);
         assert!((pin + roller - 1000.0).abs() < 1e-6, "{pin} {roller}");
+    }
+}
+
+/// The moment is taken about the point at rest in linear theory, about the moved one in large rotations.
+#[test]
+fn a_clamp_balances_the_force_at_its_point() {
+    let force = Vector2::new(1.0, -3.0);
+    let mut random = Random(14);
+    for (entry, method) in ELEMENTS.iter().flat_map(|e| [MethodKind::Linear, MethodKind::Warped].map(|m| (e, m))) {
+        let mut points = vec![[3.0, 0.1], [3.4, 0.5], [4.0, 0.0]];
+        points.extend((0..5).map(|_| [random.between(0.2, 9.9), random.between(-0.5, 0.5)]));
+        for at in points {
+            let factor = if method == MethodKind::Linear { 1.0 } else { 200.0 };
+            let mut scene = Scene::beam(10.0, 1.0).with_cells(9, 2).with_element(entry.kind).with_method(method);
+            scene = scene.clamp("left").point_force(at, force * factor).probe("point", at);
+            scene.solver.tolerance = 1e-12;
+            let simulation = solved(&scene);
+            let reaction = &simulation.support_reactions()[0];
+            assert!((reaction.force + force * factor).norm() < 1e-8 * factor, "{at:?}: {}", reaction.force);
+            let moved =
+                if method == MethodKind::Linear { Vector2::zeros() } else { simulation.probe("point").unwrap() };
+            let moment = -(Vector2::from(at) + moved).perp(&(force * factor));
+            let off = (reaction.moment - moment).abs();
+            assert!(off < 1e-7 * moment.abs().max(factor), "{} at {at:?}: {off} N m off", entry.kind.entry().id);
+            let work = force.dot(&simulation.probe("point").unwrap()) * factor;
+            let own = simulation.solution().energy.external;
+            assert!((work - own).abs() < 1e-9 * work.abs(), "{own} instead of {work} J");
+        }
     }
 }

@@ -1,12 +1,7 @@
 //! Limits of methods: each end that is stated holds for single solves 1 % below and 1 % above it.
 
-use std::ops::ControlFlow;
-
-use warpbeam::study::limits::{MethodLimits, Strip};
-use warpbeam::{Reference, Scene, Simulation};
-
-use crate::common::random;
 use crate::common::*;
+use warpbeam::study::limits::{MethodLimits, Strip};
 
 /// Ratio of two neighbouring loads between which an end lies.
 const NEXT: f64 = 1.0101;
@@ -36,7 +31,7 @@ fn stated_ends_of_limits_hold() {
     for seed in (first..).take(count) {
         let mut scene = random::scene(seed);
         scene.solver.accept_after = 0;
-        let Ok(limits) = MethodLimits::of(&scene, &|_| ControlFlow::Continue(()), &|_| {}) else { continue };
+        let Ok(limits) = MethodLimits::of(&scene, &go_on, &|_| {}) else { continue };
         let axis = warpbeam::study::figure::LoadAxis::of(&scene);
         for strip in &limits.strips {
             let words = strip.words(&axis, limits.range).map(|words| words.to_string());

@@ -27,7 +27,6 @@ mod moments;
 mod moved_supports;
 #[cfg(target_os = "linux")]
 mod path_from_rest;
-mod point_forces;
 mod point_values;
 mod precision;
 mod pulses;

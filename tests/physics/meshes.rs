@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector2;
-use warpbeam::{ElementKind, Mesh, MeshError, Scene, Segment, Simulation, Status};
+use crate::common::*;
 
 fn square() -> Vec<Vector2<f64>> {
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from).to_vec()
@@ -11,17 +10,6 @@ fn square() -> Vec<Vector2<f64>> {
 
 fn edge(name: &str, nodes: &[&[u32]]) -> BTreeMap<String, Vec<Segment>> {
     BTreeMap::from([(name.to_owned(), nodes.iter().map(|n| Segment::new(n).unwrap()).collect())])
-}
-
-#[test]
-fn meshes_without_area_are_refused_and_clockwise_triangles_turned() {
-    let nodes = vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0), Vector2::new(2.0, 0.0)];
-    let mesh = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 2, 1], BTreeMap::new()).unwrap();
-    assert_eq!(mesh.connectivity(), [0, 1, 2]);
-    let flat = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 1, 2, 0, 1, 3], BTreeMap::new());
-    assert!(matches!(flat, Err(MeshError::Degenerate { element: 1, .. })));
-    let missing = Mesh::new(nodes, ElementKind::T3, vec![0, 1, 9], BTreeMap::new());
-    assert!(matches!(missing, Err(MeshError::NoSuchNode { element: 0, node: 9, count: 4 })));
 }
 
 /// An invalid mesh gives an error that names the problem; nothing panics later.
@@ -56,6 +44,14 @@ fn files_without_a_mesh_are_refused() {
     let mut nodes = square();
     nodes.extend([[0.5, 0.8], [1.0, 0.5], [0.5, 0.5]].map(Vector2::from));
     assert_eq!(mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none()), Err(MeshError::Folded { element: 0 }));
+    // Without area; a clockwise triangle is turned.
+    let nodes = vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0), Vector2::new(2.0, 0.0)];
+    let mesh = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 2, 1], BTreeMap::new()).unwrap();
+    assert_eq!(mesh.connectivity(), [0, 1, 2]);
+    let flat = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 1, 2, 0, 1, 3], BTreeMap::new());
+    assert!(matches!(flat, Err(MeshError::Degenerate { element: 1, .. })));
+    let missing = Mesh::new(nodes, ElementKind::T3, vec![0, 1, 9], BTreeMap::new());
+    assert!(matches!(missing, Err(MeshError::NoSuchNode { element: 0, node: 9, count: 4 })));
 }
 
 /// A mesh of the caller, with its own edges, can be solved like any other.

@@ -1,11 +1,6 @@
 //! Tests of moments that rotate with their edge: potential, work and full turns.
 
-use std::f64::consts::{PI, TAU};
-
-use crate::common::scene;
-use nalgebra::Vector2;
-use warpbeam::assembly::{Kinematics, Problem, System};
-use warpbeam::{Material, Scene, Simulation, State, Status};
+use crate::common::*;
 
 /// Returns the scene of the rolled-up beam with `turns` times the moment that closes it, 2πEI/L.
 fn rolled(turns: f64) -> Scene {
@@ -43,17 +38,6 @@ fn the_work_of_a_moment_counts_full_rotations() {
     }
 }
 
-/// The same in one step, from rest to a half and to a full circle.
-#[test]
-fn the_work_is_right_from_rest() {
-    for turns in [0.5, 1.0] {
-        let mut simulation = Simulation::new(&rolled(turns)).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged);
-        let (energy, work) = (simulation.solution().energy, expected_work(turns));
-        assert!((energy.external / work - 1.0).abs() < 0.01, "{turns} turns: {} J, not {work} J", energy.external);
-    }
-}
-
 fn turn_of_the_right_edge(system: &System, state: &State) -> f64 {
     let right = system.edges().iter().position(|e| e.name() == "right").unwrap();
     state.edge_angles()[right]
@@ -63,6 +47,13 @@ fn problem() -> Problem {
     let scene = Scene::beam(2.0, 1.0).with_cells(3, 2).with_material(Material::new(100.0, 0.3)).clamp("left");
     let scene = scene.force("right", [0.3, -0.2]).gravity([0.1, -0.4]).moment("right", 3.0);
     Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap()
+}
+
+/// Returns the force of the loads on every node, N.
+fn force(problem: &Problem, state: &State, factor: f64) -> Vec<Vector2<f64>> {
+    let mut force = vec![Vector2::zeros(); state.displacement().len()];
+    problem.loads().force(problem.system(), state.displacement(), Kinematics::Corotated, factor, &mut force);
+    force
 }
 
 /// Returns the state of a beam rolled up by `angle`, reached from rest in small steps.
@@ -84,29 +75,19 @@ fn rolled_state(problem: &Problem, angle: f64) -> State {
 /// f_ext is the negative gradient of the loads' potential, before and beyond a full turn.
 #[test]
 fn the_force_is_the_gradient_of_the_potential_beyond_a_full_rotation() {
-    const STEP: f64 = 1e-6;
     const FACTOR: f64 = 0.7;
     let problem = problem();
     for angle in [0.0, 1.0, PI - 1e-9, PI + 0.1, TAU + 0.5, 2.0 * TAU - 0.2, -TAU - 1.0] {
         let state = rolled_state(&problem, angle);
         assert!((turn_of_the_right_edge(problem.system(), &state) - angle).abs() < 1e-9);
-        let mut force = vec![Vector2::zeros(); state.displacement().len()];
-        problem.loads().force(problem.system(), state.displacement(), Kinematics::Corotated, FACTOR, &mut force);
-        let largest = force.iter().map(|f| f.norm()).fold(0.0, f64::max);
-        for node in 0..force.len() {
-            for axis in 0..2 {
-                let potential = |step: f64| {
-                    let mut u = state.displacement().to_vec();
-                    u[node][axis] += step;
-                    let mut moved = state.with_displacement(u).unwrap();
-                    problem.system().update_rotations(&mut moved, Kinematics::Corotated);
-                    problem.loads().potential(&moved, FACTOR)
-                };
-                let numeric = -(potential(STEP) - potential(-STEP)) / (2.0 * STEP);
-                let error = (numeric - force[node][axis]).abs() / largest;
-                assert!(error < 1e-7, "angle {angle}, node {node}: {numeric} {}", force[node][axis]);
-            }
-        }
+        let force = force(&problem, &state, FACTOR);
+        check_gradient(&force, 1e-6, 1e-7 * largest(&force), |node, step| {
+            let mut u = state.displacement().to_vec();
+            u[node] += step;
+            let mut moved = state.with_displacement(u).unwrap();
+            problem.system().update_rotations(&mut moved, Kinematics::Corotated);
+            -problem.loads().potential(&moved, FACTOR)
+        });
     }
 }
 
@@ -115,14 +96,9 @@ fn the_force_is_the_gradient_of_the_potential_beyond_a_full_rotation() {
 fn the_potential_is_the_work_along_a_path() {
     let problem = problem();
     let states: Vec<State> = (0..=400).map(|i| rolled_state(&problem, 1.2 * TAU * f64::from(i) / 400.0)).collect();
-    let force = |state: &State| {
-        let mut force = vec![Vector2::zeros(); state.displacement().len()];
-        problem.loads().force(problem.system(), state.displacement(), Kinematics::Corotated, 1.0, &mut force);
-        force
-    };
     let mut work = 0.0;
     for pair in states.windows(2) {
-        let (before, after) = (force(&pair[0]), force(&pair[1]));
+        let (before, after) = (force(&problem, &pair[0], 1.0), force(&problem, &pair[1], 1.0));
         for ((f, g), (u, v)) in before.iter().zip(&after).zip(pair[0].displacement().iter().zip(pair[1].displacement()))
         {
             work += 0.5 * (f + g).dot(&(v - u));
@@ -147,9 +123,7 @@ fn between_two_states_the_loads_work_by_their_potential() {
         let work: f64 = increment.zip(&force).map(|(increment, f)| increment.dot(f)).sum();
         let fall = potential(&states[0]) - potential(&states[1]);
         assert!((work - fall).abs() < 1e-12 * (1.0 + fall.abs()), "{from} to {to}: {work} {fall}");
-        let mut ordinary = force.clone();
-        problem.loads().force(problem.system(), states[0].displacement(), Kinematics::Corotated, 1.0, &mut ordinary);
-        let off = force.iter().zip(&ordinary).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let off = largest_distance(&force, &self::force(&problem, &states[0], 1.0));
         assert!(if (to - from).abs() < 1e-5 { off < 1e-5 } else { off > 1e-3 }, "{from} to {to}: {off}");
     }
 }

@@ -1,48 +1,6 @@
 //! Tests of the values at a material point: F, R and S, strain and stress.
 
-use crate::common::{scene, solved, table};
-use nalgebra::{Matrix2, Vector2};
-use warpbeam::rotation::Rotation;
-use warpbeam::scene::{ElementKind, MethodKind};
-use warpbeam::{Field, Material, MaterialPoint, Plane, PointState, PointValues, Scene, Simulation};
-
-/// A body that is stretched by S and rotated by R has F = R S everywhere, and its stress follows from the strain S − I.
-#[test]
-fn a_rotated_and_stretched_body_has_its_f_r_and_s_at_every_point() {
-    let rotation = Rotation::from_angle(1.1);
-    let stretch = Matrix2::new(1.2, 0.07, 0.07, 0.9);
-    let f = rotation.matrix() * stretch;
-    for element in ElementKind::all() {
-        let scene = Scene::beam(3.0, 1.0).with_cells(3, 2).with_element(element);
-        let scene = scene.with_material(Material::new(1e5, 0.25)).moving(warpbeam::IntegratorKind::TrBdf2, 0.01);
-        let mut simulation = Simulation::new(&scene).unwrap();
-        let mesh = simulation.system().mesh().clone();
-        let u: Vec<_> = mesh.nodes().iter().map(|x| f * x - x).collect();
-        simulation.start_from(&u).unwrap();
-        for at in [Vector2::new(0.3, 0.2), Vector2::new(1.6, -0.4), Vector2::new(2.95, 0.01)] {
-            let point = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Raw).unwrap();
-            assert!((point.rest - at).norm() < 1e-12, "{element:?}");
-            assert!((point.displacement - (f * at - at)).norm() < 1e-12, "{element:?}");
-            assert!((point.gradient - f).norm() < 1e-12, "{element:?}: {}", point.gradient);
-            assert!((point.rotation.angle() - 1.1).abs() < 1e-12, "{element:?}");
-            assert!((point.stretch - stretch).norm() < 1e-12, "{element:?}: {}", point.stretch);
-            assert!((point.strain.plane - (stretch - Matrix2::identity())).norm() < 1e-9, "{element:?}");
-            // Plane stress: T = E/(1 − ν²) ((1 − ν) ε + ν tr ε I), thinned by ε₃₃ = −ν/(1 − ν) tr ε; σ = R T S Rᵀ/J.
-            let strain = stretch - Matrix2::identity();
-            let biot = (strain * 0.75 + Matrix2::identity() * (0.25 * strain.trace())) * (1e5 / (1.0 - 0.0625));
-            let thinned = 1.0 - strain.trace() / 3.0;
-            let turned = rotation.matrix() * biot * stretch * rotation.matrix().transpose();
-            let stress = turned / (f.determinant() * thinned);
-            let stress = (stress + stress.transpose()) * 0.5;
-            let own = point.cauchy.unwrap().plane;
-            assert!((own - stress).norm() < 1e-7 * stress.norm(), "{element:?}: {own} {stress}");
-            // The recovered values of a uniform deformation are the same.
-            let smooth = simulation.point_state(mesh.locate(at).unwrap(), PointValues::Recovered).unwrap();
-            assert!((smooth.gradient - f).norm() < 1e-9, "{element:?}: {}", smooth.gradient);
-            assert!((smooth.cauchy.unwrap().plane - stress).norm() < 1e-7 * stress.norm(), "{element:?}");
-        }
-    }
-}
+use crate::common::*;
 
 /// A point's values are those of the fields that colour the body: recovered ones, and the elements' own.
 #[test]

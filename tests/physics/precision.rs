@@ -1,20 +1,12 @@
 //! Tests at the limit of double precision: the smallest residuals of slender bodies, and the bound of their rounding
 //! error, compared with the same residual in twice as many digits.
 
-use std::f64::consts::PI;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use nalgebra::Vector2;
-
-use crate::common::random::Random;
-use warpbeam::assembly::{Forces, Kinematics, Matrix, Problem};
-use warpbeam::element::{ElementType, Lame, QuadraturePoint, StrainRate, Tangent};
-use warpbeam::method::Reason;
-use warpbeam::rotation::Rotation;
+use crate::common::*;
+use qd::Quad;
+use warpbeam::element::{ElementType, Lame, QuadraturePoint, StrainRate};
 use warpbeam::solver::Factor;
 use warpbeam::study::extremes::rest::{RestCase, Variant};
 use warpbeam::study::extremes::{Case, Entry, Outcome};
-use warpbeam::{ElementKind, Mesh, MethodKind, Simulation, Solution, State, Status};
 
 /// Returns a cantilever with L/H = 1000 under α = 1e-6.
 fn slender(element: ElementKind, method: MethodKind) -> RestCase {
@@ -34,8 +26,7 @@ fn slender(element: ElementKind, method: MethodKind) -> RestCase {
 fn at_its_floor(case: RestCase) -> Simulation {
     let mut scene = case.scene();
     scene.solver.tolerance = 1e-14;
-    let mut simulation = Simulation::new(&scene).unwrap();
-    simulation.solve();
+    let simulation = ended(&scene);
     simulation
 }
 
@@ -61,133 +52,39 @@ fn plain_floor(problem: &Problem) -> f64 {
     floor
 }
 
-/// With one f64 per component, the smallest residual is more than fifteen times as large.
-#[test]
-fn the_second_part_of_the_displacement_lowers_the_floor() {
-    for element in ElementKind::all() {
-        for aspect in [1.0, 50.0] {
-            let simulation = at_its_floor(RestCase { aspect, ..slender(element, MethodKind::Linear) });
-            let (plain, residual) = (plain_floor(simulation.problem()), simulation.residual());
-            assert!(plain > 15.0 * residual, "{} {aspect}: {plain:e} {residual:e}", element.id());
-        }
-    }
-}
-
-/// An unevaluated sum of two f64, used as one number.
-#[derive(Clone, Copy, Debug)]
-struct Double(f64, f64);
-
-const ZERO: Double = Double(0.0, 0.0);
-
-fn two_sum(a: f64, b: f64) -> Double {
-    let sum = a + b;
-    let of_b = sum - a;
-    Double(sum, (a - (sum - of_b)) + (b - of_b))
-}
-
-impl Add for Double {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        let (high, low) = (two_sum(self.0, other.0), two_sum(self.1, other.1));
-        let sum = two_sum(high.0, high.1 + low.0);
-        two_sum(sum.0, sum.1 + low.1)
-    }
-}
-
-impl Neg for Double {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-}
-
-impl Sub for Double {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Double {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let high = self.0 * other.0;
-        two_sum(high, self.0.mul_add(other.0, -high) + (self.0 * other.1 + self.1 * other.0))
-    }
-}
-
-impl Div for Double {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let mut quotient = Self(self.0 / other.0, 0.0);
-        for _ in 0..2 {
-            let rest = self - quotient * other;
-            quotient = quotient + Self(rest.0 / other.0, 0.0);
-        }
-        quotient
-    }
-}
-
-impl Double {
-    fn root(self) -> Self {
-        let root = Self(self.0.sqrt(), 0.0);
-        root + (self - root * root) / (root + root)
-    }
-}
-
-impl From<f64> for Double {
-    fn from(value: f64) -> Self {
-        Self(value, 0.0)
-    }
-}
-
 /// Rotation, stretch and stress of a point, in twice as many digits.
 struct Seen {
     /// R.
-    turn: [[Double; 2]; 2],
+    turn: Matrix2<Quad>,
     /// tr S.
-    trace: Double,
+    trace: Quad,
     /// First Piola–Kirchhoff stress times the area, N.
-    stress: [[Double; 2]; 2],
+    stress: Matrix2<Quad>,
 }
 
-type Vectors<const N: usize> = [[Double; 2]; N];
-
-fn product(m: &[[Double; 2]; 2], v: [Double; 2]) -> [Double; 2] {
-    m.map(|row| row[0] * v[0] + row[1] * v[1])
-}
-
-fn add(sum: &mut [Double; 2], v: [Double; 2]) {
-    sum.iter_mut().zip(v).for_each(|(sum, v)| *sum = *sum + v);
-}
+type Vectors<const N: usize> = [Vector2<Quad>; N];
 
 impl Seen {
     fn new<const N: usize>(point: &QuadraturePoint<N>, moduli: Lame, kinematics: Kinematics, u: &Vectors<N>) -> Self {
-        let (mu2, lambda) = (Double::from(2.0 * moduli.mu), Double::from(moduli.lambda));
-        let h = |i: usize, j: usize| {
-            (1..N).fold(ZERO, |sum, a| sum + (u[a][i] - u[0][i]) * Double::from(point.gradients[a][j]))
-        };
-        let f = [[h(0, 0) + 1.0.into(), h(0, 1)], [h(1, 0), h(1, 1) + 1.0.into()]];
-        let (a, b) = (f[0][0] + f[1][1], f[1][0] - f[0][1]);
-        let size = (a * a + b * b).root();
+        let h = (1..N).map(|a| (u[a] - u[0]) * point.gradients[a].map(Quad::from).transpose());
+        let f = h.sum::<Matrix2<Quad>>() + Matrix2::identity();
+        let (a, b) = (f.m11 + f.m22, f.m21 - f.m12);
+        let size = (a * a + b * b).sqrt();
         let (c, s) = match kinematics {
             Kinematics::Corotated => (a / size, b / size),
-            Kinematics::Linear => (1.0.into(), ZERO),
+            Kinematics::Linear => (Quad::ONE, Quad::ZERO),
         };
-        let xx = c * f[0][0] + s * f[1][0] - 1.0.into();
-        let yy = c * f[1][1] - s * f[0][1] - 1.0.into();
-        let xy = Double::from(0.5) * (c * (f[0][1] + f[1][0]) + s * (f[1][1] - f[0][0]));
-        let pressure = lambda * (xx + yy);
-        let t = [[mu2 * xx + pressure, mu2 * xy], [mu2 * xy, mu2 * yy + pressure]];
-        let turn = [[c, -s], [s, c]];
-        let area = Double::from(point.area);
-        let stress = turn.map(|r| [0, 1].map(|j| (r[0] * t[0][j] + r[1] * t[1][j]) * area));
-        Self { turn, trace: size, stress }
+        let turn = Matrix2::new(c, -s, s, c);
+        let stretch = turn.transpose() * f;
+        let strain = (stretch + stretch.transpose()) * Quad::from(0.5) - Matrix2::identity();
+        let [mu2, lambda, area] = [2.0 * moduli.mu, moduli.lambda, point.area].map(Quad::from);
+        let t = strain * mu2 + Matrix2::from_diagonal_element(lambda * strain.trace());
+        Self { turn, trace: size, stress: turn * t * area }
     }
 
     /// Returns the force on every node, N.
     fn forces<const N: usize>(&self, point: &QuadraturePoint<N>) -> Vectors<N> {
-        point.gradients.map(|g| product(&self.stress, [g.x.into(), g.y.into()]))
+        point.gradients.map(|g| self.stress * g.map(Quad::from))
     }
 }
 
@@ -198,11 +95,11 @@ fn exact_forces<const N: usize>(
     rest: &[Vector2<f64>; N],
     u: &Vectors<N>,
 ) -> Vectors<N> {
-    let mut sum = [[ZERO; 2]; N];
+    let mut sum = [Vector2::zeros(); N];
     for rule in element.points {
         let point = QuadraturePoint::<N>::new(element, rest, rule.at, rule.weight);
         let own = Seen::new(&point, moduli, kinematics, u).forces(&point);
-        sum.iter_mut().zip(own).for_each(|(sum, own)| add(sum, own));
+        sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
     }
     sum
 }
@@ -213,17 +110,18 @@ const TWIST: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 /// Returns K of a quadrilateral over μ as the element has stored it, bit for bit. In a parallelogram,
 /// where γ is TWIST/4, the force on a body that bends at the rate 1 is a quarter of a column, and no
 /// operation in its computation rounds.
-fn stored_stiffness(element: &ElementType, rest: &[Vector2<f64>; 4], moduli: Lame) -> [[f64; 2]; 2] {
+fn stored_stiffness(element: &ElementType, rest: &[Vector2<f64>; 4], moduli: Lame) -> Matrix2<f64> {
     let elements = (element.loops)(rest, &[0, 1, 2, 3]);
     let over_mu = Lame { lambda: moduli.lambda / moduli.mu, mu: 1.0 };
-    [Vector2::x(), Vector2::y()].map(|axis| {
+    let columns = [Vector2::x(), Vector2::y()].map(|axis| {
         let mut force = [Vector2::zeros(); 4];
         let rate = TWIST.map(|t| axis * t);
         elements.viscous_force(over_mu, &[Vector2::zeros(); 4], StrainRate::Velocity(&rate), &mut force);
         let column = force[0] * 4.0;
         assert_eq!(force, TWIST.map(|t| column * (0.25 * t)));
-        column.into()
-    })
+        column
+    });
+    Matrix2::from_columns(&columns)
 }
 
 /// Returns the forces of the quadrilateral with incompatible modes, N: with q = Σ γₐ uₐ, q̃ = Rᵀ q and f = K q̃, they
@@ -236,23 +134,18 @@ fn exact_quad_forces(
 ) -> Vectors<4> {
     let centre = QuadraturePoint::<4>::new(element, rest, [0.0; 2], element.cell.area);
     assert_eq!((rest[0] - rest[1]) + (rest[2] - rest[3]), Vector2::zeros(), "no parallelogram: γ is not TWIST/4");
-    let gamma = TWIST.map(|t| Double::from(0.25 * t));
+    let gamma = TWIST.map(|t| Quad::from(0.25 * t));
     let seen = Seen::new(&centre, moduli, kinematics, u);
-    let mut q = [ZERO; 2];
-    u.iter().zip(gamma).for_each(|(u, gamma)| add(&mut q, u.map(|u| u * gamma)));
-    let [[c, minus_s], [s, _]] = seen.turn;
-    let back = product(&[[c, s], [minus_s, c]], q);
-    let k = stored_stiffness(element, rest, moduli).map(|row| row.map(|k| Double::from(k) * Double::from(moduli.mu)));
-    let f = product(&k, back);
-    let twist = product(&seen.turn, f);
+    let q: Vector2<Quad> = u.iter().zip(gamma).map(|(u, gamma)| u * gamma).sum();
+    let back = seen.turn.transpose() * q;
+    let f = stored_stiffness(element, rest, moduli).map(Quad::from).tr_mul(&back) * Quad::from(moduli.mu);
     let turn = match kinematics {
-        Kinematics::Corotated => (f[0] * back[1] - f[1] * back[0]) / seen.trace,
-        Kinematics::Linear => ZERO,
+        Kinematics::Corotated => f.perp(&back) / seen.trace,
+        Kinematics::Linear => Quad::ZERO,
     };
     let mut forces = seen.forces(&centre);
     for ((force, g), gamma) in forces.iter_mut().zip(&centre.gradients).zip(gamma) {
-        add(force, twist.map(|f| f * gamma));
-        add(force, product(&seen.turn, [(-g.y).into(), g.x.into()]).map(|v| v * turn));
+        *force += seen.turn * (f * gamma + Vector2::new(-g.y, g.x).map(Quad::from) * turn);
     }
     forces
 }
@@ -262,16 +155,14 @@ fn exact_residual<const N: usize>(
     (mesh, state): (&Mesh, &State),
     external: &[Vector2<f64>],
     forces: impl Fn(&[Vector2<f64>; N], &Vectors<N>) -> Vectors<N>,
-) -> Vec<[Double; 2]> {
+) -> Vec<Vector2<Quad>> {
     let parts = state.compensated();
-    let both = |n: usize, i: usize| Double::from(parts.rounded()[n][i]) + Double::from(parts.remainder()[n][i]);
-    let mut residual: Vec<[Double; 2]> = external.iter().map(|f| [f.x.into(), f.y.into()]).collect();
+    let both = |n: usize| parts.rounded()[n].map(Quad::from) + parts.remainder()[n].map(Quad::from);
+    let mut residual: Vec<_> = external.iter().map(|f| f.map(Quad::from)).collect();
     for nodes in mesh.elements() {
         let nodes: [usize; N] = std::array::from_fn(|a| nodes[a] as usize);
-        let own = forces(&nodes.map(|n| mesh.nodes()[n]), &nodes.map(|n| [both(n, 0), both(n, 1)]));
-        for (n, force) in nodes.into_iter().zip(own) {
-            add(&mut residual[n], force.map(|f| -f));
-        }
+        let own = forces(&nodes.map(|n| mesh.nodes()[n]), &nodes.map(both));
+        nodes.into_iter().zip(own).for_each(|(n, force)| residual[n] -= force);
     }
     residual
 }
@@ -301,10 +192,8 @@ impl Rounding {
             ElementKind::Q4 => exact_residual(body, external, |x, u| exact_quad_forces(element, seen, x, u)),
             _ => exact_residual(body, external, |x, u| exact_forces::<6>(element, seen, x, u)),
         };
-        let off = |(exact, found): (&[Double; 2], &Vector2<f64>)| {
-            Vector2::new((Double::from(found.x) - exact[0]).0, (Double::from(found.y) - exact[1]).0)
-        };
-        let off: Vec<Vector2<f64>> = exact.iter().zip(forces.residual()).map(off).collect();
+        let pairs = exact.iter().zip(forces.residual());
+        let off: Vec<_> = pairs.map(|(exact, found)| (found.map(Quad::from) - exact).map(|off| off.0)).collect();
         let pattern = problem.system().pattern();
         for ((off, bound), mask) in off.iter().zip(&bounds).zip(pattern.mask()) {
             let off = off.component_mul(mask).abs();
@@ -398,8 +287,7 @@ fn a_residual_at_its_rounding_floor_counts_as_converged() {
     }
     assert!(at_floor > 0, "each of them meets its tolerance");
     let mut scene = RestCase { slenderness: 5.0, ..slender(ElementKind::T6, MethodKind::Newton) }.scene();
-    let mut simulation = Simulation::new(&scene).unwrap();
-    assert_eq!(*simulation.solve(), Status::Converged);
+    let simulation = solved(&scene);
     assert_eq!(simulation.equilibrium().unwrap().residual_floor(), None);
     // A slow iteration that is stopped early is not at the limit of precision.
     scene.solver.max_iterations = 1;
@@ -407,4 +295,12 @@ fn a_residual_at_its_rounding_floor_counts_as_converged() {
     let mut simulation = Simulation::new(&scene).unwrap();
     assert!(matches!(simulation.solve(), Status::NotConverged(Reason::IterationLimit(1))));
     assert_eq!(simulation.equilibrium().unwrap().residual_floor(), None);
+    // With one f64 per component of the displacement, the smallest residual is more than fifteen times as large.
+    for element in ElementKind::all() {
+        for aspect in [1.0, 50.0] {
+            let simulation = at_its_floor(RestCase { aspect, ..slender(element, MethodKind::Linear) });
+            let (plain, residual) = (plain_floor(simulation.problem()), simulation.residual());
+            assert!(plain > 15.0 * residual, "{} {aspect}: {plain:e} {residual:e}", element.id());
+        }
+    }
 }

@@ -1,11 +1,7 @@
 //! Tests of loads in time: a pulse has its impulse and a motion its duration, for every time step and integrator.
 
-use crate::common::motion::momentum;
-use crate::common::random::Random;
-use crate::common::{parsed, scene_with, stdout, warpbeam};
-use nalgebra::Vector2;
-use warpbeam::scene::{Damping, Load, Pulse};
-use warpbeam::{IntegratorKind, MethodKind, Scene, Simulation, Status};
+use crate::common::motion::{beam, momentum};
+use crate::common::*;
 
 const STEP: f64 = 1.0 / 60.0;
 
@@ -36,8 +32,7 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
                 let pulse = Pulse { start: random.between(0.0, 2.0) * STEP, duration: steps * STEP };
                 for load in [Load::force("right", force), Load::gravity(force / 200.0)] {
                     let scene = pushed(integrator.kind, method, iterations, load, pulse);
-                    let mut simulation = Simulation::new(&scene).unwrap();
-                    assert_eq!(*simulation.solve(), Status::Finished);
+                    let simulation = run(&scene);
                     let (found, expected) = (momentum(&simulation).linear, force * (0.5 * pulse.duration));
                     // `auto` solves to a fraction of its allowed error.
                     let rounding = if method == MethodKind::Auto { 1e-6 } else { 1e-10 };
@@ -47,18 +42,13 @@ fn a_pulse_leaves_its_impulse_whatever_the_step() {
             }
         }
     }
-}
-
-/// Exactly M d/2 under the energy–momentum method.
-#[test]
-fn a_pulse_of_a_moment_leaves_its_angular_impulse() {
+    // A moment leaves exactly M d/2 under the energy–momentum method.
     for steps in [0.2, 1.3, 4.0] {
         let pulse = Pulse { start: 0.7 * STEP, duration: steps * STEP };
         let load = Load::moment("right", 0.05);
         let mut scene = pushed(IntegratorKind::EnergyMomentum, MethodKind::Newton, 0, load, pulse);
         scene.solver.tolerance = 1e-13;
-        let mut simulation = Simulation::new(&scene).unwrap();
-        assert_eq!(*simulation.solve(), Status::Finished);
+        let simulation = run(&scene);
         let (found, expected) = (momentum(&simulation).angular, 0.05 * 0.5 * pulse.duration);
         assert!((found - expected).abs() < 1e-7 * expected, "{steps}: {found} {expected}");
     }
@@ -73,8 +63,7 @@ fn the_ledger_has_the_work_of_pulses() {
             let pulse = Pulse { start: 0.4 * STEP, duration: steps * STEP };
             let mut scene = pushed(integrator.kind, MethodKind::Newton, 0, Load::gravity([1.0, -2.0]), pulse);
             scene.dynamics.damping = Damping::default();
-            let mut simulation = Simulation::new(&scene).unwrap();
-            simulation.solve();
+            let simulation = ended(&scene);
             let ledger = *simulation.motion().unwrap().ledger();
             let kinetic = 0.5 * 200.0 * 5.0 * (0.5 * pulse.duration).powi(2);
             let words = format!("{} {steps}: {ledger:?}", integrator.id);
@@ -91,25 +80,17 @@ fn the_ledger_has_the_work_of_pulses() {
 #[test]
 fn resolved_pulses_are_followed_in_second_order() {
     for kind in [IntegratorKind::TrBdf2, IntegratorKind::EnergyMomentum] {
-        for load in [
-            "[[load]]\nkind = \"force\"\nedge = \"right\"\nforce = [0.0, -30.0]",
-            "[[load]]\nkind = \"moment\"\nedge = \"right\"\nmoment = 20.0",
-        ] {
+        let loads: [fn(Scene) -> Scene; 2] =
+            [|scene| scene.force("right", [0.0, -30.0]), |scene| scene.moment("right", 20.0)];
+        for (i, load) in loads.into_iter().enumerate() {
             let tip = |step: f64| {
-                let toml = format!(
-                    "name = \"pulse\"\nanalysis = \"dynamic\"\n[beam]\nlength = 1.0\nheight = 0.1\ncells = [5, 1]\nelement = \"t6\"\n\
-                     [material]\nyoung = 1e6\npoisson = 0.3\n[[support]]\nedge = \"left\"\nfix = [\"x\", \"y\"]\n{load}\n\
-                     pulse = {{ start = 0.013, duration = 0.4 }}\n[[probe]]\nname = \"tip\"\nedge = \"right\"\n\
-                     [dynamics]\nintegrator = \"{}\"\ntime_step = {step}\nduration = 0.5\niterations = 0\n",
-                    kind.id()
-                );
-                let mut simulation = Simulation::new(&Scene::from_toml(&toml).unwrap()).unwrap();
-                simulation.solve();
-                simulation.probe("tip").unwrap()
+                let mut scene = load(beam(5, 10.0)).with_element(ElementKind::T6).pulse(0.013, 0.4).moving(kind, step);
+                (scene.dynamics.duration, scene.dynamics.iterations) = (0.5, 0);
+                ended(&scene).probe("tip").unwrap()
             };
             let fine = tip(0.000_5);
             let errors = [0.01, 0.005].map(|step| (tip(step) - fine).norm());
-            assert!((3.0..6.5).contains(&(errors[0] / errors[1])), "{} {load}: {errors:?}", kind.id());
+            assert!((3.0..6.5).contains(&(errors[0] / errors[1])), "{} {i}: {errors:?}", kind.id());
         }
     }
 }
@@ -132,8 +113,7 @@ fn a_motion_ends_at_its_duration() {
         }
     }
     // A motion that continues after its end takes whole steps again.
-    let mut simulation = Simulation::new(&scene_with("swing", &["dynamics.duration=0.11"])).unwrap();
-    simulation.solve();
+    let mut simulation = ended(&scene_with("swing", &["dynamics.duration=0.11"]));
     simulation.step();
     assert!((simulation.state().time() - 0.11 - STEP).abs() < 1e-12 && *simulation.status() == Status::Finished);
 }

@@ -1,63 +1,13 @@
 //! Tests of edits of scene files: the text describes the edited scene, and what was not edited stays as it was written.
 
-use crate::common::random::{self, Random};
-use crate::common::sampled;
-use warpbeam::scene::{edited, registry};
-use warpbeam::{Axis, Diagonals, ElementKind, Load, MethodKind, Plane, Scene, SectionLine, Support};
+use crate::common::*;
+use warpbeam::scene::edited;
 
 const COMMENTED: &str = include_str!("../data/files/commented.toml");
 
 /// Dotted keys, quoted keys, several lines, scattered lists, and comments at every place.
-const NOTATIONS: &str = r#"# first
-name = 'Notations' # of the name
-about = """
-two
-lines"""
-material.young = "210 GPa" # steel
-material.'poisson' = 0.3
-
-[beam] # of the table
-length = "2,000,000 mm" # two kilometres
-height = 1e0
-cells = [
-  16, # along
-  4, # across
-]
-rise = 0.0 # straight
-[[load]] # the first
-kind = "force"
-at = [5.0, 0.5]
-force = ["1 kN", "-30 000 N"] # of the crane
-[[support]]
-edge = "left"
-fix = ["x", "y"]
-displacement = [0.0, 0.0] # not moved
-# before the second load
-[[load]]
-kind = "gravity" # of the earth
-acceleration = [0.0, "-9.81 m/s²"]
-[[support]] # the other end
-edge = "right"
-fix = ["y"]
-[solver]
-tolerance = 1e-10 # tight
-# last
-"#;
-
-const INLINE: &str = r#"# first
-name = "Inline"
-beam = { length = "1 m", height = 0.1, cells = [10, 1], element = "q4" } # of the beam
-material = { young = "1 MPa", poisson = 0.3 }
-support = [{ edge = "left", fix = ["x", "y"] }] # one
-load = [
-  { kind = "force", edge = "right", force = [0, "-1 N"] }, # down
-  { kind = "moment", edge = "right", moment = "1 N m" }, # up
-]
-probe = []
-analysis = "dynamic"
-dynamics.damping = { mass = 0.1 }
-# last
-"#;
+const NOTATIONS: &str = include_str!("../data/files/notations.toml");
+const INLINE: &str = include_str!("../data/files/inline.toml");
 
 /// Returns the text after an edit of its scene.
 fn after(text: &str, edit: impl Fn(&mut Scene)) -> String {
@@ -99,20 +49,12 @@ fn only_what_was_edited_changes() {
     check(INLINE, |scene| _ = scene.loads.remove(0), &[(force, "[ # down")]);
     check(INLINE, |scene| scene.dynamics.damping.mass = 0.2, &[("mass = 0.1", "mass = 0.2")]);
     check(INLINE, |scene| scene.beam.as_mut().unwrap().element = ElementKind::T6, &[("\"q4\"", "\"t6\"")]);
-}
-
-/// A number keeps its unit if it is exact in it.
-#[test]
-fn numbers_keep_their_units_or_lose_them() {
+    // A number keeps its unit if it is exact in it.
     for value in [3.3e6, 1e6 / 3.0, 0.1 + 0.2, f64::from_bits(0x4130_1234_5678_9abc), 1e-3] {
         let text = after(COMMENTED, |scene| scene.material.young = value.max(1.0));
         assert!(text.contains("# as measured at 20 °C"), "{text}");
     }
-}
-
-/// Windows ends lines by two characters, and begins some texts with a mark.
-#[test]
-fn line_ends_and_the_mark_stay() {
+    // Windows ends lines by two characters, and begins some texts with a mark.
     let text = format!("\u{feff}{COMMENTED}").replace('\n', "\r\n");
     assert_eq!(edited(&text, &Scene::from_toml(&text).unwrap()).unwrap(), text);
     let new = after(&text, |scene| *scene = scene.clone().probe("tip", "right"));

@@ -1,11 +1,6 @@
 //! Tests of section forces: the equilibrium of the part cut off, beam theory, and rotating and falling bodies.
 
-use crate::common::random::{self, Random};
-use warpbeam::nalgebra::Vector2;
-use warpbeam::scene::{Load, Place};
-use warpbeam::{
-    ElementKind, IntegratorKind, MethodKind, Scene, Section, SectionForces, SectionLine, Simulation, Status,
-};
+use crate::common::*;
 
 /// Returns the part of a polygon on the side of a line to which its normal points.
 fn clipped(polygon: &[Vector2<f64>], line: SectionLine) -> Vec<Vector2<f64>> {
@@ -99,6 +94,15 @@ fn solved(scene: &Scene) -> Option<Simulation> {
     (*simulation.solve() == Status::Converged).then_some(simulation)
 }
 
+/// Returns the sections of a line from both sides, and the differences of their forces, N, and moments, N m.
+fn from_both_sides(simulation: &Simulation, line: SectionLine) -> Option<([Section; 2], f64, f64)> {
+    let back = SectionLine { angle: line.angle + PI, ..line };
+    let [section, behind] = [simulation.section(line).ok()?, simulation.section(back).ok()?];
+    let off = (section.force + behind.force).norm();
+    let moment = (section.forces.moment + behind.forces.moment).abs();
+    Some(([section, behind], off, moment))
+}
+
 /// Returns the largest force of the elements on a node, N: rounding errors are relative to it.
 fn largest_force(simulation: &Simulation) -> f64 {
     simulation.forces().magnitude().iter().map(|f| f.norm()).fold(0.0, f64::max)
@@ -108,7 +112,7 @@ fn largest_force(simulation: &Simulation) -> f64 {
 #[test]
 fn sections_of_random_scenes_balance_the_part_cut_off() {
     let mut checked = 0;
-    for seed in crate::common::sampled(500..600, 4) {
+    for seed in sampled(500..600, 4) {
         let mut scene = random::scene(seed);
         let mut random = Random(seed);
         let beam = scene.beam.clone().unwrap();
@@ -121,16 +125,12 @@ fn sections_of_random_scenes_balance_the_part_cut_off() {
         for _ in 0..3 {
             let at = Vector2::new(random.between(0.0, beam.length), random.between(-0.5, 0.5) * beam.height);
             let line = SectionLine { at, angle: random.between(-3.0, 3.0) };
-            let back = SectionLine { angle: line.angle + std::f64::consts::PI, ..line };
-            let [section, behind] = [line, back].map(|line| simulation.section(line).unwrap());
-            let height = (section.ends[1] - section.ends[0]).norm();
+            let ([section, behind], off, moment_off) = from_both_sides(&simulation, line).unwrap();
+            assert!(off < 1e-8 * scale, "seed {seed}, {line:?}: {off} N from the other side, largest force {scale} N");
             let off = (section.force - force_in_front(&simulation, line)).norm();
             assert!(off < 1e-8 * scale, "seed {seed}, {line:?}: {off} N off, largest force {scale} N");
-            let off = (section.force + behind.force).norm();
-            assert!(off < 1e-8 * scale, "seed {seed}, {line:?}: {off} N from the other side, largest force {scale} N");
-            let off = (section.forces.moment + behind.forces.moment).abs();
-            let arm = height.max(beam.length);
-            assert!(off < 1e-8 * scale * arm, "seed {seed}, {line:?}: {off} N m, {scale} N, {arm} m");
+            let arm = (section.ends[1] - section.ends[0]).norm().max(beam.length);
+            assert!(moment_off < 1e-8 * scale * arm, "seed {seed}, {line:?}: {moment_off} N m, {scale} N, {arm} m");
             let (own, other) = (section.forces, behind.forces);
             let same = (own.normal - other.normal).abs() + (own.shear - other.shear).abs();
             assert!(same < 1e-8 * scale, "seed {seed}, {line:?}: N and V differ by {same} N");
@@ -200,19 +200,16 @@ fn stresses_along_a_section_are_those_of_beam_theory() {
 #[test]
 fn sections_of_mesh_files_are_opposite_from_both_sides() {
     for (id, at, angle) in [("bracket", [0.05, 0.05], 0.0), ("clip", [0.0, 0.0], 0.0), ("cook", [20.0, 20.0], 0.3)] {
-        let simulation = solved(&crate::common::scene(id)).unwrap();
+        let simulation = solved(&scene(id)).unwrap();
         let (low, high) = simulation.mesh().bounds();
         let middle = (low + high) * 0.5 + Vector2::from(at) * 1e-3;
         let lines = (0..20)
             .map(|i| SectionLine { at: middle + (high - low) * (0.04 * (f64::from(i) - 10.0)), angle: angle + 0.3 });
         let (mut found, scale) = (0, largest_force(&simulation));
         for line in lines {
-            let back = SectionLine { angle: line.angle + std::f64::consts::PI, ..line };
-            let (Ok(section), Ok(behind)) = (simulation.section(line), simulation.section(back)) else { continue };
+            let Some((_, off, moment)) = from_both_sides(&simulation, line) else { continue };
             found += 1;
-            let off = section.force + behind.force;
-            assert!(off.norm() < 1e-8 * scale, "{id} {line:?}: {off:?} of {:?}, {scale} N", section.force);
-            let moment = (section.forces.moment + behind.forces.moment).abs();
+            assert!(off < 1e-8 * scale, "{id} {line:?}: {off} N of {scale} N");
             assert!(moment < 1e-8 * scale * simulation.system().size(), "{id}");
         }
         assert!(found > 3, "{id}: {found}");
@@ -221,8 +218,7 @@ fn sections_of_mesh_files_are_opposite_from_both_sides() {
 
 /// Returns a simulation of a scene of `tests/data/scenes`, at its end.
 fn at_the_end(name: &str) -> Simulation {
-    let mut simulation = Simulation::new(&crate::common::scene(&format!("tests/data/scenes/{name}.toml"))).unwrap();
-    simulation.solve();
+    let simulation = ended(&scene(&file(name)));
     simulation
 }
 
@@ -247,8 +243,7 @@ fn sections_in_motion_carry_the_inertia() {
     }
     let mut falling = Scene::beam(4.0, 1.0).with_cells(8, 2).gravity([0.0, -9.81]).moving(IntegratorKind::TrBdf2, 0.01);
     falling.dynamics.duration = 0.2;
-    let mut falling = Simulation::new(&falling).unwrap();
-    falling.solve();
+    let falling = ended(&falling);
     let weight = 9.81 * 4.0 * falling.scene().material.area_density();
     for section in falling.sections(5).unwrap() {
         assert!(section.force.norm() < 1e-6 * weight, "{:?}", section.forces);
@@ -273,14 +268,11 @@ fn sections_of_a_swinging_body_balance_loads_inertia_and_reaction() {
         let scale = 9.81 * 1.6 * simulation.scene().material.area_density();
         for (x, angle) in [(0.3, 0.1), (1.1, -0.7), (2.0, 0.0), (2.6, 1.2), (3.7, 0.4)] {
             let line = SectionLine { at: [x, 0.6 - 0.15 * (x - 2.0) * (x - 2.0)].into(), angle };
-            let back = SectionLine { angle: line.angle + std::f64::consts::PI, ..line };
-            let [section, behind] = [line, back].map(|line| simulation.section(line).unwrap());
-            let off = (section.force + behind.force).norm();
+            let (_, off, moment) = from_both_sides(&simulation, line).unwrap();
             assert!(off < 1e-8 * scale, "{element:?} {integrator:?} {line:?}: {off} N of {scale} N");
             // Integrators damp half way through the step, where lever arms are others: by 2e-4 for those of first order.
             let exact = if integrator.entry().order == 1 { 1e-3 } else { 1e-6 };
-            let off = (section.forces.moment + behind.forces.moment).abs();
-            assert!(off < exact * scale, "{element:?} {integrator:?} {line:?}: {off} N m of {scale} N m");
+            assert!(moment < exact * scale, "{element:?} {integrator:?} {line:?}: {moment} N m of {scale} N m");
         }
         let ends = simulation.sections(2).unwrap();
         let free = ends[1].force.norm() + ends[1].forces.moment.abs();
@@ -300,7 +292,7 @@ fn curved_elements_are_weighed_with_their_curved_sides() {
     let arch = at_the_end("heavy-arch");
     let whole: f64 = arch.system().nodal_areas().iter().sum();
     assert!((whole - 10.982).abs() < 1e-3, "{whole}");
-    for angle in [0.0, std::f64::consts::PI] {
+    for angle in [0.0, PI] {
         let section = arch.section(SectionLine { at: [5.0, 2.0].into(), angle }).unwrap();
         let half = if angle == 0.0 { -0.5 * whole } else { 0.5 * whole };
         assert!((section.force - Vector2::new(0.0, half)).norm() < 1e-9, "{angle}: {:?}", section.force);
@@ -335,7 +327,7 @@ fn linear_theory_has_lever_arms_at_rest() {
 #[test]
 fn lines_that_miss_a_body_or_cross_it_in_several_places_are_refused() {
     use warpbeam::SectionError;
-    let bracket = Simulation::new(&crate::common::scene("article")).unwrap();
+    let bracket = Simulation::new(&scene("article")).unwrap();
     let (low, high) = bracket.mesh().bounds();
     let line = |at: Vector2<f64>, angle| SectionLine { at, angle };
     let far = high + (high - low);

@@ -1,11 +1,8 @@
 //! Compares recovered stresses with closed forms, and the estimated mesh error with fine solutions, for every element.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Matrix2, Vector2};
-use warpbeam::rotation::Rotation;
-use warpbeam::study::Reference;
-use warpbeam::{Axis, ElementKind, Field, Load, Material, Mesh, Plane, Scene, Simulation, Status};
+use crate::common::*;
 
 /// Young's modulus of all scenes in this file, Pa.
 const YOUNG: f64 = 1e6;
@@ -218,7 +215,7 @@ fn cauchy_stress_is_the_force_per_deformed_area() {
         let pull = 0.18 * YOUNG;
         let scene = Scene::beam(4.0, 1.0).with_element(kind).with_cells(4, 2).support("left", &[Axis::X]);
         let scene = scene.with_material(Material::new(YOUNG, 0.3)).support([0.0, -0.5], &[Axis::Y]);
-        let simulation = crate::common::solved(&scene.force("right", [pull, 0.0]));
+        let simulation = solved(&scene.force("right", [pull, 0.0]));
         let nodal = simulation.nodal_stress();
         let section = (1.0 - 0.3 * 0.18f64).powi(2);
         for (local, cauchy) in nodal.nodes().iter().zip(nodal.cauchy()) {
@@ -242,7 +239,7 @@ struct Errors {
 
 impl Errors {
     fn of(scene: &Scene, fine: &Simulation) -> Self {
-        let coarse = crate::common::solved(scene);
+        let coarse = solved(scene);
         let (fine_mesh, fine_nodal) = (fine.system().mesh(), fine.nodal_stress());
         let mesh = coarse.system().mesh();
         let entry = mesh.element().entry();
@@ -272,10 +269,10 @@ impl Errors {
 #[test]
 fn the_mesh_error_is_about_the_true_one() {
     for (id, tip) in [("cantilever", 1), ("gravity", 2), ("elastica", 1), ("incline", 1), ("roll-up", 1)] {
-        let scene = crate::common::scene(id);
+        let scene = scene(id);
         let beam = scene.beam.clone().unwrap();
         let fine_across = ((120.0 * beam.height / beam.length).round() as u32).max(2);
-        let fine = crate::common::solved(&scene.clone().with_element(ElementKind::T6).with_cells(120, fine_across));
+        let fine = solved(&scene.clone().with_element(ElementKind::T6).with_cells(120, fine_across));
         for kind in ElementKind::all() {
             for along in [10, 20, 40] {
                 let across = ((f64::from(along) * beam.height / beam.length).round() as u32).max(tip);
@@ -299,7 +296,7 @@ fn the_mesh_error_is_about_the_true_one() {
 fn the_field_of_the_mesh_error_is_known_where_the_error_is() {
     let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1e3]).with_element(ElementKind::Q4);
     for (across, is_known) in [(1, false), (2, true)] {
-        let simulation = crate::common::solved(&scene.clone().with_cells(10, across));
+        let simulation = solved(&scene.clone().with_cells(10, across));
         let error = simulation.mesh_error(&simulation.nodal_stress());
         let mut values = Vec::new();
         simulation.field(Field::MeshError, &mut values);
@@ -312,14 +309,14 @@ fn the_field_of_the_mesh_error_is_known_where_the_error_is() {
 /// The estimate detects elements that lock, however well the solution has converged.
 #[test]
 fn the_mesh_error_is_large_where_elements_lock() {
-    let t3 = crate::common::scene("elastica").with_element(ElementKind::T3).with_cells(20, 1);
-    let article = crate::common::scene_with("article", &["solver.method=\"newton\""]);
+    let t3 = scene("elastica").with_element(ElementKind::T3).with_cells(20, 1);
+    let article = scene_with("article", &["solver.method=\"newton\""]);
     // Six-node triangles fifty times as long as high lock in volume: the error is 65 %.
     let material = Material { plane: Plane::Strain, ..Material::new(YOUNG, 0.4999) };
     let flat = Scene::beam(1000.0, 1.0).with_element(ElementKind::T6).with_cells(20, 1).with_material(material);
     let flat = flat.clamp("left").force("right", [0.0, -0.01 * YOUNG / 12.0 / 1e6]).probe("tip", "right");
     for (name, scene) in [("t3", t3), ("article", article), ("flat", flat)] {
-        let simulation = crate::common::solved(&scene);
+        let simulation = solved(&scene);
         let percent = simulation.stress_result().mesh_error_percent.unwrap();
         let u = simulation.probe("tip").unwrap();
         println!("{name}: mesh error {percent:.1} % in the energy norm");
@@ -344,18 +341,18 @@ fn files_and_json_agree_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name).display().to_string();
     let csv = out("a.csv");
-    let json = crate::common::solve_json(&["bracket", "--reference=none", "--out", &csv]);
+    let json = solve_json(&["bracket", "--reference=none", "--out", &csv]);
     let vtu = out("a.vtu");
-    crate::common::solve_json(&["bracket", "--reference=none", "--out", &vtu]);
+    solve_json(&["bracket", "--reference=none", "--out", &vtu]);
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let csv = std::fs::read_to_string(csv).unwrap();
-    let rows = crate::common::numbers(&csv);
+    let rows = numbers(&csv);
     let column = |name: &str| csv.lines().next().unwrap().split(',').position(|c| c == name).unwrap();
     let in_csv = largest(&mut rows.iter().map(|row| row[column("von_mises")]));
     let vtu = std::fs::read_to_string(vtu).unwrap();
     let array = vtu.split("von Mises (Cauchy) [Pa]").nth(1).unwrap().split("</DataArray>").next().unwrap();
     let in_vtu = largest(&mut array.lines().skip(1).map(|v| v.parse().unwrap()));
-    let own = crate::common::solved(&crate::common::scene("bracket")).stress_result().largest.unwrap();
+    let own = solved(&scene("bracket")).stress_result().largest.unwrap();
     assert_eq!((in_csv, in_vtu), (own.von_mises, own.von_mises));
     assert!((json["max_von_mises"]["value"].as_f64().unwrap() - in_csv).abs() <= 1e-14 * in_csv);
     let row = rows.iter().find(|row| row[column("von_mises")] == in_csv).unwrap();

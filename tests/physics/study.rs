@@ -1,22 +1,12 @@
 //! Tests of the speed–accuracy study of bodies at rest and in motion, and the atlas of motions.
 
 use std::fs;
-use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use crate::common::{ends_in, refuses, scene, scene_with, succeeds, sweeps_run_in_full, table};
-use crate::dynamics::swing_truth;
-use warpbeam::element::ELEMENTS;
-use warpbeam::method::METHODS;
-use warpbeam::scene::Scene;
+use crate::common::*;
 use warpbeam::study::motion::MotionReference;
-use warpbeam::study::{Demand, Ending, Extent, Measurement, Study, StudyError, StudyReference, Tuning};
-use warpbeam::{ElementKind, IntegratorKind, MethodKind, Simulation};
-
-fn go_on(_: warpbeam::Progress<'_>) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
+use warpbeam::study::{Ending, StudyReference, Tuning};
 
 /// They reach an error for which six-node triangles need at least twice the unknowns.
 #[test]
@@ -43,7 +33,7 @@ fn single_rows_of_bending_elements_are_studied() {
 #[test]
 fn a_study_reports_its_progress_and_measures_the_likely_best_settings_first() {
     let (last, mut elements) = (Mutex::new(0.0), Vec::new());
-    let observe = |progress: warpbeam::Progress<'_>| {
+    let observe = |progress: Progress<'_>| {
         let mut last = last.lock().unwrap();
         assert!((*last..=1.0 + 1e-9).contains(&progress.fraction), "from {last} to {}", progress.fraction);
         *last = progress.fraction;
@@ -140,7 +130,7 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     let scene = scene_with("swing", &["dynamics.duration=0.1"]);
     let until = |is_enough: &(dyn Fn(usize, usize) -> bool + Sync)| {
         let seen = Mutex::new((0.0, 0, Vec::new()));
-        let observe = |progress: warpbeam::Progress<'_>| {
+        let observe = |progress: Progress<'_>| {
             let mut seen = seen.lock().unwrap();
             let (last, timed, meshes) = &mut *seen;
             assert!((*last..=1.0).contains(&progress.fraction), "from {last} to {}", progress.fraction);
@@ -169,29 +159,6 @@ fn a_motion_study_reports_its_progress_and_keeps_its_measurements() {
     assert_eq!(until(&|_, _| false), (false, all, all * measured));
 }
 
-/// Compares the method of references with a trajectory computed independently on the same mesh: `tests/data/swing.py`.
-#[test]
-fn the_reference_equals_an_independent_trajectory() {
-    /// Time steps in a sixtieth of a second, as in the reference.
-    const STEPS: u32 = 16;
-    let mut scene = scene_with("swing", &["beam.element=t6", "beam.cells=[20,1]"]);
-    let interval = scene.dynamics.time_step;
-    scene.dynamics.time_step = interval / f64::from(STEPS);
-    scene.dynamics.integrator = IntegratorKind::EnergyMomentum;
-    let mut simulation = Simulation::new(&scene).unwrap();
-    // Every fourth of the 240 samples per second.
-    let independent: Vec<_> = swing_truth().into_iter().skip(3).step_by(4).take(60).collect();
-    let size = independent.iter().map(|(_, u)| u.norm()).fold(0.0, f64::max);
-    for (i, (time, expected)) in independent.iter().enumerate() {
-        assert!((time - interval * (i + 1) as f64).abs() < 1e-9);
-        (0..STEPS).for_each(|_| _ = simulation.step());
-        let u = simulation.probe("tip").unwrap();
-        // The mesh is the same, so that the only difference is due to the time step.
-        assert!((u - expected).norm() < 1e-4 * size, "{time} s: {u} instead of {expected}");
-    }
-    assert_eq!(independent.len(), 60);
-}
-
 #[test]
 fn scenes_that_cannot_be_studied_are_refused() {
     let refused = |scene: &Scene| Study::new(scene, Extent::Quick, &go_on).unwrap_err();
@@ -203,7 +170,7 @@ fn scenes_that_cannot_be_studied_are_refused() {
     assert_eq!(Tuning::of(&moving, Demand::default(), &go_on).unwrap_err(), StudyError::InMotion);
     for after in [0, 3] {
         let heard = AtomicU32::new(0);
-        let observe = |progress: warpbeam::Progress<'_>| {
+        let observe = |progress: Progress<'_>| {
             assert!((0.0..=1.0).contains(&progress.fraction));
             let is_enough = heard.fetch_add(1, Ordering::Relaxed) >= after;
             if is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -230,12 +197,12 @@ fn tuning_refuses_demands_below_the_known_error() {
 fn a_cancelled_tuning_chooses_from_what_was_measured() {
     let scene = scene("elastica");
     let measured = AtomicU32::new(0);
-    let observe = |progress: warpbeam::Progress<'_>| {
+    let observe = |progress: Progress<'_>| {
         let is_setting = progress.now.is_some_and(|now| now.to_string().contains("×"));
         let count = measured.fetch_add(u32::from(is_setting), Ordering::Relaxed) + u32::from(is_setting);
         if count < 12 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let own = warpbeam::study::Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
+    let own = Reference::of(&scene).unwrap().first().unwrap().own_error_percent;
     let demand = Demand { max_error_percent: Some(own * 1.001), max_time_ms: None };
     let tuning = Tuning::of(&scene, demand, &observe).unwrap();
     assert!(tuning.study.is_partial && !tuning.met && tuning.measured > 0, "{tuning}");
@@ -288,10 +255,10 @@ fn study_of_a_motion_writes_its_files() {
 #[test]
 fn slow_motions_are_studied_over_their_periods() {
     for (name, duration) in [("slow-gravity", 40_000.0..=40_000.0), ("slow-cantilever", 15.0..=16.1)] {
-        let slow = scene(&format!("tests/data/scenes/{name}.toml"));
+        let slow = scene(&file(name));
         // The study ends with the first mesh on which linear theory is wrong.
         let is_seen = AtomicBool::new(false);
-        let observe = |_: warpbeam::Progress<'_>| match is_seen.load(Ordering::Relaxed) {
+        let observe = |_: Progress<'_>| match is_seen.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };

@@ -1,13 +1,10 @@
 //! Tests of numbers with units, in every place that accepts numbers.
 
-use crate::common::{scene, scene_with};
-use warpbeam::Scene;
-use warpbeam::scene::registry;
+use crate::common::*;
 use warpbeam::scene::units::parse;
 
 #[test]
 fn units_are_read_to_the_last_digit() {
-    use std::f64::consts::PI;
     for (unit, rows) in [
         ("Pa", &[("210 GPa", 2.1e11), ("210GPa", 2.1e11), ("1 N/mm²", 1e6), ("1 N/mm^2", 1e6)][..]),
         ("N", &[("12 kN", 12e3), ("-12 kN", -12e3), ("1e3", 1e3), (" 1 kN ", 1e3)]),
@@ -57,60 +54,8 @@ fn wrong_units_are_refused_with_the_expected_ones() {
     }
 }
 
-const WITH_UNITS: &str = r#"name = "12 kN"
-analysis = "dynamic"
-beam = { length = "100 cm", height = """10 mm""", cells = [4, 1] }
-
-[material]
-young = "210 GPa"   # "210 MPa"
-poisson = "30 %"
-density = '7.8 g/cm³'
-thickness = "2 mm"
-
-[[support]]
-at = ["0 mm", 0]
-fix = ["x", "y"]
-
-[[load]]
-kind = "force"
-edge = "right"
-force = [
-    "0 N",
-    "-12 kN",
-]
-pulse = { start = "10 ms", duration = "0.5 s" }
-
-[[load]]
-kind = "gravity"
-acceleration = [0, "-981 cm/s²"]
-
-[[probe]]
-name = "3 mm"
-at = ["1 m", "5 mm"]
-
-[dynamics]
-time_step = "1 ms"
-damping.mass = "2 1/s"
-damping.stiffness = "1 ms"
-
-[start]
-velocity = ["1 mm/s", "2 m/s"]
-spin = "180 °/s"
-"#;
-
-const PLAIN: &str = r#"name = "12 kN"
-analysis = "dynamic"
-beam = { length = 1.0, height = 0.01, cells = [4, 1] }
-material = { young = 2.1e11, poisson = 0.3, density = 7800.0, thickness = 0.002 }
-support = [{ at = [0.0, 0.0], fix = ["x", "y"] }]
-load = [
-    { kind = "force", edge = "right", force = [0.0, -12000.0], pulse = { start = 0.01, duration = 0.5 } },
-    { kind = "gravity", acceleration = [0.0, -9.81] },
-]
-probe = [{ name = "3 mm", at = [1.0, 0.005] }]
-dynamics = { time_step = 0.001, damping = { mass = 2.0, stiffness = 0.001 } }
-start = { velocity = [0.001, 2.0], spin = 3.141592653589793 }
-"#;
+const WITH_UNITS: &str = include_str!("../data/files/units.toml");
+const PLAIN: &str = include_str!("../data/files/units-plain.toml");
 
 /// A scene with units equals the same scene without units, and is written without units.
 #[test]

@@ -1,16 +1,12 @@
 //! Tests that every integrator must pass.
 
-use std::f64::consts::TAU;
-
-use libtest_mimic::Trial;
-use nalgebra::Vector2;
-use warpbeam::{IntegratorKind, Material, MethodKind, Simulation, Status};
-
-use crate::common::motion::{beam, first_mode, grab, lowest_frequency, momentum, run, with};
+use crate::common::motion::{beam, first_mode, grab, lowest_frequency, with};
+use crate::common::*;
 use crate::{Test, suite};
+use libtest_mimic::Trial;
 
 const TESTS: &[Test<IntegratorKind>] = tests! {
-    the_error_has_the_stated_order_in_the_step a_free_body_falls a_pulse_leaves_its_impulse the_ledger_closes
+    the_error_has_the_stated_order_in_the_step a_free_body_falls the_ledger_closes
     damping_removes_the_energy_of_rayleighs_formula linear_theory_is_the_limit_of_small_loads
     motion_is_reproduced_to_the_last_bit
 };
@@ -61,15 +57,6 @@ fn a_free_body_falls(kind: IntegratorKind) {
     assert!((fallen - expected).norm() < close, "{fallen} {expected}");
     let v = simulation.probe_velocity("end").unwrap();
     assert!((v - Vector2::new(0.5, 3.0 - 9.81)).norm() < 100.0 * close, "{v}");
-}
-
-/// A pulse changes the momentum of a free body by its impulse, F · duration/2.
-fn a_pulse_leaves_its_impulse(kind: IntegratorKind) {
-    let mut scene = with("spin", kind, step(kind, 2e-3), 1, 0.3).force([0.5, 0.0], [0.0, 40.0]).pulse(0.05, 0.2);
-    scene.start.spin = 0.0;
-    let linear = momentum(&run(&scene)).linear;
-    // Sums over a period of sin² are exact unless the pulse begins or ends within a step.
-    assert!((linear - Vector2::new(0.0, 4.0)).norm() < 0.01, "{linear}");
 }
 
 /// The ledger has all entries at once: weight, pulses, damping, a mouse spring that is released, and an edit.

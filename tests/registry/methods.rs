@@ -1,13 +1,9 @@
 //! Tests that every method must pass.
 
-use libtest_mimic::Trial;
-use nalgebra::Vector2;
-use warpbeam::method::METHODS;
-use warpbeam::study::color;
-use warpbeam::{Field, LoadId, MethodKind, Scene, Simulation, Status};
-
-use crate::common::{scene, scene_with};
+use crate::common::*;
 use crate::{Test, suite};
+use libtest_mimic::Trial;
+use warpbeam::study::color;
 
 const TESTS: &[Test<MethodKind>] = tests! {
     the_id_is_the_name_in_scene_files no_other_method_has_the_same_colour an_axial_bar_stretches_by_pl_over_ea
@@ -29,12 +25,6 @@ fn no_other_method_has_the_same_colour(kind: MethodKind) {
     for dark in [false, true] {
         assert_eq!(METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark)).count(), 1);
     }
-}
-
-fn ended(scene: &Scene) -> Simulation {
-    let mut simulation = Simulation::new(scene).unwrap();
-    simulation.solve();
-    simulation
 }
 
 /// The extension is δ = P L / (E A) on every mesh.
@@ -94,7 +84,7 @@ fn extremes_stay_finite(method: MethodKind) {
 
 /// Returns the largest distance between two displacements, relative to the largest displacement of the second.
 fn difference(a: &Simulation, b: &Simulation) -> f64 {
-    let size = b.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let size = largest(b.displacement());
     a.displacement().iter().zip(b.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
 }
 
@@ -142,7 +132,7 @@ fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
             }
             simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, 0.0])).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then nothing");
-            let left = simulation.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+            let left = largest(simulation.displacement());
             assert!(left < 1e-9, "{id}: {force:e}, then nothing: {left:e} m are left");
             simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, force])).unwrap();
             simulation.solve();

@@ -4,16 +4,12 @@
 
 use std::path::Path;
 
+use crate::common::pictures::{difference, distance, for_picture, lab, pixel, read_png};
+use crate::common::*;
+use crate::{Test, suite};
 use libtest_mimic::Trial;
-use nalgebra::Vector2;
 use warpbeam::app::picture;
 use warpbeam::render::{Camera, Gpu, colormap};
-use warpbeam::scene::registry;
-use warpbeam::{MaterialPoint, Place};
-
-use crate::common::pictures::{difference, distance, for_picture, lab, pixel, read_png};
-use crate::common::succeeds;
-use crate::{Test, suite};
 
 const TESTS: &[Test<&'static str>] = &[
     ("the_picture_is_golden_on_dark", |id| is_golden(id, ["640x400", "dark"], &format!("tests/golden/{id}-dark.png"))),
@@ -63,7 +59,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let frame = lab.frame();
     let positions: Vec<_> = lab.simulation().positions().collect();
     // Triangles with straight sides are drawn one for one.
-    if lab.scene().element() == warpbeam::scene::ElementKind::T3 {
+    if lab.scene().element() == ElementKind::T3 {
         for (drawn, solved) in frame.triangles.iter().zip(lab.simulation().system().mesh().elements()) {
             let drawn = drawn.map(|p| frame.positions[p as usize]);
             let solved = [solved[0], solved[1], solved[2]].map(|n| positions[n as usize]);
@@ -79,13 +75,14 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let position = |element: usize, at: [f64; 2]| {
         colormap::position(frame.field.smooth_at(mesh, &nodal, MaterialPoint { element, at }).unwrap(), frame.range)
     };
-    let mut seen = 0;
+    let (mut seen, mut large) = (0, 0);
     for (i, triangle) in frame.triangles.iter().enumerate() {
         let [a, b, c] = triangle.map(|p| project(&camera, rect, frame.positions[p as usize]));
         let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
         if area < 60.0 {
             continue;
         }
+        large += 1;
         let [x, y] = [0, 1].map(|i| ((a[i] + b[i] + c[i]) / 3.0) as u32);
         let (element, piece) = (i / lattice.triangles.len(), lattice.triangles[i % lattice.triangles.len()]);
         let corners = piece.map(|p| lattice.points[p as usize]);
@@ -98,13 +95,8 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
             seen += 1;
         }
     }
-    let large = frame.triangles.iter().filter(|t| {
-        let [a, b, c] = t.map(|p| project(&camera, rect, frame.positions[p as usize]));
-        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs() >= 60.0
-    });
-    let large = large.count();
     // The load's arrow and the supports may cover a few triangles.
-    assert!(seen as f64 >= 0.9 * large as f64, "{id}: {seen} of {large} triangles have their colour");
+    assert!(f64::from(seen) >= 0.9 * f64::from(large), "{id}: {seen} of {large} triangles have their colour");
 
     // At the tip, a pixel just inside the body is body and one just outside is background. The outline between them is
     // 1.2 wide.

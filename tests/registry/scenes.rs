@@ -2,15 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use libtest_mimic::Trial;
-use nalgebra::Vector2;
-use warpbeam::method::METHODS;
-use warpbeam::method::Reason;
-use warpbeam::scene::Analysis;
-use warpbeam::{ElementKind, IntegratorKind, MethodKind, Scene, Simulation, Status};
-
-use crate::common::{ids_of, scene, scene_ids};
+use crate::common::*;
 use crate::{Test, suite};
+use libtest_mimic::Trial;
 
 const TESTS: &[Test<&'static str>] = tests! {
     the_scene_has_a_description_and_a_probe the_scene_is_unchanged_by_writing_and_reading_toml
@@ -41,8 +35,7 @@ fn the_scene_runs_to_its_end(id: &'static str) {
     for integrator in IntegratorKind::all().map(IntegratorKind::entry).filter(|i| !i.is_explicit()) {
         let mut scene = scene(id);
         scene.dynamics.integrator = integrator.kind;
-        let mut simulation = Simulation::new(&scene).unwrap();
-        assert_eq!(*simulation.solve(), Status::Finished, "{}", integrator.id);
+        let simulation = run(&scene);
         assert_eq!(simulation.solution().deformation.inverted_elements, 0, "{}", integrator.id);
         let ledger = simulation.motion().unwrap().ledger();
         assert!(ledger.imbalance().abs() < 1e-11 * ledger.throughput, "{}: {ledger:?}", integrator.id);
@@ -126,8 +119,7 @@ fn reactions_balance_the_loads(id: &'static str) {
 
 /// Loads at full size and moved supports do twice the work that is stored; along the path it is half of that.
 fn linear_theory_obeys_clapeyron(id: &'static str) {
-    let mut simulation = Simulation::new(&scene(id).with_method(MethodKind::Linear)).unwrap();
-    assert_eq!(*simulation.solve(), Status::Converged);
+    let simulation = solved(&scene(id).with_method(MethodKind::Linear));
     let energy = simulation.solution().energy;
     assert!(energy.elastic > 0.0);
     let supports = energy.supports.unwrap();
@@ -138,8 +130,7 @@ fn every_element_converges(id: &'static str) {
     for element in scene(id).elements().map(ElementKind::entry) {
         let mut scene = scene(id).with_method(MethodKind::Newton);
         scene.set_element(element.kind);
-        let mut simulation = Simulation::new(&scene).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged, "{}", element.id);
+        let mut simulation = solved(&scene);
         assert_eq!(simulation.certify().stable, Some(true), "{}", element.id);
         assert_eq!(simulation.solution().deformation.inverted_elements, 0, "{}", element.id);
     }
@@ -149,14 +140,13 @@ fn every_element_converges(id: &'static str) {
 fn warped_ends_where_newton_does(id: &'static str) {
     let mut scene = scene(id);
     (scene.solver.tolerance, scene.solver.max_iterations) = (1e-10, 500);
-    let mut newton = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
-    assert_eq!(*newton.solve(), Status::Converged);
+    let mut newton = solved(&scene.clone().with_method(MethodKind::Newton));
     let rho = newton.certify().fixed_point_rho.unwrap();
-    let mut warped = Simulation::new(&scene.with_method(MethodKind::Warped)).unwrap();
-    let status = warped.solve().clone();
+    let warped = ended(&scene.with_method(MethodKind::Warped));
+    let status = warped.status().clone();
     if rho < 0.98 {
         assert_eq!(status, Status::Converged, "ρ = {rho}");
-        let size = newton.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+        let size = largest(newton.displacement());
         for (a, b) in warped.displacement().iter().zip(newton.displacement()) {
             assert!((a - b).norm() < 1e-7 * size.max(1.0), "{a} {b}");
         }

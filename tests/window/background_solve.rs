@@ -4,9 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::lab::*;
-use crate::common::{largest_distance, solved};
 use egui_kittest::Harness;
-use warpbeam::scene::{Load, LoadId};
 
 /// Returns a window that solves everything in the background; every frame is checked.
 fn open(id: &str) -> Ui {
@@ -80,7 +78,7 @@ fn is_solve(lab: &Lab) {
     assert_eq!(lab.scene(), lab.simulation().scene());
     assert_eq!(*lab.simulation().status(), Status::Converged);
     let fresh = solved(lab.scene());
-    let largest = fresh.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let largest = largest(fresh.displacement());
     let off = largest_distance(lab.simulation().displacement(), fresh.displacement());
     assert!(off < 1e-5 * largest, "{off} of {largest}");
     assert!(lab.simulation().equilibrium().unwrap().certificate().is_some(), "it is not certified");

@@ -2,11 +2,7 @@
 
 use crate::common::lab::{self, *};
 use crate::common::pictures::{distance, pixel};
-use warpbeam::app::{Magnification, Pane, PaneSetting, parse_panes, picture};
-use warpbeam::format::{count, engineering_pair, percent, three_digits};
 use warpbeam::render::Gpu;
-use warpbeam::scene::ElementKind;
-use warpbeam::study::Reference;
 
 fn open_of(id: &str, scene: Scene) -> Ui {
     window(SIZE, lab_of(id, scene))
@@ -120,19 +116,10 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
 
 fn panes_agree_with_solves_of(lab: &Lab, number: usize) -> Simulation {
     let pane = &lab.panes()[number];
-    let mut alone = Simulation::new(&pane.setting().apply(lab.scene())).unwrap();
-    alone.solve();
+    let alone = ended(&pane.setting().apply(lab.scene()));
     let end = pane.end().unwrap();
     assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
     alone
-}
-
-#[test]
-fn panes_that_do_not_converge_are_named() {
-    let labels = compared("article", "warped:t3,warped:t6,newton:t6").texts();
-    let failed = labels.iter().find(|label| label.starts_with("Pane 2: warped t6 5×1: ")).unwrap();
-    assert!(failed.contains("Does not converge: "), "{failed}");
-    assert!(!labels.iter().any(|label| label.contains(": newton") && label.contains("does not converge")));
 }
 
 /// Each frame has a result of every pane.
@@ -165,7 +152,7 @@ fn a_diverging_pane_does_not_set_the_range_of_colours() {
         let panes = ui.state().panes();
         let [linear, warped] = [0, 1].map(|number| {
             let u = panes[number].simulation().unwrap().displacement();
-            u.iter().map(|u| u.norm()).fold(0.0, f64::max)
+            largest(&u)
         });
         has_diverged |= warped > 2.0 * linear;
         let high = panes[1].color_range()[1];
@@ -322,17 +309,6 @@ fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     ui.hover_at(places[1].left_bottom() + vec2(8.0, -8.0));
     ui.run_steps(2);
     assert!(beginning(&ui, "von Mises (Cauchy): ").is_empty());
-}
-
-/// Motions are compared in their own panes, while those of equilibria are inactive.
-#[test]
-fn motions_have_panes_of_their_own() {
-    let mut ui = open_of("swing", scene("swing"));
-    ui.step();
-    ui.key_press(Key::K);
-    ui.run_steps(2);
-    assert!(ui.state().panes().iter().all(|pane| pane.place().is_none()));
-    assert!(ui.state().motion_panes().iter().all(|pane| pane.place().is_some()));
 }
 
 /// Paused panes say so in their headers too.

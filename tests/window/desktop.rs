@@ -11,8 +11,6 @@ use std::time::{Duration, Instant};
 
 use crate::common::drop::drop_file;
 use crate::common::lab::*;
-use crate::common::{solve_json, warpbeam};
-use warpbeam::app::RecoveryCopies;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat, MapState};
 
 /// Longest time to wait for a condition: a busy machine takes half a minute to compile shaders for the first time.
@@ -93,6 +91,10 @@ impl Desktop {
         self.command("xdotool").args(keys).output().unwrap().status.success()
     }
 }
+
+/// Keys that close a window, without and with unsaved edits.
+const CLOSE: &[&str] = &["alt+F4"];
+const DISCARD: &[&str] = &["alt+F4", "d"];
 
 /// The program and its window.
 struct Window<'a> {
@@ -207,31 +209,18 @@ impl<'a> Window<'a> {
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
-    /// Closes the window as a window manager does; returns the program's exit code and its output.
-    fn close(self) -> (Option<i32>, String) {
-        self.close_by(&["alt+F4"])
-    }
-
-    /// Closes the window by these keys.
-    fn close_by(mut self, keys: &[&str]) -> (Option<i32>, String) {
+    /// Closes the window by these keys, as a window manager does, and checks that the program ends without an error; returns
+    /// its output.
+    fn close(mut self, keys: &[&str]) -> String {
         let (desktop, id) = (self.desktop, self.id.clone());
         let press = || keys.iter().for_each(|key| _ = desktop.key(&id, key));
-        (ask_until("the program to end", press, || self.process.try_wait().unwrap()).code(), self.said())
+        let status = ask_until("the program to end", press, || self.process.try_wait().unwrap());
+        Self::check_end(status.code(), self.said())
     }
 
-    /// Closes the window, and checks that the program ends without an error.
-    fn close_well(self) {
-        Self::check_end(&self.close());
-    }
-
-    /// Closes the window, discards the edits, and checks that the program ends without an error.
-    fn discard_well(self) {
-        Self::check_end(&self.close_by(&["alt+F4", "d"]));
-    }
-
-    fn check_end((code, said): &(Option<i32>, String)) {
-        assert_eq!(*code, Some(0), "{said}");
-        assert!(!said.contains("panicked"), "{said}");
+    fn check_end(code: Option<i32>, said: String) -> String {
+        assert!(code == Some(0) && !said.contains("panicked"), "{code:?}: {said}");
+        said
     }
 }
 
@@ -275,29 +264,20 @@ fn changed(a: &[u8], b: &[u8]) -> usize {
     a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a.iter().zip(*b).take(3).any(|(a, b)| a.abs_diff(*b) > 24)).count()
 }
 
+/// At rest nothing is redrawn: at least one of 15 intervals of two seconds uses almost no processor time.
 #[test]
-fn a_slider_is_dragged_the_picture_changes_and_close_exits_0() {
-    let Some(desktop) = Desktop::start() else { return };
-    let window = Window::open(&desktop, &["run", "article"]);
-    let at = laid_out().slider("Force");
-    let before = window.settle();
-    // The slider's handle at 30 000 N; the beam springs back when it is dragged to a smaller force.
-    window.point(at(0.67));
-    desktop.xdotool(&["mousedown", "1"]);
-    [0.6, 0.5, 0.4, 0.3].into_iter().for_each(|share| window.point(at(share)));
-    window.wait_for_change("the beam to spring back", &before, 20_000);
-    desktop.xdotool(&["mouseup", "1"]);
-    window.point(Pos2::new(900.0, 700.0));
-    let moved = changed(&before, &window.settle());
-    assert!(moved > 20_000, "only {moved} pixels changed");
-    window.discard_well();
-}
-
-#[test]
-fn the_window_survives_being_minimized_and_resized() {
+fn the_window_survives_being_idle_minimized_and_resized() {
     let Some(desktop) = Desktop::start() else { return };
     let window = Window::open(&desktop, &["run", "cantilever"]);
+    window.point(Pos2::new(1000.0, 850.0));
     let before = window.settle();
+    let used = (0..15).map(|_| {
+        let before = window.ticks();
+        std::thread::sleep(Duration::from_secs(2));
+        window.ticks() - before
+    });
+    // An interval has 200 ticks; a loop that polls or redraws uses most of them.
+    assert!(used.take_while(|&used| used > 4).count() < 15, "no two seconds in thirty were idle");
     desktop.xdotool(&["windowminimize", &window.id]);
     wait_for("the window to go", || (!window.geometry().1).then_some(()));
     desktop.xdotool(&["windowmap", &window.id]);
@@ -314,24 +294,7 @@ fn the_window_survives_being_minimized_and_resized() {
     window.wait_for_picture("the same picture after resizing", &before);
     "F1 Escape w o g x t 2 3 4 1 p p b b space n r space f c".split(' ').for_each(|key| _ = window.key(key));
     window.settle();
-    window.close_well();
-}
-
-/// At rest nothing is redrawn: at least one of 15 intervals of two seconds uses almost no processor time.
-#[test]
-fn an_idle_window_uses_no_processor() {
-    let Some(desktop) = Desktop::start() else { return };
-    let window = Window::open(&desktop, &["run", "gravity"]);
-    window.point(Pos2::new(1000.0, 850.0));
-    window.settle();
-    let least = (0..15).map(|_| {
-        let before = window.ticks();
-        std::thread::sleep(Duration::from_secs(2));
-        window.ticks() - before
-    });
-    // An interval has 200 ticks; a loop that polls or redraws uses most of them.
-    assert!(least.take_while(|&used| used > 4).count() < 15, "no two seconds in thirty were idle");
-    assert_eq!(window.close().0, Some(0));
+    window.close(CLOSE);
 }
 
 /// A motion ends at rest, also after a release, and a reset shows the same motion with the same end.
@@ -358,23 +321,7 @@ fn a_body_in_motion_is_pulled_released_and_reset() {
         let image = window.image();
         (image.len() == before.len() && changed(&image, &before) < 100_000).then_some(())
     });
-    window.close_well();
-}
-
-/// The key S saves the picture that the window shows.
-#[test]
-fn s_saves_a_screenshot() {
-    let Some(desktop) = Desktop::start() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let window = Window::open_in(&desktop, folder.path(), &["run", "article"]);
-    window.point(Pos2::new(1000.0, 700.0));
-    let shown = window.settle();
-    let path = folder.path().join("warpbeam-001.png");
-    let bgrx = ask_until("the whole screenshot", || _ = window.key("s"), || read_bgrx(&path));
-    assert_eq!(bgrx.len(), shown.len());
-    let different = changed(&bgrx, &shown);
-    assert!(different < 1_000, "{different} pixels differ from the window");
-    assert_eq!(window.close().0, Some(0));
+    window.close(CLOSE);
 }
 
 /// The picture is that of `shot`, and the language is kept for the next start.
@@ -395,7 +342,7 @@ fn a_dropped_file_is_opened_and_shown_in_chinese() {
     window.wait_for_change("another language", &english, 5_000);
     window.point(FREE);
     shot_is(&path, &["--language", "zh"], &window.settle());
-    window.close_well();
+    window.close(CLOSE);
     let kept = std::fs::read_to_string(desktop.config.path().join("warpbeam").join("settings.toml")).unwrap();
     assert!(kept.contains("language = \"zh\""), "{kept}");
 }
@@ -434,6 +381,7 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     // The window has the focus: to give it again would end the drag.
     let press = || _ = desktop.xdotool(&["key", "s"]);
     let screenshot = ask_until("the whole screenshot", press, || read_bgrx(&screenshot));
+    assert_eq!(screenshot.len(), held.len());
     // The arrow that is held is highlighted.
     let different = changed(&screenshot, &held);
     assert!(different < 20, "{different} pixels differ from the window");
@@ -452,7 +400,7 @@ fn the_tip_of_the_arrow_is_dragged_saved_and_undone() {
     assert_eq!(json["status"], "converged", "{json}");
     shot_is(&path, &[], &after);
     press_until(&window, "ctrl+z", "the scene as it was", || changed(&before, &window.image()) < 2_000);
-    window.discard_well();
+    window.close(DISCARD);
 }
 
 /// The next window offers them, and Restore brings them back. An answered offer is not repeated.
@@ -496,7 +444,7 @@ fn edits_survive_a_killed_window() {
     ask_until("the restored edits", click, || next.shows(&edited).then_some(()));
     wait_for("another copy", || copies.join("1.toml").exists().then_some(()));
     assert!(!copies.join("0.toml").exists(), "it would be offered again");
-    next.discard_well();
+    next.close(DISCARD);
     assert!(!copies.join("1.toml").exists());
 }
 
@@ -519,10 +467,10 @@ fn edits_survive_a_destroyed_window() {
     window.point(at(0.7));
     window.wait_for_change("the second edit", &before, 1_000);
     desktop.xdotool(&["windowclose", &window.id]);
-    let end = (window.process.wait().unwrap().code(), window.said());
+    let (code, said) = (window.process.wait().unwrap().code(), window.said());
     // Before winit learns that the window is destroyed, it may ask the display for its size, and panic.
-    if !end.1.contains("GetGeometry") {
-        Window::check_end(&end);
+    if !said.contains("GetGeometry") {
+        Window::check_end(code, said);
     }
     assert_ne!(scene().unwrap(), first);
 }
@@ -555,7 +503,6 @@ fn a_window_without_a_folder_for_settings_says_so() {
     window.key("p");
     let messages = ["Unsaved changes would not survive a crash: ", "The settings are not saved: "];
     wait_for("the warnings", || messages.iter().all(|message| window.said().contains(message)).then_some(()));
-    let (code, said) = window.close();
-    assert_eq!(code, Some(0), "{said}");
+    let said = window.close(CLOSE);
     assert!(messages.iter().all(|message| said.matches(message).count() == 1), "{said}");
 }

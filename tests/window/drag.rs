@@ -2,12 +2,9 @@
 
 use std::time::Duration;
 
-use egui::Vec2;
-
 use crate::common::lab::*;
-use crate::common::sampled;
 use crate::numbers::{Shown, solve};
-use warpbeam::format::{engineering, three_digits, two_digits};
+use egui::Vec2;
 
 /// Positions of a drag: there and back on the line of the arrow, through zero, and a circle around its foot.
 const POSITIONS: u32 = 200;
@@ -150,7 +147,7 @@ fn a_dragged_body_stays_in_view() {
 fn beyond_the_limit_the_drawn_body_belongs_to_a_load_of_the_same_direction() {
     let mut ui = open("article");
     let set = |ui: &mut Ui, force: [f64; 2]| {
-        ui.edit(|scene| scene.set_force(warpbeam::LoadId::nth(0), force).unwrap());
+        ui.edit(|scene| scene.set_force(LoadId::nth(0), force).unwrap());
         ui.run();
         Shown::labels(ui)
     };
@@ -163,4 +160,20 @@ fn beyond_the_limit_the_drawn_body_belongs_to_a_load_of_the_same_direction() {
     // The last equilibrium is not forgotten.
     let back = set(&mut ui, [10e3, -176e3]);
     assert!(label(&back).is_some_and(|text| text.starts_with("equilibrium at 30 kN")), "{back:?}");
+}
+
+/// Beyond the limit the reference under the load of the hand is drawn, and has its name.
+#[test]
+fn beyond_the_limit_the_reference_follows_the_hand() {
+    let mut ui = open("cantilever");
+    settle(&mut ui);
+    let (foot, tip) = (ui.state().arrow_feet()[0], ui.tip());
+    ui.hold(tip);
+    for part in [1.8, 2.6] {
+        ui.hover_at(foot + part * (tip - foot));
+        ui.run_steps(2);
+        let name = format!("reference at {}", engineering(three_digits(Vector2::from(ui.force()).norm()), "N"));
+        ui.wait_until("the reference", |ui| painted(ui).iter().any(|(_, text)| *text == name));
+        assert_ne!(*ui.state().simulation().status(), Status::Converged, "{part}");
+    }
 }

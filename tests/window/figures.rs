@@ -2,44 +2,31 @@
 
 use crate::common::alone::ran_alone;
 use crate::common::lab::*;
-use warpbeam::app::parse_panes;
-use warpbeam::scene::Load;
+use warpbeam::study::LoadCurve;
 use warpbeam::study::figure::LoadAxis;
-use warpbeam::study::{LoadCurve, Reference};
 
 /// Mesh and force with which linear theory's tip moves as far as the exact one, but in another direction.
 const SETS: &[&str] = &["beam.element=t3", "beam.cells=[80,8]", "load.0.force=[0,-553]"];
 
 /// Returns a solved scene with its load curve.
 fn with_curve(scene: Scene) -> Ui {
+    shown(scene, &|lab| lab.show_curve())
+}
+
+fn shown(scene: Scene, show: &dyn Fn(&mut Lab)) -> Ui {
     let mut lab = lab_of("scene", scene);
-    lab.show_curve();
+    show(&mut lab);
     lab.solve();
     let mut ui = window(SIZE, lab);
     ui.run();
     ui
-}
-
-fn compared(scene: Scene, panes: &str) -> Ui {
-    let mut lab = lab_of("scene", scene);
-    lab.show_comparison(&parse_panes(panes).unwrap());
-    lab.solve();
-    let mut ui = window(SIZE, lab);
-    ui.run();
-    ui
-}
-
-/// Returns the label with this beginning.
-fn label(ui: &Ui, begin: &str) -> String {
-    let all = ui.texts();
-    all.iter().find(|l| l.starts_with(begin)).unwrap_or_else(|| unreachable!("{begin}: {all:?}")).clone()
 }
 
 #[test]
 fn a_wrong_displacement_of_the_right_length_has_an_error() {
     let cantilever = scene_with("cantilever", SETS);
     let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
-    let ui = compared(cantilever.clone(), "linear,newton");
+    let ui = shown(cantilever.clone(), &|lab| lab.show_comparison(&parse_panes("linear,newton").unwrap()));
     let pane = &ui.state().panes()[0];
     let linear = pane.end().unwrap().probes[0].u;
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
@@ -47,8 +34,8 @@ fn a_wrong_displacement_of_the_right_length_has_an_error() {
     assert!(error > 12.0 && (pane.error_percent().unwrap() - error).abs() < 1e-6, "{:?}", pane.error_percent());
 
     let ui = with_curve(cantilever);
-    assert_eq!(label(&ui, "linear beam theory: "), "linear beam theory: (0, -2.23) m");
-    assert!(label(&ui, "exact beam: ").starts_with("exact beam: (-0.27"));
+    assert_eq!(ui.starting("linear beam theory: "), "linear beam theory: (0, -2.23) m");
+    assert!(ui.starting("exact beam: ").starts_with("exact beam: (-0.27"));
 }
 
 /// Returns the painted titles of the axes.
@@ -167,10 +154,10 @@ fn curves_are_saved_as_files() {
     let mut ui = with_curve(cantilever.clone());
     std::env::set_current_dir(folder.path()).unwrap();
     export(&mut ui, "CSV");
-    assert_eq!(label(&ui, "Saved"), "Saved warpbeam-001.csv");
+    assert_eq!(ui.starting("Saved"), "Saved warpbeam-001.csv");
     let rows = csv(&std::fs::read_to_string("warpbeam-001.csv").unwrap());
     assert_eq!(rows[0][..4], ["series", "force (N)", "u_x of tip (m)", "u_y of tip (m)"]);
-    let curve = LoadCurve::new(&cantilever, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+    let curve = LoadCurve::new(&cantilever, &go_on).unwrap();
     let own: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.exact.x, s.exact.y]).collect();
     assert_eq!(points(&rows, "exact beam"), own);
     let linear: Vec<[f64; 3]> = curve.samples.iter().map(|s| [553.0 * s.factor, s.linear.x, s.linear.y]).collect();
@@ -190,6 +177,6 @@ fn curves_are_saved_as_files() {
     folder.close().unwrap();
     for kind in ["CSV", "SVG"] {
         export(&mut ui, kind);
-        assert!(label(&ui, "Not saved: ").contains("warpbeam-001"), "{kind}");
+        assert!(ui.starting("Not saved: ").contains("warpbeam-001"), "{kind}");
     }
 }

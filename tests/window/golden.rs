@@ -62,11 +62,21 @@ fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// How fast is drawn before any measurement, because measured times differ from run to run.
 #[test]
-fn explore() {
-    let mut lab = lab("article");
-    lab.solve();
-    golden("explore", &mut lab, &[DARK, LIGHT, CHINESE], &[TIME]);
+fn explore_and_measure() {
+    let mut explore = lab("article");
+    explore.solve();
+    golden("explore", &mut explore, &[DARK, LIGHT, CHINESE], &[TIME]);
+    let mut ui = crate::common::lab::window([960.0, 600.0], explore);
+    ui.state_mut().set_language(Language::English);
+    ui.key_press(Key::B);
+    ui.run_steps(3);
+    golden("budget", ui.state_mut(), &[DARK], &[TIME]);
+    let mut limits = lab("article");
+    limits.show_limits();
+    limits.solve();
+    golden("limits", &mut limits, &[DARK, LIGHT], &[TIME]);
 }
 
 #[test]
@@ -94,23 +104,4 @@ fn compare() {
         lab.solve();
         golden(&format!("compare-{name}"), &mut lab, &[look], &PANES);
     }
-}
-
-#[test]
-fn limits() {
-    let mut lab = lab("article");
-    lab.show_limits();
-    lab.solve();
-    golden("limits", &mut lab, &[DARK, LIGHT], &[TIME]);
-}
-
-/// How fast is drawn before any measurement, because measured times differ from run to run.
-#[test]
-fn budget() {
-    let mut solved = lab("article");
-    solved.solve();
-    let mut ui = crate::common::lab::window([960.0, 600.0], solved);
-    ui.key_press(Key::B);
-    ui.run_steps(3);
-    golden("budget", ui.state_mut(), &[DARK], &[TIME]);
 }

@@ -1,18 +1,11 @@
 //! Tests of the window in Chinese: the catalogue has every text, the fonts have every letter, and nothing is clipped.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use crate::common::lab::*;
 use crate::panel::controls_are_inside;
 use egui::FontId;
-use warpbeam::app::{Language, Settings, card_count, parse_panes};
-use warpbeam::element::ELEMENTS;
-use warpbeam::method::METHODS;
-use warpbeam::scene::registry;
-use warpbeam::study::{Extent, Study};
-use warpbeam::{Field, IntegratorKind};
 
 /// Returns the Chinese texts by their English ones.
 fn catalogue() -> BTreeMap<String, String> {
@@ -88,12 +81,19 @@ fn assert_chinese(ui: &Ui, what: &str) {
 
 /// Points at every control, and checks the text of its tooltip.
 fn assert_tips_are_chinese(ui: &mut Ui, what: &str) {
+    assert_new_tips_are_chinese(ui, what, &mut BTreeSet::new());
+}
+
+/// Points at every control whose label is not known.
+fn assert_new_tips_are_chinese(ui: &mut Ui, what: &str, known: &mut BTreeSet<String>) {
     ui.ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
         style.interaction.show_tooltips_only_when_still = false;
     });
     let window = ui.ctx.content_rect();
-    let places: Vec<_> = ui.get_all_by(|node| node.bounding_box().is_some()).map(|node| node.rect().center()).collect();
+    let nodes = ui.get_all_by(|node| node.bounding_box().is_some());
+    let nodes = nodes.filter(|node| node.accesskit_node().label().is_none_or(|label| !known.contains(&label)));
+    let places: Vec<_> = nodes.map(|node| node.rect().center()).collect();
     let mut seen = BTreeSet::new();
     for place in places.into_iter().filter(|place| window.contains(*place)) {
         if seen.insert([place.x as i32, place.y as i32]) {
@@ -104,6 +104,7 @@ fn assert_tips_are_chinese(ui: &mut Ui, what: &str) {
     }
     ui.remove_cursor();
     ui.run_steps(2);
+    known.extend(ui.texts());
 }
 
 /// Presses the control with this text, or with one that begins with it.
@@ -172,7 +173,7 @@ fn unescaped(literal: &str) -> String {
 
 /// Returns the sources of the window. Files of unit tests show no text.
 fn sources(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    crate::common::files::rust_files(folder).into_iter().filter(|file| !file.ends_with("tests.rs"))
+    files::rust_files(folder).into_iter().filter(|file| !file.ends_with("tests.rs"))
 }
 
 /// Literals of the window's sources that are not shown in it, separated by `|`: copied texts, ids, variables, messages of
@@ -218,7 +219,7 @@ fn every_text_of_the_sources_is_in_the_catalogue() {
 #[test]
 fn every_sentence_of_the_library_is_in_the_catalogue() {
     let (known, mut found) = (catalogue(), BTreeSet::new());
-    for path in crate::common::files::rust_files("src".as_ref()) {
+    for path in files::rust_files("src".as_ref()) {
         let source = std::fs::read_to_string(&path).unwrap();
         let calls = source.split("sentence!(").skip(1).filter(|call| call.trim_start().starts_with('"'));
         for call in calls {
@@ -274,21 +275,32 @@ fn translations_have_the_placeholders_of_their_originals() {
     }
 }
 
+/// Those of the texts in the sources in English, and those of the catalogue in Chinese.
 #[test]
 fn the_fonts_have_every_letter() {
-    let mut ui = open_of("article", [640.0, 480.0]);
-    ui.run();
-    let mut letters: BTreeSet<char> = catalogue().values().flat_map(|text| text.chars()).collect();
-    letters.extend(Language::Chinese.name().chars());
-    for size in [12.0, 14.0, 18.0] {
-        for font in [FontId::proportional(size), FontId::monospace(size)] {
-            for &letter in letters.iter().filter(|letter| **letter != '\n') {
-                assert!(ui.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter)), "no glyph for {letter:?}");
-            }
+    let mut texts = "\u{2013}\u{201c}\u{201d}\u{2212}".to_owned();
+    for folder in ["app", "method", "element", "model", "scene", "simulation"] {
+        for file in files::rust_files(&Path::new("src").join(folder)) {
+            texts.extend(std::fs::read_to_string(file).unwrap().lines().filter_map(|line| line.split("//").next()));
         }
     }
-    let rare = FontId::proportional(14.0);
-    assert!(!ui.ctx.fonts_mut(|fonts| fonts.has_glyph(&rare, '\u{9f98}')), "the check is blind");
+    texts.extend(scene_ids().into_iter().map(|id| scene(id).about));
+    let letters = |texts: &str| texts.chars().filter(|c| !c.is_ascii()).collect::<BTreeSet<char>>();
+    assert!(letters(&texts).contains(&'≤') && letters(&texts).contains(&'ρ'));
+    let chinese: String = catalogue().into_values().chain([Language::Chinese.name().to_owned()]).collect();
+    for (language, texts) in [(Language::English, texts), (Language::Chinese, chinese)] {
+        let mut ui = open_of("article", [640.0, 480.0]);
+        ui.state_mut().set_language(language);
+        ui.run();
+        for font in
+            [12.0, 14.0, 18.0].into_iter().flat_map(|size| [FontId::proportional(size), FontId::monospace(size)])
+        {
+            let lacks = |c: &char| !ui.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c));
+            let ascii = texts.chars().filter(|c| c.is_ascii_graphic()).collect::<BTreeSet<char>>();
+            assert_eq!(letters(&texts).into_iter().chain(ascii).filter(lacks).collect::<String>(), "", "{font:?}");
+            assert!(lacks(&'\u{9f98}'), "the check is blind");
+        }
+    }
 }
 
 /// The button in the toolbar is labelled in the other language.
@@ -413,7 +425,7 @@ fn the_measurements_and_every_card_are_in_chinese() {
     let mut ui = settled("article", SIZE);
     ui.key(Key::B);
     assert_chinese(&ui, "before");
-    ui.state_mut().show_study(Study::new(&scene("article"), Extent::Quick, &|_| ControlFlow::Continue(())).unwrap());
+    ui.state_mut().show_study(Study::new(&scene("article"), Extent::Quick, &go_on).unwrap());
     ui.run();
     assert_tips_are_chinese(&mut ui, "How fast");
     let mut ui = settled("article", SIZE);
@@ -421,42 +433,64 @@ fn the_measurements_and_every_card_are_in_chinese() {
     ui.run_steps(3);
     settle(&mut ui);
     assert_tips_are_chinese(&mut ui, "How far");
+    // The toolbar is that of the first card.
+    let mut known = BTreeSet::new();
     for card in 1..=card_count() {
         ui.state_mut().show_card(card);
         ui.run();
         settle(&mut ui);
-        assert_tips_are_chinese(&mut ui, &format!("card {card}"));
+        assert_chinese(&ui, &format!("card {card}"));
+        assert_new_tips_are_chinese(&mut ui, &format!("card {card}"), &mut known);
     }
 }
 
-/// Every control is inside and wide enough for its text.
+/// In both languages, every control has a name, is inside and wide enough for its text, and can be reached.
 #[test]
 fn nothing_is_clipped_in_windows_of_any_size() {
-    for size in [[640.0, 480.0], [800.0, 600.0], SIZE] {
-        let mut ui = settled("article", size);
+    const SIZES: [[f32; 2]; 5] = [[640.0, 480.0], [800.0, 600.0], [959.0, 600.0], [960.0, 600.0], SIZE];
+    for (language, size) in pairs([Language::English, Language::Chinese], SIZES) {
+        let word = |english: &str| if language == Language::Chinese { zh(english) } else { english.to_owned() };
+        let mut ui = open_of("article", size);
+        ui.state_mut().set_language(language);
+        ui.run();
+        settle(&mut ui);
+        let (is_narrow, force) = (size[0] < 960.0, word("Force"));
+        assert_eq!(ui.has(Role::Slider, &force), !is_narrow);
+        if is_narrow {
+            ui.push(&word("Panel"));
+            assert!(ui.state().view_rect().right() > size[0] - 20.0, "the sheet is over the body");
+        }
         let names =
             "Run Step Reset Explore Learn Compare Measure Help Theme Language Panel Sections explain".split(' ');
-        ui.contains(names.map(zh));
-        if size[0] < 960.0 {
-            press(&mut ui, "Panel");
-        }
+        ui.contains(names.map(word));
         controls_are_inside(&ui);
+        if is_narrow {
+            ui.key(Key::P);
+            assert!(!ui.has(Role::Slider, &force));
+        }
         for card in 1..=card_count() {
             ui.state_mut().show_card(card);
             ui.run();
-            let names = ["‹ Back", "Next ›", "Leave"].map(zh);
+            let names = ["‹ Back", "Next ›", "Leave"].map(word);
             ui.contains(&names);
             assert!(names.iter().all(|name| ui.get_by_label(name).rect().width() > 20.0), "{size:?}, card {card}");
+            ui.get_by_label(&word("%{n} of %{count}").replace("%{n}", &card.to_string()).replace("%{count}", "9"));
+            let view = ui.state().view_rect();
+            assert!(view.height() > 0.3 * size[1], "{size:?}: the body has {view:?}");
+            if card < card_count() {
+                ui.click(&names[1]);
+                assert_eq!(ui.state().card(), Some((card + 1, 9)));
+            }
         }
-        press(&mut ui, "Leave");
+        ui.click(&word("Leave"));
         ui.state_mut().show_comparison(&parse_panes("linear,warped").unwrap());
         ui.run();
         let window = ui.ctx.content_rect();
         for name in ["+ Pane", "current | fastest"] {
-            assert!(window.contains_rect(ui.rect(Role::Button, &zh(name))), "{size:?}, Compare: {name}");
+            assert!(window.contains_rect(ui.rect(Role::Button, &word(name))), "{size:?}, Compare: {name}");
         }
         ui.key(Key::B);
-        ui.contains([zh("Measure on this machine")]);
+        ui.contains([word("Measure on this machine")]);
     }
 }
 

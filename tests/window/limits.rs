@@ -1,9 +1,6 @@
 //! Tests of the limits in the mode Measure: its numbers are those of `warpbeam limits`; its strips set load, method and element.
 
-use std::ops::ControlFlow;
-
 use crate::common::lab::*;
-use warpbeam::scene::{ElementKind, IntegratorKind};
 use warpbeam::study::figure::LoadAxis;
 use warpbeam::study::limits::MethodLimits;
 
@@ -45,11 +42,6 @@ fn click_strip(ui: &mut Ui, start: &str) {
     drag(ui, rect.center(), rect.center());
 }
 
-fn undo(ui: &mut Ui) {
-    ui.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    ui.run_steps(3);
-}
-
 /// Returns the labels of the strips that are complete, and of those that are not.
 fn strips(ui: &Ui) -> [Vec<String>; 2] {
     let labels = ui.get_all_by_role(Role::Button).filter_map(|node| node.accesskit_node().label());
@@ -81,50 +73,40 @@ fn strips_appear_one_after_another() {
     ui.wait_until("a strip", |ui| count(ui)[0] > 0);
 }
 
-/// One undo takes both back. The limits stay.
+/// A strip sets method and element and leaves the line; the line sets the load; one undo takes each back. The limits stay.
 #[test]
-fn a_click_on_a_strip_sets_method_and_element() {
-    let mut ui = opened(scene("article"));
-    let used = |ui: &Ui| (ui.scene().element(), ui.scene().solver.method, force(ui.state()));
-    let before = used(&ui);
-    click_strip(&mut ui, "q4 newton:");
-    assert_eq!(used(&ui), (ElementKind::Q4, MethodKind::Newton, before.2), "a click does not move the line");
-    assert!(strip(&ui, "t3 warped:").is_some());
-    undo(&mut ui);
-    assert_eq!(used(&ui), before);
-}
-
-/// The strip of an early stop is there while another strip is used.
-#[test]
-fn the_strip_of_an_early_stop_stays() {
+fn strips_set_method_and_element_and_the_line_the_load() {
     let mut ui = opened(scene_with("article", &["solver.accept_after=2"]));
-    let has_own = |ui: &Ui| assert!(strip(ui, "t3 warped:2: within").is_some(), "nothing is computed again");
+    let has_own = |ui: &Ui| {
+        let strips = ["t3 warped:2: within", "t3 warped: within"].map(|start| strip(ui, start).is_some());
+        assert_eq!(strips, [true; 2], "nothing is computed again");
+    };
+    let used = |ui: &Ui| {
+        let solver = &ui.scene().solver;
+        (ui.scene().element(), solver.method, solver.accept_after, force(ui.state()))
+    };
+    let before = used(&ui);
     has_own(&ui);
     click_strip(&mut ui, "q4 newton:");
-    assert_eq!(ui.scene().solver.accept_after, 0);
+    assert_eq!(used(&ui), (ElementKind::Q4, MethodKind::Newton, 0, before.3));
     has_own(&ui);
-    undo(&mut ui);
-    assert_eq!(ui.scene().solver.accept_after, 2);
+    ui.undo();
+    assert_eq!((used(&ui), before.2), (before, 2));
     has_own(&ui);
-}
-
-/// A drag by a third of the axis is a factor of ten. The limits are not computed again; one undo restores the load.
-#[test]
-fn the_line_sets_the_load() {
-    let mut ui = opened(scene("article"));
+    // The line sets the load: a drag by a third of the axis is a factor of ten. One undo restores it.
     let before = force(ui.state());
     let area = ui.rect(Role::Slider, "Load");
     let at = |part: f32| Pos2::new(area.left() + area.width() * part, area.top() + 4.0);
     drag(&mut ui, at(2.0 / 3.0), at(1.0 / 3.0));
     let ratio = force(ui.state()) / before;
     assert!((ratio - 0.1).abs() < 0.002, "{ratio}");
-    let keeps_limits = |ui: &Ui| strip(ui, "t3 warped:").is_some_and(|(label, _)| label.contains("49.3 kN"));
+    let keeps_limits = |ui: &Ui| strip(ui, "t3 warped: within").is_some_and(|(label, _)| label.contains("49.3 kN"));
     assert!(keeps_limits(&ui), "the limits are those of before");
     let first = force(ui.state());
     drag(&mut ui, at(1.0 / 3.0), at(0.5));
     assert!(force(ui.state()) > 2.0 * first);
     for expected in [first, before] {
-        undo(&mut ui);
+        ui.undo();
         assert_eq!(force(ui.state()), expected);
         assert!(keeps_limits(&ui), "nothing is computed again");
     }
@@ -151,7 +133,7 @@ fn a_motion_has_limits_of_its_integrators() {
     // A coarse mesh keeps the test short.
     let scene = scene_with("swing", &["beam.cells=[6,1]"]);
     let mut ui = opened(scene.clone());
-    let found = MethodLimits::of(&scene, &|_| ControlFlow::Continue(()), &|_| {}).unwrap();
+    let found = MethodLimits::of(&scene, &go_on, &|_| {}).unwrap();
     click_strip(&mut ui, "energy-momentum:");
     let dynamics = |ui: &Ui| (ui.scene().dynamics.integrator, ui.scene().dynamics.time_step);
     assert_eq!(dynamics(&ui), (IntegratorKind::EnergyMomentum, scene.dynamics.time_step));

@@ -1,9 +1,6 @@
 //! Tests of motions in the window: colours, time line, speed, and self-intersecting bodies.
 
 use crate::common::lab::*;
-use crate::common::{ids_of, scene_ids, scene_with};
-use warpbeam::scene::Analysis;
-use warpbeam::{IntegratorKind, LoadId, State};
 
 fn open_of(name: &str, scene: Scene) -> Ui {
     window_at([0.05, 4.0], SIZE, lab_of(name, scene))

@@ -2,14 +2,8 @@
 //! panes of Compare, the cards of Learn, and plots. Those of Measure are those of
 //! `warpbeam study` and `warpbeam limits`.
 
-use serde_json::Value;
-
 use crate::common::lab::*;
-use crate::common::{ids_of, stdout, warpbeam};
-use warpbeam::app::parse_panes;
-use warpbeam::format::{bound_percent, count, engineering, engineering_pair, percent, three_digits, two_digits};
-use warpbeam::scene::Analysis;
-use warpbeam::study::{Extent, Study};
+use serde_json::Value;
 
 /// Texts of the window.
 #[derive(Debug)]
@@ -135,13 +129,14 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     }
 }
 
-/// Under the scene's own load, a tenth, and a hundred times it, where `warped` diverges and has no numbers.
+/// Under the scene's own load, a hundred times it, where `warped` diverges and has no numbers, and in some scenes a tenth.
 #[test]
 fn numbers_are_those_of_solve() {
     let folder = tempfile::tempdir().unwrap();
     let (mut results, mut diverged) = (0, 0);
+    let little = sampled(ids_of(Analysis::Static), 4);
     for id in ids_of(Analysis::Static) {
-        for factor in [0.1, 1.0, 100.0] {
+        for factor in [1.0, 100.0].into_iter().chain(little.contains(&id).then_some(0.1)) {
             let mut scene = scene(id);
             // The files of meshes lie elsewhere.
             if factor != 1.0 && scene.mesh.is_some() {
@@ -176,7 +171,7 @@ fn numbers_are_those_of_solve() {
             }
         }
     }
-    assert!(results > 20 && diverged > 4, "{results} results, {diverged} diverged");
+    assert!(results >= 15 && diverged > 4, "{results} results, {diverged} diverged");
 }
 
 /// Each pane of Compare has the numbers of `solve` for the pane's scene. The time in the header is the pane's.
@@ -290,7 +285,7 @@ fn settings_have_the_errors_of_study() {
     let head = rows.next().unwrap();
     let column = |name: &str| head.iter().position(|own| *own == name).unwrap();
     let scene = scene("article");
-    let study = Study::new(&scene, Extent::Quick, &|_| std::ops::ControlFlow::Continue(())).unwrap();
+    let study = Study::new(&scene, Extent::Quick, &go_on).unwrap();
     let written: Vec<_> = rows.zip(&study.measurements).collect();
     assert_eq!(written.len(), study.measurements.len());
     let texts = written.iter().map(|(row, m)| {

@@ -1,8 +1,7 @@
 //! Tests of pictures without a window. The golden pictures of all scenes are tested in `tests/registry`.
 
 use crate::common::pictures::{difference, distance, lab, pixel, read_png};
-use crate::common::{program, scene, stderr, warpbeam};
-use warpbeam::Status;
+use crate::common::*;
 use warpbeam::app::{Picture, picture};
 use warpbeam::render::Gpu;
 
@@ -63,7 +62,7 @@ fn pictures_of_extremes_and_of_tiny_views() {
     let mut lab = lab("cantilever");
     for force in [0.0, 1e-9, 9e3, 1e9, 1e15] {
         let mut scene = scene("cantilever");
-        scene.loads = vec![warpbeam::Load::force("right", [0.0, -force])];
+        scene.loads = vec![Load::force("right", [0.0, -force])];
         lab.set_scene(scene).unwrap();
         lab.solve();
         for size in [[1, 1], [40, 300], [400, 40], [500, 400]] {
@@ -88,7 +87,7 @@ fn a_picture_without_a_desktop_prints_nothing() {
 #[test]
 fn a_shot_without_its_study_fails() {
     let folder = tempfile::tempdir().unwrap();
-    let mut unprobed = crate::common::scene("article");
+    let mut unprobed = scene("article");
     unprobed.probes.clear();
     std::fs::write(folder.path().join("unprobed.toml"), unprobed.to_toml().unwrap()).unwrap();
     let args = ["shot", "unprobed.toml", "--study", "-o", "x.png", "--size", "320x200"];
@@ -105,10 +104,7 @@ fn the_last_equilibrium_keeps_the_name_of_its_method() {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab("article");
     let scene_of = |method: &str, force: f64| {
-        crate::common::scene_with(
-            "article",
-            &[&format!("solver.method=\"{method}\""), &format!("load.0.force=[0,{force}]")],
-        )
+        scene_with("article", &[&format!("solver.method=\"{method}\""), &format!("load.0.force=[0,{force}]")])
     };
     // Line and name in the legend; the error after the name is not known for a state that is not drawn.
     let mut legend = |method: &str, force: f64| {

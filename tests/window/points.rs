@@ -1,11 +1,6 @@
 //! Tests of the card of a point, of probes that are kept, of the colours, and of the magnified displacement.
 
 use crate::common::lab::*;
-use crate::common::{largest_distance, solved};
-use warpbeam::app::{Magnification, parse_panes};
-use warpbeam::format::{engineering, engineering_pair, three_digits};
-use warpbeam::scene::{Axis, ElementKind, Load, Place};
-use warpbeam::{Field, PointValues};
 
 /// Returns all painted texts.
 fn texts(ui: &Ui) -> Vec<String> {
@@ -31,7 +26,7 @@ fn a_body_is_drawn_with_a_multiple_of_its_displacement() {
     let true_scale = positions(ui.state());
     assert!(!texts(&ui).iter().any(|text| text.contains("displacement ×")));
     let twice = magnify(&mut ui, Magnification::Factor(2.0));
-    let largest = ui.simulation().displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let largest = largest(ui.simulation().displacement());
     let drawn = largest_distance(&true_scale, &twice);
     assert!((drawn - largest).abs() < 1e-9 * largest, "{drawn} {largest}");
     let many = magnify(&mut ui, Magnification::Factor(250.0));
@@ -195,10 +190,7 @@ fn a_point_is_kept_as_a_probe() {
 #[test]
 fn the_panel_chooses_field_and_magnification() {
     let mut ui = open("cantilever");
-    ui.get_by_label_contains("View: ").scroll_to_me();
-    ui.run();
-    ui.get_by_label_contains("View: ").click();
-    ui.run();
+    ui.fold("View: ");
     pick(&mut ui, "Colour", Field::ShearStress.name());
     assert_eq!(ui.state().frame().field, Field::ShearStress);
     pick(&mut ui, "Displacement", "Factor");
@@ -290,14 +282,11 @@ fn a_new_beam_has_an_error_and_a_name() {
     assert!(!ui.says("no reference") && ui.says("ERROR 0."), "{:?}", ui.texts());
     assert_eq!(ui.state().title(), "New beam \u{2013} warpbeam");
     let view = ui.state().view_rect();
-    ui.get_by_label_contains("Loads and supports: ").click();
-    ui.run_steps(8);
+    ui.fold("Loads and supports: ");
     assert_eq!(ui.state().view_rect(), view, "the panel has grown");
     crate::panel::controls_are_inside(&ui);
-    ui.get_by_label_contains("Loads and supports: ").click();
-    ui.run_steps(8);
-    ui.get_by_label_contains("File: ").click();
-    ui.run_steps(8);
+    ui.fold("Loads and supports: ");
+    ui.fold("File: ");
     ui.get_by_role_and_label(Role::TextInput, "Name").click();
     ui.run();
     ui.event(egui::Event::Text(" of mine".into()));

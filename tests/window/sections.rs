@@ -13,11 +13,6 @@ fn choose(ui: &mut Ui, rest: [f64; 2], entry: &str) {
     ui.choose(ui.on_body(rest), entry);
 }
 
-fn undo(ui: &mut Ui) {
-    ui.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    ui.run_steps(6);
-}
-
 /// Returns the text of the forces of the first section.
 fn forces(lab: &Lab) -> String {
     let simulation = lab.simulation();
@@ -52,7 +47,7 @@ fn a_section_is_added_moved_and_removed() {
     assert!(moved != text && ui.query_by_label(&moved).is_some(), "{moved}");
     for at in [Some(line.at), None] {
         ui.key_press(Key::Escape);
-        undo(&mut ui);
+        ui.undo();
         assert_eq!(ui.scene().sections.first().map(|line| line.at), at);
     }
     assert_eq!(*ui.scene(), before);
@@ -75,7 +70,7 @@ fn a_section_is_turned_by_its_ends() {
         assert_eq!((turned.at, turned.angle.to_degrees().round()), (line.at, degrees), "{turned:?}");
         ui.get_by_label(&forces(ui.state()));
     }
-    undo(&mut ui);
+    ui.undo();
     assert_eq!(ui.scene().sections[0].angle.to_degrees().round(), -45.0);
 }
 
@@ -117,7 +112,7 @@ fn a_body_without_axis_has_its_own_sections_only() {
     assert!(!ui.says("No section") && ui.says("in the cut (of the drawn stress)") && !ui.has(Role::Button, "N"));
     assert_eq!(ui.scene().sections.len(), 1);
     // Without the menu: a section through the middle of the body.
-    undo(&mut ui);
+    ui.undo();
     assert!(ui.says("No section"));
     ui.click_for("Add a section", 4);
     let line = ui.scene().sections[0];

@@ -6,12 +6,9 @@ use std::ops::Range;
 use crate::common::alone::ran_alone;
 use crate::common::lab::{in_view, window_at};
 use crate::common::pictures::lab;
-use crate::common::random::Random;
-use crate::common::scene;
+use crate::common::*;
 use allocation_counter::measure;
-use nalgebra::Vector2;
 use warpbeam::app::Lab;
-use warpbeam::{ElementKind, IntegratorKind, Simulation, Status};
 
 /// Returns the factor by which runs are longer than usual.
 fn longer() -> u32 {

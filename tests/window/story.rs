@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::common::lab::*;
-use warpbeam::app::Settings;
-use warpbeam::scene::{ElementKind, registry::DEFAULT};
+use warpbeam::scene::registry::DEFAULT;
 
 /// Time between two frames, s.
 const FRAME: f64 = 0.25;

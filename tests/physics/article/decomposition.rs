@@ -3,19 +3,15 @@
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimMin, DimSub, Matrix3, SMatrix, ToTypenum};
-use thiserror::Error;
 
 /// Reason why a matrix has no polar decomposition.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PolarError {
     /// An entry is NaN or infinite.
-    #[error("the matrix is not finite: expected finite entries")]
     NotFinite,
     /// An iterate is singular and cannot be inverted.
-    #[error("the matrix is singular: the iteration needs its inverse")]
     Singular,
     /// The iterates did not become orthogonal within the allowed number of iterations.
-    #[error("no orthogonal factor within {0} iterations: the matrix is close to singular")]
     NotConverged(usize),
 }
 
@@ -59,7 +55,6 @@ fn of_ordinary_size<const N: usize>(f: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N
 }
 
 /// Returns the departure from orthogonality ‖½(RᵀR − I)‖, article eq. (35).
-#[must_use]
 pub fn orthogonality_error(r: &Matrix3<f64>) -> f64 {
     ((r.transpose() * r - Matrix3::identity()) * 0.5).norm()
 }
@@ -69,9 +64,6 @@ pub fn orthogonality_error(r: &Matrix3<f64>) -> f64 {
 /// Where det F < 0 the iteration ends on a *reflection*, as the article's own example does (det = −110.96, its
 /// printed R has det −1). A corotational code needs [`proper_rotation3`]. Erratum: the A⁻ᵀ printed with that
 /// example is A⁻¹, untransposed.
-///
-/// # Errors
-/// [`PolarError::Singular`] where the inverse does not exist, [`PolarError::NotConverged`], [`PolarError::NotFinite`].
 pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     let largest = f.amax();
     if !f.iter().all(|v| v.is_finite()) {
@@ -98,9 +90,6 @@ pub fn polar3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
 
 /// Computes the proper rotation nearest to F: [`polar3`] where det F > 0, else its reflection with the direction of the
 /// least stretch reversed, so that det = +1.
-///
-/// # Errors
-/// The errors of [`polar3`].
 pub fn proper_rotation3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
     let polar = polar3(f)?;
     if polar.orthogonal.determinant() > 0.0 {
@@ -118,9 +107,6 @@ pub fn proper_rotation3(f: &Matrix3<f64>) -> Result<Polar<3>, PolarError> {
 /// right factor V Σ Vᵀ. It exists for singular F too, where it is not unique.
 ///
 /// Erratum: the article's eq. (31) writes U V⁻¹ for U Vᵀ, the same thing for an orthogonal V.
-///
-/// # Errors
-/// [`PolarError::NotFinite`]; [`PolarError::NotConverged`] where the SVD does not converge.
 pub fn polar_from_svd<const N: usize>(f: &SMatrix<f64, N, N>) -> Result<Polar<N>, PolarError>
 where
     Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>> + DimSub<Const<1>>,

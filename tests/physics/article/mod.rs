@@ -1,11 +1,12 @@
 //! Tests of the article's formulas: the SVD and its interpretation, the 3×3 iteration, its examples and errata. Tests
 //! of its affine maps are in `src/article/affine`.
 
+use crate::common::*;
+
 mod decomposition;
 
 use decomposition::{PolarError, orthogonality_error, polar_from_svd, polar3, proper_rotation3};
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
-use warpbeam::rotation::polar;
+use nalgebra::{Matrix3, Vector3};
 
 /// Erratum: with eq. (38) as printed, c = a √(a² + b²), the result is not a rotation.
 #[test]
@@ -51,10 +52,11 @@ fn article_matrix() -> Matrix3<f64> {
     Matrix3::new(8.442, 0.559, 2.790, 2.771, 1.936, 4.589, 0.818, 6.158, 5.564)
 }
 
-/// The worked example, to its printed digits: seven iterations, R, U and V.
+/// The worked example, to its printed digits: seven iterations, R, U and V; and its errata.
 #[test]
 fn article_example_of_the_3x3_iteration() {
-    let p = polar3(&article_matrix()).unwrap();
+    let f = article_matrix();
+    let p = polar3(&f).unwrap();
     assert_eq!(p.iterations, 7);
     let error = orthogonality_error(&p.orthogonal);
     assert!((error - 3.6e-10).abs() < 0.1e-10, "{error:e}");
@@ -65,48 +67,29 @@ fn article_example_of_the_3x3_iteration() {
     for (ours, printed) in [(p.orthogonal, r), (p.right, u), (p.left, v)] {
         assert!((ours - printed).amax() < 1.6e-3, "{ours} {printed}");
     }
-    assert!((p.orthogonal * p.right - article_matrix()).norm() < 1e-8);
-    assert!((p.left * p.orthogonal - article_matrix()).norm() < 1e-8);
-}
-
-/// Erratum: the V printed next to eq. (36) is F Rᵀ; FᵀR, as in the equation, is U transposed.
-#[test]
-fn erratum_eq_36_v_is_f_r_transposed() {
-    let f = article_matrix();
-    let p = polar3(&f).unwrap();
+    assert!((p.orthogonal * p.right - f).norm() < 1e-8);
+    assert!((p.left * p.orthogonal - f).norm() < 1e-8);
+    // Erratum: the V printed next to eq. (36) is F Rᵀ; FᵀR, as in the equation, is U transposed.
     let as_printed = f.transpose() * p.orthogonal;
     assert!((as_printed - p.left).norm() > 1.0);
     assert!((as_printed - p.right).norm() < 1e-8);
-}
-
-/// Erratum: the matrix printed as A⁻ᵀ is A⁻¹, which has the transpose of its orthogonal factor.
-#[test]
-fn erratum_the_printed_inverse_is_not_transposed() {
+    // Erratum: the matrix printed as A⁻ᵀ is A⁻¹, which has the transpose of its orthogonal factor.
     let printed = Matrix3::new(0.157, -0.126, 0.025, 0.105, -0.402, 0.279, -0.139, 0.464, -0.133);
-    let [of_a, of_printed] = [article_matrix(), printed].map(|m| polar3(&m).unwrap().orthogonal);
+    let [of_a, of_printed] = [f, printed].map(|m| polar3(&m).unwrap().orthogonal);
     assert!((of_printed - of_a.transpose()).amax() < 5e-3, "{of_printed} {of_a}");
     assert!((of_printed - of_a).amax() > 0.02, "{of_printed} {of_a}");
-}
-
-/// Erratum: the example's R is a reflection; the proper rotation is a different matrix.
-#[test]
-fn erratum_the_example_is_a_reflection() {
-    let f = article_matrix();
+    // Erratum: the example's R is a reflection; the proper rotation is a different matrix.
     assert!((f.determinant() + 110.96).abs() < 0.01);
-    assert!((polar3(&f).unwrap().orthogonal.determinant() + 1.0).abs() < 1e-8);
+    assert!((p.orthogonal.determinant() + 1.0).abs() < 1e-8);
     let proper = proper_rotation3(&f).unwrap();
     let expected = Matrix3::new(0.8672, -0.3313, 0.3717, 0.4401, 0.8591, -0.2611, -0.2329, 0.3900, 0.8909);
     assert!((proper.orthogonal - expected).amax() < 1e-4, "{}", proper.orthogonal);
     assert!((proper.orthogonal.determinant() - 1.0).abs() < 1e-8);
     assert!((proper.orthogonal * proper.right - f).norm() < 1e-8);
-}
-
-/// Erratum: eq. (31) writes U V⁻¹ for U Vᵀ; both are the same, because the factors of the SVD are orthogonal.
-#[test]
-fn erratum_eq_31_inverse_and_transpose_agree() {
-    let q = polar_from_svd(&article_matrix()).unwrap().orthogonal;
+    // Erratum: eq. (31) writes U V⁻¹ for U Vᵀ; both are the same, because the factors of the SVD are orthogonal.
+    let q = polar_from_svd(&f).unwrap().orthogonal;
     assert!((q.try_inverse().unwrap() - q.transpose()).norm() < 1e-12);
-    assert!((q - polar3(&article_matrix()).unwrap().orthogonal).norm() < 1e-8);
+    assert!((q - p.orthogonal).norm() < 1e-8);
 }
 
 #[test]
@@ -120,10 +103,6 @@ fn the_3x3_iteration_at_the_extremes() {
     assert_eq!(polar_from_svd(&Matrix2::from_element(f64::INFINITY)), Err(PolarError::NotFinite));
     let thin = Matrix3::from_diagonal(&Vector3::new(1.0, 1e-6, 1e3));
     assert!((polar3(&thin).unwrap().orthogonal - Matrix3::identity()).norm() < 1e-8);
-}
-
-#[test]
-fn numbers_out_of_range_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
         let matrix = Matrix3::repeat(bad);
         assert!(polar3(&matrix).is_err() && proper_rotation3(&matrix).is_err());

@@ -4,11 +4,9 @@
 //! changes; beyond that, they go on from a longer one. Where no step is short enough, the next extrapolation ignores the
 //! earlier points: the steps then pass a sharp turn, but no limit point.
 
-use warpbeam::assembly::{Forces, Kinematics, Matrix, NodalSupport, Problem};
-use warpbeam::element::Tangent;
-use warpbeam::nalgebra::Vector2;
+use crate::common::*;
+use warpbeam::assembly::NodalSupport;
 use warpbeam::solver::Factor;
-use warpbeam::{Rotation, Simulation};
 
 /// Number of steps on a path along which nothing is difficult.
 const STEPS: f64 = 160.0;
