@@ -43,7 +43,7 @@ pub fn shot(
         lab.show_curve();
     }
     if options.sections {
-        lab.show_sections();
+        lab.show_drawer(Drawer::Section);
     }
     if let Some(card) = options.learn {
         lab.show_card(card.into());
@@ -59,7 +59,7 @@ pub fn shot(
         lab.show_limits();
     }
     if let Some(integrators) = &options.motion {
-        lab.show_motion_plots();
+        lab.show_drawer(Drawer::Motion);
         integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
     }
     if let Some(panes) = &options.compare {

@@ -57,11 +57,6 @@ pub(super) fn material_summary(scene: &Scene) -> String {
     joined(name.into_iter().chain([engineering(young, "Pa")]))
 }
 
-/// Returns length and height of a beam, such as `3 m × 1 m`.
-pub(super) fn size_summary(beam: &Beam) -> String {
-    format!("{} × {}", engineering(beam.length, "m"), engineering(beam.height, "m"))
-}
-
 /// Numbers of cells that follow the size of a beam, so that the size of a cell stays about the same; in a much smaller
 /// beam, whose size has been typed in other units, the number stays.
 #[derive(Debug, Default)]

@@ -3,6 +3,7 @@
 
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::scroll_area::ScrollBarVisibility;
+use egui::text::{LayoutJob, TextWrapping};
 
 use crate::app::diagnosis::Errors;
 use crate::app::prelude::*;
@@ -99,7 +100,8 @@ pub(super) fn show(
             });
         }
         if let Some(beam) = &scene.beam {
-            fold(ui, "Beam", &body::size_summary(beam), false, |ui| body::size(ui, panel, beam));
+            let summary = format!("{} × {}", engineering(beam.length, "m"), engineering(beam.height, "m"));
+            fold(ui, "Beam", &summary, false, |ui| body::size(ui, panel, beam));
         }
         fold(ui, "Material", &body::material_summary(scene), false, |ui| body::material(ui, panel));
         fold(ui, "Mesh", &body::mesh_summary(input), false, |ui| body::mesh(ui, panel));
@@ -136,12 +138,8 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
         let font = FontId::proportional(BODY);
         let title = ui.painter().text(at, Align2::LEFT_CENTER, name, font, palette.text);
         let left = title.right() + 10.0;
-        let mut job = egui::text::LayoutJob::simple_singleline(
-            summary.to_owned(),
-            FontId::proportional(SMALL),
-            palette.secondary,
-        );
-        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left).max(0.0));
+        let mut job = LayoutJob::simple_singleline(summary.to_owned(), FontId::proportional(SMALL), palette.secondary);
+        job.wrap = TextWrapping::truncate_at_width((rect.right() - left).max(0.0));
         let galley = ui.painter().layout_job(job);
         let at = pos2(rect.right() - galley.size().x, rect.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.secondary);

@@ -21,11 +21,8 @@ pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
     let values = panel.input.value_range;
     let mut fixed = panel.view.fixed_range.is_some();
-    if ui
-        .checkbox(&mut fixed, tr("Fixed colour range"))
-        .on_hover_text(tr("Keep the ends of the colour map fixed; otherwise they follow the values"))
-        .changed()
-    {
+    let tip = tr("Keep the ends of the colour map fixed; otherwise they follow the values");
+    if ui.checkbox(&mut fixed, tr("Fixed colour range")).on_hover_text(tip).changed() {
         panel.view.fixed_range = fixed.then_some(values);
     }
     if let Some(range) = panel.view.fixed_range {
@@ -119,6 +116,8 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
 
 /// Shows the name and the description of the scene, and the buttons that open, save and copy.
 pub(super) fn keep(ui: &mut Ui, panel: &mut Panel<'_>) {
+    const SAVE_AS: &str =
+        "Save the scene to another file; `warpbeam record FILE -o FILE.gif` makes a GIF of it (Ctrl+Shift+S)";
     let scene = panel.scene;
     type Part = fn(&mut Scene) -> &mut String;
     let parts: [(&str, &String, Part); 2] =
@@ -146,11 +145,7 @@ pub(super) fn keep(ui: &mut Ui, panel: &mut Panel<'_>) {
         for (name, tip, action) in [
             ("Open…", "Open a scene file; one can also be dropped on the window (Ctrl+O)", Action::OpenFile),
             ("Save", "Save the scene to its file (Ctrl+S)", Action::Save),
-            (
-                "Save as…",
-                "Save the scene to another file; `warpbeam record FILE -o FILE.gif` makes a GIF of it (Ctrl+Shift+S)",
-                Action::SaveAs,
-            ),
+            ("Save as…", SAVE_AS, Action::SaveAs),
             ("Screenshot", "Save a screenshot as a PNG file in the current folder (S)", Action::Screenshot),
             ("Copy as TOML", "Copy the scene as TOML, with the command that solves it (C)", Action::Copy),
             ("Copy link", "Copy the address of this page with the whole scene in it (U)", Action::CopyLink),

@@ -42,14 +42,9 @@ impl Lab {
         (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::LoadCurve);
     }
 
-    /// Shows the plots of the sections under the body.
-    pub fn show_sections(&mut self) {
-        self.desk.view.drawer = Some(Drawer::Section);
-    }
-
-    /// Shows the plots of a motion under the body.
-    pub fn show_motion_plots(&mut self) {
-        self.desk.view.drawer = Some(Drawer::Motion);
+    /// Shows the plots of the sections, or of a motion, under the body.
+    pub(crate) fn show_drawer(&mut self, drawer: Drawer) {
+        self.desk.view.drawer = Some(drawer);
     }
 
     /// Shows card `number` of the mode Learn, from 1. The current scene is restored when the mode ends.

@@ -62,11 +62,6 @@ impl Settings {
         platform::settings::file()
     }
 
-    /// Returns `true` if there is no file of settings yet.
-    pub(crate) fn is_missing(file: &Path) -> bool {
-        platform::settings::read(file).is_err_and(|error| error.kind() == ErrorKind::NotFound)
-    }
-
     /// Reads the settings from a file; returns the defaults if there is none, and with a message if it cannot be read.
     #[must_use]
     pub fn load(file: &Path) -> (Self, Option<String>) {

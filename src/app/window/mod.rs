@@ -9,6 +9,7 @@ mod report;
 mod worker;
 
 use std::cell::RefCell;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -148,7 +149,8 @@ impl App {
         let mut lab = lab.ok_or_else(|| AppError::Window("the scene to begin with is missing".to_owned()))?;
         lab.set_settings(&ctx, settings.clone());
         lab.set_easing(!lab.reduces_motion());
-        let is_first_start = file.as_deref().is_some_and(Settings::is_missing);
+        let is_missing = |file: &Path| platform::settings::read(file).is_err_and(|e| e.kind() == ErrorKind::NotFound);
+        let is_first_start = file.as_deref().is_some_and(is_missing);
         unreadable.into_iter().for_each(|message| _ = lab.warn(message));
         let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {

@@ -161,7 +161,7 @@ impl OpenWindow {
             }
             Current::Lost => {
                 let made = self.graphics.instance.create_surface(self.bare.window.clone());
-                let lost = |error| AppError::Window(format!("the surface was lost: {error}"));
+                let lost = |e| AppError::Window(format!("the surface was lost: {e}"));
                 self.graphics.surface = made.map_err(lost)?;
                 self.configure();
                 "the surface was lost"

@@ -40,9 +40,9 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
             let shift = mean(view.points_of(element)) - mean(corners);
             let line: Vec<_> = corners.iter().map(|p| view.place(p + shift)).collect();
-            painter
-                .add(Shape::closed_line(line.clone(), Stroke::new(3.2, view.palette.canvas.gamma_multiply(strength))));
-            painter.add(Shape::closed_line(line, Stroke::new(1.5, view.palette.exact.gamma_multiply(strength))));
+            for (width, color) in [(3.2_f32, view.palette.canvas), (1.5, view.palette.exact)] {
+                painter.add(Shape::closed_line(line.clone(), Stroke::new(width, color.gamma_multiply(strength))));
+            }
         }
     }
     paint_picked(painter, view, learn);
