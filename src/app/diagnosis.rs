@@ -80,7 +80,7 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
     let Some(first) = reference.first() else { return Errors::default() };
     // A reference that is behind the load belongs to the body that it was asked for.
-    let behind = input.live.filter(|live| !live.is_of(input.scene)).map(|live| live.compared);
+    let behind = input.live.filter(|live| !live.is_of(input.scene));
     let percent_of = |u: Option<Vector2<f64>>| Some((error_percent(u?, first.displacement)?, u?));
     // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
     let is_elsewhere = input.path.is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();

@@ -17,8 +17,6 @@ pub(super) struct Background {
     solve: Option<Box<BackgroundSolve>>,
     /// Session before the first edit whose result is incomplete.
     pub before: Option<Box<Before>>,
-    /// Model of a solve that an edit has superseded: the next one continues with it.
-    returned: Option<Box<Model>>,
     /// `true` if the next solve starts from rest.
     pub from_rest: bool,
     /// Largest number of iterations of the next solve; `None` for no limit.
@@ -136,7 +134,7 @@ impl Session {
     /// Handles the updates of the background solve, and starts the next solve if one is needed.
     pub(crate) fn poll(&mut self) {
         while self.take_update(false) {}
-        self.start_solve();
+        self.start_solve(None);
     }
 
     /// Handles an update of the background solve, or `waits` for it; returns `false` if there is none.
@@ -160,7 +158,8 @@ impl Session {
         let Some(solve) = self.background.solve.take() else { return };
         match outcome {
             Ok(model) if solve.scene == self.scene => self.display(*model),
-            Ok(model) if has_mesh_of(&self.scene, &solve.scene) => self.background.returned = Some(model),
+            // The next solve continues with the model of one that an edit has superseded.
+            Ok(model) if has_mesh_of(&self.scene, &solve.scene) => self.start_solve(Some(model)),
             Err(error) if solve.scene == self.scene => {
                 let label = self.background.before.as_ref().and_then(|before| before.label);
                 self.roll_back();
@@ -187,11 +186,10 @@ impl Session {
     }
 
     /// Starts the next solve, if one is needed.
-    fn start_solve(&mut self) {
+    fn start_solve(&mut self, returned: Option<Box<Model>>) {
         if self.background.solve.is_some() {
             return;
         }
-        let returned = self.background.returned.take();
         let own = returned.as_ref().map_or(&self.model.simulation, |model| &model.simulation);
         let is_new = !has_mesh_of(&self.scene, own.scene());
         let is_needed = returned.is_some()

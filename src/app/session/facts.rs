@@ -203,13 +203,6 @@ fn natural_frequency(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     Some(lowest_frequency(problem, &mass)? / TAU)
 }
 
-/// Displacements of the first probe, m: of the body, and by linear theory.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Compared {
-    pub own: Option<Vector2<f64>>,
-    pub linear: Option<Vector2<f64>>,
-}
-
 /// Returns the displacement of a body's first probe, m.
 pub(crate) fn first_probe(body: &Simulation) -> Option<Vector2<f64>> {
     Some(body.problem().probes().first()?.mean(body.displacement()))
@@ -221,7 +214,9 @@ pub(crate) struct Live {
     /// Scene without the settings on which the reference does not depend.
     key: Scene,
     pub reference: Reference,
-    pub compared: Compared,
+    /// Displacements of the first probe, m: of the body, and by linear theory.
+    pub own: Option<Vector2<f64>>,
+    pub linear: Option<Vector2<f64>>,
 }
 
 impl Live {
@@ -239,7 +234,7 @@ impl Live {
     pub(crate) fn is_late(&self, body: &Simulation) -> bool {
         /// Distance relative to the size of the body.
         const FAR: f64 = 0.05;
-        let moved = self.compared.own.zip(first_probe(body)).map(|(asked, now)| (now - asked).norm());
+        let moved = self.own.zip(first_probe(body)).map(|(asked, now)| (now - asked).norm());
         moved.is_some_and(|moved| moved > FAR * body.system().size())
     }
 }
@@ -280,7 +275,7 @@ impl Follower {
 
     /// Requests the reference of a scene at rest; returns `true` while it is pending. A page has no thread for it: there
     /// the error is shown at rest.
-    pub(crate) fn request(&mut self, scene: &Scene, compared: Compared) -> bool {
+    pub(crate) fn request(&mut self, scene: &Scene, own: Option<Vector2<f64>>, linear: Option<Vector2<f64>>) -> bool {
         if self.poll() {
             return true;
         }
@@ -294,7 +289,7 @@ impl Follower {
             let solutions = solutions.filter(|solutions| solutions.suits(&scene));
             let mut solutions = solutions.or_else(|| LiveReference::new(&scene).map(Box::new));
             let reference = solutions.as_mut().and_then(|solutions| solutions.follow(&scene));
-            (solutions, reference.map(|reference| Box::new(Live { key, reference, compared })))
+            (solutions, reference.map(|reference| Box::new(Live { key, reference, own, linear })))
         };
         self.running = Task::start("follow", work).ok();
         self.running.is_some()
@@ -343,8 +338,8 @@ mod tests {
     #[test]
     fn a_reference_is_that_of_a_body_under_any_load() {
         let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
-        let (reference, compared) = (Reference::of(&scene).unwrap(), Compared::default());
-        let live = Live { key: without_settings(&scene), reference, compared };
+        let reference = Reference::of(&scene).unwrap();
+        let live = Live { key: without_settings(&scene), reference, own: None, linear: None };
         let (mut heavier, mut longer) = (scene.clone(), scene);
         heavier.scale_loads(2.0);
         assert!(live.is_of_body(&heavier) && !live.is_of(&heavier));

@@ -20,7 +20,7 @@ use crate::app::platform::IS_PAGE;
 use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
-use crate::app::session::facts::{Compared, Facts, Follower, Live, ShownFacts, first_probe};
+use crate::app::session::facts::{Facts, Follower, Live, ShownFacts, first_probe};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
@@ -732,8 +732,7 @@ impl Session {
             return self.live.poll();
         }
         let linear = self.model.linear.as_ref().and_then(first_probe);
-        let compared = Compared { own: first_probe(simulation).filter(|_| is_found), linear };
-        self.live.request(&self.scene, compared)
+        self.live.request(&self.scene, first_probe(simulation).filter(|_| is_found), linear)
     }
 
     /// Returns `true` while the reference that follows the load is being computed.

@@ -26,10 +26,14 @@ fn open(source: Source) -> Session {
     Session::new(source, scene, simulation)
 }
 
-fn with_force(session: &Session, force: f64) -> Edit {
+fn edited(session: &Session, label: &'static str, change: impl FnOnce(&mut Scene)) -> Edit {
     let mut scene = session.scene().clone();
-    scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
-    Edit::Scene("Force", Box::new(scene))
+    change(&mut scene);
+    Edit::Scene(label, Box::new(scene))
+}
+
+fn with_force(session: &Session, force: f64) -> Edit {
+    edited(session, "Force", |scene| scene.set_force(LoadId::nth(0), [0.0, force]).unwrap())
 }
 
 fn tip(session: &Session) -> f64 {
@@ -70,9 +74,7 @@ fn a_refused_edit_leaves_the_session_unchanged() {
     session.solve(ShownFacts::default());
     let (scene, first) = (session.scene().clone(), tip(&session));
     session.take_changed();
-    let mut wrong = scene.clone();
-    wrong.material.poisson = 0.9;
-    assert!(session.apply(Edit::Scene("Poisson ν", Box::new(wrong))).is_err());
+    assert!(session.apply(edited(&session, "Poisson ν", |scene| scene.material.poisson = 0.9)).is_err());
     assert!(*session.scene() == scene && tip(&session) == first && !session.can_undo());
     assert_eq!(session.take_changed(), Changed::default());
     assert!(session.apply(Edit::Open(source("nowhere.toml"))).is_err());
@@ -204,9 +206,8 @@ fn an_exploded_motion_starts_again_with_other_settings() {
         session.iterate();
     }
     assert!(matches!(session.simulation().status(), Status::Stopped(_)), "{:?}", session.simulation().status());
-    let mut scene = session.scene().clone();
-    scene.dynamics.integrator = IntegratorKind::TrBdf2;
-    session.apply(Edit::Scene("Integrator", Box::new(scene))).unwrap();
+    let integrator = |scene: &mut Scene| scene.dynamics.integrator = IntegratorKind::TrBdf2;
+    session.apply(edited(&session, "Integrator", integrator)).unwrap();
     assert_eq!((session.simulation().state().time(), tip(&session)), (0.0, 0.0));
     session.iterate();
     assert!(session.simulation().state().time() > 0.0 && tip(&session).abs() < 0.1, "{}", tip(&session));
@@ -235,9 +236,7 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     session.grab(Grab { release: true, ..Grab::default() });
     assert_eq!(numbers(&session), before);
     // So has an iterate that has been accepted.
-    let mut accepting = cantilever(-100.0);
-    accepting.solver.accept_after = 2;
-    session.apply(Edit::Scene("Accept", Box::new(accepting))).unwrap();
+    session.apply(edited(&session, "Accept", |scene| scene.solver.accept_after = 2)).unwrap();
     session.solve(ShownFacts::default());
     let accepted = numbers(&session);
     session.grab(Grab { start: Some(point), ..Grab::default() });
@@ -257,21 +256,17 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
 #[test]
 fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     let mut session = session(cantilever(-100.0));
-    assert!(
-        !session.request_facts(ShownFacts { curve: true, ..ShownFacts::default() }, false),
-        "the body is not at rest yet"
-    );
-    session.solve(ShownFacts { curve: true, ..ShownFacts::default() });
+    let shown = ShownFacts { curve: true, ..ShownFacts::default() };
+    assert!(!session.request_facts(shown, false), "the body is not at rest yet");
+    session.solve(shown);
     // The reference that follows a load is prepared in the background.
-    while session.request_facts(ShownFacts { curve: true, ..ShownFacts::default() }, false) {
+    while session.request_facts(shown, false) {
         std::thread::yield_now();
     }
     let (facts, scene) = (session.facts(), session.scene());
     assert!(facts.reference.get(scene).is_some() && facts.curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
-    let mut scene = session.scene().clone();
-    scene.solver.method = MethodKind::Warped;
-    session.apply(Edit::Scene("Method", Box::new(scene))).unwrap();
+    session.apply(edited(&session, "Method", |scene| scene.solver.method = MethodKind::Warped)).unwrap();
     assert!(
         !session.facts().reference.is_pending(session.scene()) && session.facts().curve.is_pending(session.scene())
     );
@@ -290,8 +285,8 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     let mut session = open(Source { name: path("first.toml"), assignments: vec!["load.0.force=[0,-150]".into()] });
     let scene = session.scene().clone();
     for (label, force) in [("Force", -200.0), ("Direction", -300.0), ("Force", -400.0)] {
-        let Edit::Scene(_, edited) = with_force(&session, force) else { unreachable!() };
-        session.apply(Edit::Scene(label, edited)).unwrap();
+        let change = |scene: &mut Scene| scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
+        session.apply(edited(&session, label, change)).unwrap();
     }
     session.apply(Edit::Undo).unwrap();
     session.take_changed();

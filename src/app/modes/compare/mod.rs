@@ -56,10 +56,9 @@ pub(crate) struct CompareInput<'a> {
 struct Preset {
     name: String,
     settings: Vec<PaneSetting>,
-    enabled: bool,
     tip: &'static str,
     /// Reason for which the preset is disabled.
-    unless: &'static str,
+    disabled: Option<&'static str>,
 }
 
 /// Change of a pane by its header: its new setting; `None` closes the pane.
@@ -260,9 +259,11 @@ impl Compare {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let present: Vec<PaneSetting> = self.panes.iter().map(|pane| pane.setting).collect();
-                for Preset { name, settings, enabled, tip, unless } in self.presets(input) {
-                    let button = ui.add_enabled(enabled, option_button(enabled && present == settings, name));
-                    if button.on_hover_text(tr(tip)).on_disabled_hover_text(tr(unless)).clicked() {
+                for Preset { name, settings, tip, disabled } in self.presets(input) {
+                    let is_chosen = disabled.is_none() && present == settings;
+                    let button = ui.add_enabled(disabled.is_none(), option_button(is_chosen, name));
+                    let reason = tr(disabled.unwrap_or_default());
+                    if button.on_hover_text(tr(tip)).on_disabled_hover_text(reason).clicked() {
                         self.set(&settings);
                     }
                 }
@@ -296,17 +297,15 @@ impl Compare {
                     false => join(first.iter().filter_map(|setting| Some(tr(setting.method?.id()))).collect()),
                 },
                 settings: first,
-                enabled: true,
                 tip: match self.in_motion {
                     true => "Three integrators on the panel's mesh",
                     false => "Three methods on the panel's mesh",
                 },
-                unless: "",
+                disabled: None,
             },
             Preset {
                 name: join(elements.iter().map(|element| element.id()).collect()),
                 settings: elements.iter().map(of_element).collect(),
-                enabled: elements.len() > 1,
                 tip: match self.in_motion {
                     true => "All elements that the mesh can have, with the panel's integrator",
                     false => {
@@ -314,16 +313,16 @@ impl Compare {
                          may diverge"
                     }
                 },
-                unless: "The mesh of this file can have one element only",
+                disabled: (elements.len() < 2).then_some("The mesh of this file can have one element only"),
             },
         ];
         if !self.in_motion {
             presets.push(Preset {
                 name: tr("current | fastest").to_owned(),
                 settings: vec![PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()],
-                enabled: input.chosen.is_some(),
                 tip: "The current setting next to the fastest that meets both limits of How fast, in Measure",
-                unless: "Measure how fast the settings are first: the fastest is compared with the current one",
+                disabled: (input.chosen.is_none())
+                    .then_some("Measure how fast the settings are first: the fastest is compared with the current one"),
             });
         }
         presets

@@ -207,18 +207,15 @@ impl Cuts {
     fn figure(&self, shown: SectionFigure) -> Result<Figure, SectionError> {
         let scene = &self.of.1;
         match shown {
-            SectionFigure::Stress(i, component) => match self.own.get(i) {
-                Some(Ok(section)) => section_chart::stress(section, scene, &self.contexts, &|name| said(name))
-                    .into_iter()
-                    .nth(component)
-                    .ok_or(SectionError::Missed),
-                Some(Err(error)) => Err(*error),
-                None => Err(SectionError::Missed),
-            },
-            SectionFigure::Along(i) => section_chart::forces(&self.along, scene, &self.contexts, &|name| said(name))
-                .into_iter()
-                .nth(i)
-                .ok_or(SectionError::NoAxis),
+            SectionFigure::Stress(i, component) => {
+                let section = self.own.get(i).ok_or(SectionError::Missed)?.as_ref().map_err(|error| *error)?;
+                let figures = section_chart::stress(section, scene, &self.contexts, &|name| said(name));
+                figures.into_iter().nth(component).ok_or(SectionError::Missed)
+            }
+            SectionFigure::Along(i) => {
+                let figures = section_chart::forces(&self.along, scene, &self.contexts, &|name| said(name));
+                figures.into_iter().nth(i).ok_or(SectionError::NoAxis)
+            }
         }
     }
 }
