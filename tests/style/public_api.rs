@@ -107,8 +107,8 @@ fn the_public_face_is_the_listed_one() {
 }
 
 /// Types of other crates and of the standard library in public signatures.
-const FOREIGN: &str = "Arc AsRef BTreeMap Box Clone ControlFlow Duration ExactSizeIterator Fn FnMut Into IntoIterator \
-    Item Iterator Matrix2 Matrix3 Option Path PathBuf Result Self Send String Sync T Vec Vector2 \
+const FOREIGN: &str = "Arc AsRef BTreeMap Box Clone ControlFlow Duration ExactSizeIterator Fn FnMut FnOnce Into \
+    IntoIterator Item Iterator Matrix2 Matrix3 Option Path PathBuf Result Self Send String Sync T Vec Vector2 \
     RangeInclusive Error";
 
 /// A program can name every type of a public field, variant or signature.
