@@ -77,8 +77,10 @@ fn a_scene_is_read_from_a_pipe() {
 /// Two probes with the same name are refused.
 #[test]
 fn names_of_probes_differ() {
-    let probes = "probe=[{name=\"tip, right\",edge=\"right\"},{name='tip, right',at=[5,0]}]";
-    refuses(&["solve", "cantilever", "--set", probes], "probe.1.name: expected a unique name");
+    let folder = tempfile::tempdir().unwrap();
+    let text = include_str!("../data/files/at-rest.toml").replace("name = \"b\"", "name = 'a'");
+    fs::write(folder.path().join("b.toml"), text).unwrap();
+    refuses_in(folder.path(), &["solve", "b.toml"], "probe.1.name: expected a unique name");
 }
 
 /// A cut of a part without loads carries nothing.

@@ -30,8 +30,7 @@ fn solved_like(row: &Row) -> Simulation {
     solved(&scene_with(row.scene, &[&set[0], &set[1]]))
 }
 
-/// Six digits agree, except in plane stress (CalculiX shears a wedge) and large rotations (order of the strain). Equal
-/// displacements have equal stresses, but the two programs recover them at the nodes differently.
+/// To six digits, except in plane stress (CalculiX shears a wedge), large rotations and stresses recovered at the nodes.
 #[test]
 fn displacements_and_stresses_are_those_of_calculix() {
     let rows = rows();

@@ -413,3 +413,22 @@ fn a_result_is_accepted_after_the_iterations_that_a_scene_asks_for() {
     refused.solver.accept_after = 2;
     assert!(Simulation::new(&refused).unwrap_err().to_string().contains("solver.accept_after"));
 }
+
+/// A support that slides has its reaction where the body is.
+#[test]
+fn reactions_balance_moments_about_the_current_places() {
+    let beam = Scene::beam(10.0, 1.0).with_cells(20, 2).with_method(MethodKind::Newton);
+    let rolling = beam.support([0.0, -0.5], &[Axis::X, Axis::Y]).support([10.0, -0.5], &[Axis::Y]);
+    let scene = rolling.force([5.0, 0.5], [100.0, -6000.0]);
+    let unmoved = Simulation::new(&scene).unwrap().solution().reaction;
+    assert!(unmoved.force.norm() < 1e-9 && unmoved.moment.abs() < 1e-9, "{unmoved:?}");
+    let simulation = solved(&scene);
+    let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
+    let external = simulation.forces().external();
+    let force: Vector2<f64> = external.iter().sum();
+    let moment: f64 = places.zip(external).map(|(x, f)| x.perp(f)).sum();
+    let reaction = simulation.solution().reaction;
+    assert!((reaction.force + force).norm() < 1e-6 * force.norm(), "{reaction:?} {force}");
+    assert!((reaction.moment + moment).abs() < 1e-6 * moment.abs(), "{reaction:?} {moment}");
+    assert!(largest(simulation.displacement()) > 0.3, "it is bent, so that lever arms differ");
+}

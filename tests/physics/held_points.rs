@@ -246,8 +246,7 @@ fn scene_files_have_the_point_of_a_support() {
     assert!(Scene::from_toml(&gravity).is_err());
 }
 
-/// A width of the outline, also at a corner, or of a line in the body, holds the mean displacement over it:
-/// the results have a limit on finer meshes, unlike those of points.
+/// A width of the outline, also at a corner, or of a line in the body has a limit on finer meshes; a point has none.
 #[test]
 fn widths_have_a_limit_on_finer_meshes() {
     let on_two = |width: f64, at: [[f64; 2]; 3]| {

@@ -20,8 +20,7 @@ fn text(args: &[&str]) -> String {
     stdout(&warpbeam(args))
 }
 
-/// A side load, however small, decides the side to which a column buckles; there is no jump, and the error is that of
-/// the mesh.
+/// A side load, however small, decides the side; there is no jump, and the error is that of the mesh.
 #[test]
 fn a_column_buckles_to_the_side_of_its_load() {
     for (id, force, most) in [
@@ -236,8 +235,7 @@ fn the_default_limit_suffices_for_newton() {
     }
 }
 
-/// A moment that no equilibrium carries is reported as such, with its part that was reached, and without advice that
-/// does not help.
+/// A moment that no equilibrium carries is reported, with the part reached, and without advice that does not help.
 #[test]
 fn an_impossible_load_is_not_followed_further() {
     let output = warpbeam(&["solve", &file("stubby-moment"), "--set", "solver.max_iterations=3000"]);

@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_064),
-    ("tests", &["tests"], 19_685),
+    ("tests", &["tests"], 19_700),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 59_497;

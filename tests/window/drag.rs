@@ -109,8 +109,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
     }
 }
 
-/// To the border in every direction and back, body and arrow are in view, no label covers another, and the force follows
-/// from the pointer alone.
+/// To the border and back, body and arrow are in view, no label covers another, and the force is that of the pointer.
 #[test]
 fn a_dragged_body_stays_in_view() {
     let sizes = [[1280.0, 800.0], [960.0, 600.0], [800.0, 900.0], [640.0, 480.0]];
