@@ -309,7 +309,9 @@ fn csv(simulation: &Simulation) -> String {
 /// values.
 fn data_array<T: Display, const K: usize>(text: &mut String, kind: &str, name: &str, rows: Option<Vec<[T; K]>>) {
     let name = xml_attribute(name);
-    rows.map(|rows| array(text, format_args!(r#"type="{kind}" Name="{name}" NumberOfComponents="{K}""#), rows));
+    if let Some(rows) = rows {
+        array(text, format_args!(r#"type="{kind}" Name="{name}" NumberOfComponents="{K}""#), rows);
+    }
 }
 
 /// Writes a `DataArray` with these attributes, one row per line.

@@ -26,8 +26,7 @@ fn slender(element: ElementKind, method: MethodKind) -> RestCase {
 fn at_its_floor(case: RestCase) -> Simulation {
     let mut scene = case.scene();
     scene.solver.tolerance = 1e-14;
-    let simulation = ended(&scene);
-    simulation
+    ended(&scene)
 }
 
 /// Returns the smallest residual of an iteration whose displacement has one f64 per component.

@@ -218,8 +218,7 @@ fn sections_of_mesh_files_are_opposite_from_both_sides() {
 
 /// Returns a simulation of a scene of `tests/data/scenes`, at its end.
 fn at_the_end(name: &str) -> Simulation {
-    let simulation = ended(&scene(&file(name)));
-    simulation
+    ended(&scene(&file(name)))
 }
 
 /// The weight once settled, ½ ρ A ω² (L²/4 − x²) in rotation, nothing in free fall.

@@ -22,11 +22,11 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
-    ("the rest of src", &["src"], 5_064),
-    ("tests", &["tests"], 19_700),
+    ("the rest of src", &["src"], 5_066),
+    ("tests", &["tests"], 19_698),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_497;
+const SRC: usize = 59_499;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

@@ -152,7 +152,7 @@ fn a_diverging_pane_does_not_set_the_range_of_colours() {
         let panes = ui.state().panes();
         let [linear, warped] = [0, 1].map(|number| {
             let u = panes[number].simulation().unwrap().displacement();
-            largest(&u)
+            largest(u)
         });
         has_diverged |= warped > 2.0 * linear;
         let high = panes[1].color_range()[1];

@@ -56,7 +56,7 @@ impl Session {
         let (scene, since) = (&solve.scene, before.since.elapsed());
         // A mesh is usually made within this time.
         let is_soon_over = scene.unknowns() <= self.most_unknowns && since < SOON;
-        (!is_soon_over).then(|| (scene, solve.phase, since.as_secs()))
+        (!is_soon_over).then_some((scene, solve.phase, since.as_secs()))
     }
 
     /// Returns `true` if `scene` is set up in the background: it is large, and has a new mesh or is static. Time steps
