@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_738),
+    ("app", &["src/app"], 24_762),
     ("study", &["src/study"], 6_889),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_698),
+    ("tests", &["tests"], 19_702),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_499;
+const SRC: usize = 59_523;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 

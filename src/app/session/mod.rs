@@ -678,7 +678,7 @@ impl Session {
             self.certifying = None;
         }
         let is_known = !self.model.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
-            && self.model.quality.is_of(&self.model.simulation);
+            && self.model.quality.is_of(self.drawn());
         let is_small = self.model.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
         let copy = self.model.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
         let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {

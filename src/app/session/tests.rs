@@ -418,6 +418,25 @@ fn large(thousands: u32) -> Scene {
     cantilever(-1000.0).with_cells(28 * thousands, 4)
 }
 
+/// A large body without an equilibrium is not certified again and again.
+#[test]
+fn a_large_body_without_an_equilibrium_comes_to_rest() {
+    let mut scene = large(3).with_method(MethodKind::Warped);
+    scene.set_force(LoadId::nth(0), [0.0, -1e6]).unwrap();
+    let mut session = session(scene);
+    while session.iterates() {
+        session.iterate();
+    }
+    assert!(is_lost(session.simulation()), "{:?}", session.simulation().status());
+    let begun = Instant::now();
+    session.request_facts(ShownFacts::default(), false);
+    while session.is_certifying() {
+        assert!(begun.elapsed().as_secs() < 60, "it is certified without end");
+        session.request_facts(ShownFacts::default(), false);
+        std::thread::yield_now();
+    }
+}
+
 /// The eigenvalues of a large body are computed in the background, and are those of the body itself.
 #[test]
 fn a_large_result_is_certified_in_the_background() {
