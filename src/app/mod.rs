@@ -8,6 +8,7 @@ use crate::sentence::Sentence;
 
 mod action;
 mod diagnosis;
+mod interface;
 mod language;
 mod modes;
 mod offscreen;

@@ -185,6 +185,8 @@ const NOT_SHOWN: &str = "wasm32|Cmd+|the browser is set to keep nothing|.toml,.m
     load curve|WAYLAND_DISPLAY|WAYLAND_SOCKET|DISPLAY|the scene to begin with is missing|\
     {} has {PLACES} copies of unsaved scenes|the display did not answer in time|the surface stays out of date|\
     the surface was lost: {e}|the surface was lost|the surface is not valid|\
+    NAME|WxH|FIELD|FACTOR|CARD|INTEGRATOR|PANE,PANE|expected one of {}|\
+    expected WIDTHxHEIGHT, each from 64 to {MAX_SHOT_SIDE}, as in 1280x800|\
     expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}|\
     {}: expected a file name ending in .gif, or the name of a folder for numbered pictures, which ffmpeg makes a film of";
 

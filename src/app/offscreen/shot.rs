@@ -7,6 +7,7 @@ use crate::app::offscreen::options::ShotOptions;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::prelude::*;
 use crate::app::shell::lab::Lab;
+use crate::app::view_options::Drawer;
 use crate::image::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::study::{Extent, Study, StudyError};

@@ -1,7 +1,7 @@
 //! Panel section of the material and the mesh.
 
+use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::prelude::*;
 use crate::app::session::has_mesh_of;
 use crate::app::widgets::number_field::{NumberRow, show_message};
 use crate::format::number;

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use egui::DragValue;
 
+use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::prelude::*;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{
     acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,

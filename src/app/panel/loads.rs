@@ -1,7 +1,7 @@
 //! Panel section of force, gravity and moment.
 
+use crate::app::interface::*;
 use crate::app::panel::{Panel, combo, edges};
-use crate::app::prelude::*;
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::scene::LoadId;

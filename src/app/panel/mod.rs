@@ -6,7 +6,7 @@ use egui::scroll_area::ScrollBarVisibility;
 use egui::text::{LayoutJob, TextWrapping};
 
 use crate::app::diagnosis::Errors;
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::viewport::arrow::DOWN;
 use crate::app::widgets::buttons::choice;
 use crate::app::widgets::number_field::{Messages, NumberRow, show_message};

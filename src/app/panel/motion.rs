@@ -1,8 +1,8 @@
 //! Panel section of a motion: integrator, time step, solves per step, damping, speed, and the other integrators for
 //! comparison.
 
+use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::prelude::*;
 use crate::app::session::clock::{fraction, speed_of_period};
 use crate::app::widgets::number_field::NumberRow;
 use crate::dynamics::INTEGRATORS;

@@ -1,9 +1,9 @@
 //! Panel section of the result: status, iterations, errors, certificate, times.
 
 use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, load_text, rho, stability, state_text};
+use crate::app::interface::*;
 use crate::app::language::signed_percent;
 use crate::app::panel::supports;
-use crate::app::prelude::*;
 use crate::app::session::clock::fraction;
 use crate::app::widgets::text::UNKNOWN;
 use crate::simulation::Motion;

@@ -1,9 +1,9 @@
 //! Panel section of the cuts whose section forces are shown.
 
 use crate::app::diagnosis::state_text;
+use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::panel::supports::TURNS;
-use crate::app::prelude::*;
 use crate::app::viewport::menu::with_middle_section;
 use crate::scene::SectionLine;
 use crate::study::section_chart;

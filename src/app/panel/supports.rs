@@ -1,7 +1,7 @@
 //! Panel section of moving supports: prescribed displacements and rotations, and reactions.
 
+use crate::app::interface::*;
 use crate::app::panel::{Panel, combo};
-use crate::app::prelude::*;
 use crate::format::Context;
 use crate::scene::limits::Limit;
 

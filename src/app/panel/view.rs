@@ -1,7 +1,7 @@
 //! Panel section of the display options.
 
+use crate::app::interface::*;
 use crate::app::panel::{Panel, combo};
-use crate::app::prelude::*;
 use crate::app::view_options::Magnification;
 use crate::sentence::sentence;
 

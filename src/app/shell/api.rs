@@ -5,10 +5,10 @@ use std::path::Path;
 use web_time::Duration;
 
 use crate::app::ThemeChoice;
+use crate::app::interface::*;
 use crate::app::language::{self, Language};
 use crate::app::modes::compare::{Pane, PaneSetting};
 use crate::app::modes::learn;
-use crate::app::prelude::*;
 use crate::app::shell::lab::{Desk, Lab};
 use crate::app::shell::settings::Settings;
 use crate::app::view_options::Magnification;

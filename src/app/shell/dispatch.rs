@@ -1,10 +1,10 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
+use crate::app::interface::*;
 use crate::app::modes::compare::Compare;
 use crate::app::modes::figure;
 use crate::app::modes::learn;
 use crate::app::panel::PanelState;
-use crate::app::prelude::*;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::view_options::Magnification;

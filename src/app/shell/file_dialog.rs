@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 
 /// Largest number of recent files that are offered.
 const RECENT: usize = 4;

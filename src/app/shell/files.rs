@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use crate::app::interface::*;
 use crate::app::platform::{IS_PAGE, files, page};
-use crate::app::prelude::*;
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;

@@ -7,7 +7,7 @@ use egui::style::ScrollAnimation;
 use egui::text::TextWrapping;
 use egui::{ColorImage, Image, TextureHandle, TextureOptions};
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::widgets::buttons::described;
 
 /// Size of a picture, and height of its entry, points.

@@ -1,11 +1,11 @@
 //! [`Lab`]: the complete content of a window. Window, screenshots and tests all show it through [`Lab::ui`].
 
+use crate::app::interface::*;
 use crate::app::modes::compare::Compare;
 use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::measure::{Measure, limits};
 use crate::app::panel::PanelState;
-use crate::app::prelude::*;
 use crate::app::session::document::{Document, built_in};
 use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;

@@ -4,12 +4,12 @@ use egui::{CentralPanel, Panel};
 use web_time::Duration;
 
 use crate::app::diagnosis::{self, Errors};
+use crate::app::interface::*;
 use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::explore::motion_plot;
 use crate::app::modes::learn;
 use crate::app::panel::{self, PANEL_WIDTH};
-use crate::app::prelude::*;
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{shortcuts, status_bar, toolbar};

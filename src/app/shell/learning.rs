@@ -1,9 +1,9 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
+use crate::app::interface::*;
 use crate::app::modes::learn::Learn;
 use crate::app::panel::PanelState;
-use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Lesson};

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::Panel;
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;

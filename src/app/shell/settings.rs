@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::app::ThemeChoice;
+use crate::app::interface::*;
 use crate::app::language::Language;
 use crate::app::platform;
-use crate::app::prelude::*;
 
 /// Largest number of recent files.
 const MAX_RECENT: usize = 10;

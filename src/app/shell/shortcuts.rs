@@ -1,6 +1,6 @@
 //! Keyboard shortcuts, and the list of them and of the mouse actions over the window.
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 
 /// Key with its modifiers, description and action.
 pub(crate) struct Shortcut {

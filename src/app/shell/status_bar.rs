@@ -9,8 +9,8 @@ use crate::app::diagnosis::{
     DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_text, error_tip, is_large, is_without_reference,
     load_text, rho, rho_number,
 };
+use crate::app::interface::*;
 use crate::app::language::filled;
-use crate::app::prelude::*;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
 use crate::app::widgets::buttons::{Icon, icon_button};

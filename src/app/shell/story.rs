@@ -3,9 +3,9 @@
 
 use egui::TouchPhase;
 
+use crate::app::interface::*;
 use crate::app::panel::PanelState;
 use crate::app::platform::page;
-use crate::app::prelude::*;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
 use crate::render::{Camera, Margins};

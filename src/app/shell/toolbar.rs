@@ -1,7 +1,7 @@
 //! Toolbar along the top: scene, run, modes, theme, help.
 
+use crate::app::interface::*;
 use crate::app::language::Language;
-use crate::app::prelude::*;
 use crate::app::shell::gallery::Gallery;
 use crate::app::view_options::MODES;
 use crate::app::widgets::buttons::{Icon, at_right, icon_button};

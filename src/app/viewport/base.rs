@@ -1,7 +1,7 @@
 //! Bases of the objects of a scene: the points of the body at which forces, supports, probes and sections are. A drag
 //! moves them along the body.
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::viewport::arrow::point_of_application;
 use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
 use crate::app::viewport::probe;

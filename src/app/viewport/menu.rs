@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::load_scale::OpeningLoads;

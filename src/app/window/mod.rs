@@ -23,8 +23,8 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 use crate::app::AppError;
+use crate::app::interface::*;
 use crate::app::platform::{self, IS_PAGE};
-use crate::app::prelude::*;
 use crate::app::session::recovery::RecoveryCopies;
 use crate::app::shell::lab::{Lab, Request};
 use crate::app::shell::settings::Settings;

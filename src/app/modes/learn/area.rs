@@ -1,8 +1,8 @@
 //! Card of the growth of the body's area.
 
 use super::{Learn, triangle};
+use crate::app::interface::*;
 use crate::app::language::signed_percent;
-use crate::app::prelude::*;
 use crate::format::number;
 use crate::scene::LoadId;
 use crate::scene::limits::Limit;

@@ -3,7 +3,7 @@
 use super::frames::angle_text;
 use super::triangle::Triangle;
 use super::{Learn, formula, not_triangles, step_buttons};
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::rotation::Rotation;
 
 struct Line {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::text::LayoutJob;
 use egui::{Galley, TextFormat};
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 
 /// Font size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;

@@ -4,7 +4,7 @@ use nalgebra::Matrix2;
 
 use super::triangle::Triangle;
 use super::{CardView, Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::rotation::Rotation;
 
 /// Smallest length of a drawn axis, points; finer meshes have none.

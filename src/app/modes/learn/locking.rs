@@ -1,7 +1,7 @@
 //! Card of locking: the same beam with every element, one button each with its error.
 
 use super::Learn;
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::progress::{Observer, Progress};
 use crate::simulation::probe_results;
 use crate::study::{Effort, Reference};

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::triangle::{Triangle, assembled};
 use super::{Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::render::colormap;
 
 /// Sides of a small matrix and of the large one, points.

@@ -3,7 +3,7 @@
 
 use egui::Panel;
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
 use crate::app::task::thread::POLL;

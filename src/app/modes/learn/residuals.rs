@@ -3,7 +3,7 @@
 
 use super::step_buttons;
 use crate::app::diagnosis::rho_number;
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::method::METHODS;
 
 /// Shows the buttons that iterate, and the residuals.

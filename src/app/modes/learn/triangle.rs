@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix2};
 
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::article::affine::Affine2;
 use crate::article::stiffness::ElementStiffness;
 use crate::element::QuadraturePoint;
