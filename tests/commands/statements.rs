@@ -122,3 +122,21 @@ fn a_study_says_which_errors_are_not_reached() {
     assert!(text.contains("an error of 1 % is not reached by a measured setting"), "{text}");
     assert!(!text.contains("costs not reached"), "{text}");
 }
+
+/// Built-in meshes are in metres by definition; only files may be in another unit.
+#[test]
+fn a_built_in_scene_has_no_warning_of_its_unit() {
+    for id in ids_of(Analysis::Static) {
+        assert_eq!(stderr(&warpbeam(&["solve", id, "--reference", "none"])), "", "{id}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
+        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -0.1]\n";
+    fs::write(folder.path().join("square.toml"), scene).unwrap();
+    assert_eq!(stderr(&warpbeam_in(folder.path(), &["solve", "square.toml"])), "", "a square of one metre");
+    let large = include_str!("../data/square.msh").replace("\n1 0 0\n1 1 0\n0 1 0", "\n100 0 0\n100 100 0\n0 100 0");
+    fs::write(folder.path().join("square.msh"), large).unwrap();
+    let solved = warpbeam_in(folder.path(), &["solve", "square.toml"]);
+    assert!(stderr(&solved).contains("m across; if it is in millimetres"), "{}", stderr(&solved));
+}

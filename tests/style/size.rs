@@ -23,7 +23,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_702),
+    ("tests", &["tests"], 19_753),
 ];
 /// Largest number of lines of `src`.
 const SRC: usize = 59_523;
