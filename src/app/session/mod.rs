@@ -112,6 +112,8 @@ pub(crate) struct Session {
     is_edited_now: bool,
     /// `true` if the frame before, in which there was such an edit, has left the search unfinished.
     was_edited: bool,
+    /// `true` if the search began at rest.
+    is_from_rest: bool,
     /// `true` if this frame iterates once it is known that there is no edit.
     is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
@@ -156,6 +158,7 @@ impl Session {
             is_held: false,
             is_edited_now: false,
             was_edited: false,
+            is_from_rest: true,
             is_postponed: false,
             timings: Timings::default(),
             playback: Playback::default(),
@@ -421,6 +424,7 @@ impl Session {
         if scene == before {
             return;
         }
+        self.is_from_rest = false;
         let is_another_mesh = !has_mesh_of(scene, before);
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
@@ -555,13 +559,26 @@ impl Session {
     fn search(&mut self) {
         self.timings = Timings::default();
         let since = Instant::now();
-        while *self.model.simulation.status() == Status::Running {
+        while *self.model.simulation.status() == Status::Running || self.starts_again() {
             self.iterate_once();
             if self.is_slow || since.elapsed() >= self.frame_left {
+                self.starts_again();
                 break;
             }
         }
         self.frame_left = self.frame_left.saturating_sub(since.elapsed());
+    }
+
+    /// Goes back to rest after a search from another state that has found no equilibrium: an iteration may lead to one from
+    /// there. Returns `true` if it has.
+    fn starts_again(&mut self) -> bool {
+        let simulation = &mut self.model.simulation;
+        let is_free = simulation.mouse_spring().is_none() && !self.is_slow;
+        let again = is_lost(simulation) && is_free && !std::mem::replace(&mut self.is_from_rest, true);
+        if again {
+            self.playback.reset(simulation);
+        }
+        again
     }
 
     /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
@@ -615,6 +632,7 @@ impl Session {
         }
         self.playback.reset(&mut self.model.simulation);
         self.model.residuals.clear();
+        self.is_from_rest = true;
     }
 
     /// Adds to the results that are shown those that the state needs: ρ where it has none of its own.

@@ -418,6 +418,23 @@ fn large(thousands: u32) -> Scene {
     cantilever(-1000.0).with_cells(28 * thousands, 4)
 }
 
+/// A load has one answer, whatever state the search begins from: one that fails begins again at rest.
+#[test]
+fn a_search_that_fails_begins_again_at_rest() {
+    let mut session = open(source("cantilever"));
+    for force in [-1500.0, -2080.0, -2210.0, -2040.0, -2120.0, -1900.0, -2040.0, -2120.0] {
+        session.apply(with_force(&session, force)).unwrap();
+        let mut alone = Simulation::new(session.scene()).unwrap();
+        let is_found = *alone.solve() == Status::Converged;
+        for frame in 0.. {
+            if !(session.advance(f64::from(frame)) || session.follow_edit()) {
+                break;
+            }
+        }
+        assert_eq!(*session.simulation().status() == Status::Converged, is_found, "{force} N");
+    }
+}
+
 /// A large body without an equilibrium is not certified again and again.
 #[test]
 fn a_large_body_without_an_equilibrium_comes_to_rest() {
