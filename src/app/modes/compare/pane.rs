@@ -275,7 +275,9 @@ impl Pane {
             self.recent.push_front((scene, u));
             self.recent.truncate(MOST);
         }
-        if let Some((_, u)) = self.recent.iter().find(|(scene, _)| live.is_of(scene)) {
+        if self.in_place().is_some() {
+            self.error = None;
+        } else if let Some((_, u)) = self.recent.iter().find(|(scene, _)| live.is_of(scene)) {
             self.error = error(Some(*u));
         }
     }
