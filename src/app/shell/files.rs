@@ -193,11 +193,11 @@ impl Lab {
         self.dialog.is_some() || matches!(self.question, Question::Unsaved(_))
     }
 
-    /// Opens a scene or closes the window, after a question if edits would be lost. Undo restores those of a scene that has
-    /// no file when another one is opened, and in Learn the user's scene is kept.
+    /// Opens a scene or closes the window, after a question if edits would be lost. Those of a built-in scene are kept when
+    /// another one is opened, and in Learn the user's scene is kept.
     pub(super) fn depart(&mut self, ctx: &Context, departure: Action) {
         let closes = departure == Action::Close;
-        let is_lost = |(document, _): (&Document, _)| closes || document.path().is_some();
+        let is_lost = |(document, _): (&Document, _)| closes || document.source.built_in().is_none();
         let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
         if !loses {
             return self.go(ctx, departure);
