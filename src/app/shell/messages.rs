@@ -5,6 +5,7 @@ use std::time::Duration;
 use egui::Panel;
 
 use crate::app::interface::*;
+use crate::app::panel::edges;
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;
@@ -22,9 +23,12 @@ impl Lab {
 
     /// Shows the reason for which an edit was refused: beside the field with this label, or over the body.
     pub(super) fn refuse(&mut self, ctx: &Context, label: &'static str, reason: Sentence) {
-        match label {
-            menu::EDIT => self.say(ctx, sentence(&said(&reason))),
-            _ => _ = self.desk.panel.messages.insert(label, reason),
+        // The message of a long list may be out of view.
+        if [menu::EDIT, edges::SECTION].contains(&label) {
+            self.say(ctx, sentence(&said(&reason)));
+        }
+        if label != menu::EDIT {
+            self.desk.panel.messages.insert(label, reason);
         }
     }
 
