@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_814),
+    ("app", &["src/app"], 24_803),
     ("study", &["src/study"], 6_889),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 19_753),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_575;
+const SRC: usize = 59_564;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
