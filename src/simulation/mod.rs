@@ -329,8 +329,8 @@ impl Simulation {
     /// does.
     ///
     /// # Errors
-    /// That of the change, or those of [`Self::change_scene`], for example of a number out of range. The simulation is
-    /// then unchanged.
+    /// The error of `change`, or an error of [`Self::change_scene`], for example for a number out of range. The simulation
+    /// is then unchanged.
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
         let mut scene = self.body.scene.clone();
         change(&mut scene)?;

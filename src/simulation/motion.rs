@@ -248,7 +248,7 @@ impl TimeStepping {
             let still = largest(&body.state.velocity) < UNSEEN * body.problem.system().size();
             self.quiet_steps = if still { self.quiet_steps.saturating_add(1) } else { 0 };
             let (decision, steps) = match self.counts.factorizations > factorizations {
-                _ if self.linear.in_use => (Decision::Linear, &mut self.counts.linear_steps),
+                _ if self.kinematics() == Kinematics::Linear => (Decision::Linear, &mut self.counts.linear_steps),
                 true => (Decision::NewFactor, &mut self.counts.new_factor_steps),
                 false => (Decision::OldFactor, &mut self.counts.old_factor_steps),
             };

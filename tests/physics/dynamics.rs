@@ -51,7 +51,7 @@ fn a_swing_follows_the_reference_solution() {
     assert!(error < 1e-4 * size, "{error} of {size}");
 }
 
-/// Old factors do not spoil it.
+/// Old factors of `auto` do not spoil the energy.
 #[test]
 fn a_swing_and_a_spin_keep_their_energy_as_their_integrator_promises() {
     for method in NEWTON_AND_AUTO {
@@ -197,7 +197,7 @@ fn the_critical_step_is_critical() {
     assert!(drift.abs() < 0.1, "{drift}");
     let (status, _) = at(1.05);
     assert!(matches!(status, Status::Stopped(_)), "{status:?}");
-    // It is that of the current scene, after any edit.
+    // The critical step is that of the current scene, after any edit.
     let mut scene = with("swing", SYMPLECTIC, 1e-5, 1, 1e3);
     let mut simulation = Simulation::new(&scene).unwrap();
     let mut critical = vec![simulation.motion().unwrap().critical_step().unwrap()];
@@ -304,6 +304,16 @@ fn tr_bdf2_and_auto_are_finite_everywhere() {
             assert!(simulation.state().is_finite());
         }
     }
+}
+
+/// Steps of method `linear` are counted as those of linear theory, as by `auto`.
+#[test]
+fn steps_of_linear_theory_are_counted() {
+    let mut simulation = Simulation::new(&scene("chime").with_method(MethodKind::Linear)).unwrap();
+    (0..5).for_each(|_| _ = simulation.step());
+    let counts = simulation.motion().unwrap().counts();
+    assert_eq!((counts.linear_steps, counts.old_factor_steps, counts.new_factor_steps), (counts.steps, 0, 0));
+    assert!(counts.steps > 0);
 }
 
 /// Returns the numbers of steps of a motion by decision of `auto`.
@@ -497,7 +507,7 @@ fn a_body_at_rest_is_reported_as_at_rest() {
         let (mut still, mut rested) = (0_u32, 0_u32);
         for _ in 0..(12.0 / h) as u32 {
             simulation.step();
-            let fastest = simulation.state().velocity().iter().map(|v| v.norm()).fold(0.0, f64::max);
+            let fastest = largest(simulation.state().velocity());
             still = if fastest < 1e-6 * simulation.system().size() { still + 1 } else { 0 };
             let expected = still >= 10 && f64::from(still) * h >= 0.5 && simulation.state().time() >= 2.0;
             assert_eq!(simulation.is_at_rest(), expected, "h = {h} at {} s", simulation.state().time());
