@@ -240,7 +240,7 @@ pub(super) struct TuneArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Largest error, percent of the exact displacement of the first probe: 1% or 1. Without --time and --error: 1%.
-    #[arg(long, value_name = "PERCENT", value_parser = within(range("solver.max_error_percent")))]
+    #[arg(long, value_name = "PERCENT", value_parser = within(const { range("solver.max_error_percent") }))]
     pub error: Option<f64>,
     /// Longest time of a solve from rest: 0.5ms, 200us, 2s, or a number of milliseconds.
     #[arg(long, value_name = "TIME", value_parser = within(BUDGET_MS))]
@@ -300,7 +300,7 @@ mod tests {
 
     #[test]
     fn errors_and_times_are_read_with_their_units() {
-        let [parse_percent, parse_milliseconds] = [range("solver.max_error_percent"), BUDGET_MS].map(within);
+        let [parse_percent, parse_milliseconds] = [const { range("solver.max_error_percent") }, BUDGET_MS].map(within);
         for (text, percent) in [("1%", 1.0), ("0.5 %", 0.5), ("2", 2.0)] {
             assert_eq!(parse_percent(text).ok(), Some(percent), "{text}");
         }

@@ -363,8 +363,8 @@ impl Plane {
     #[doc(hidden)]
     pub fn poisson_limit(self) -> limits::Limit {
         match self {
-            Self::Stress => keys::range("material.poisson"),
-            Self::Strain => limits::Limit { max: 0.4999, ..keys::range("material.poisson") },
+            Self::Stress => const { keys::range("material.poisson") },
+            Self::Strain => limits::Limit { max: 0.4999, ..Self::Stress.poisson_limit() },
         }
     }
 }

@@ -41,7 +41,7 @@ fn add(drawing: &mut Drawing, figure: &Figure) {
         let unit = format!("{symbol}{}", quantity.unit);
         labels[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
         let values = ticks(low[i], high[i], 8);
-        // Without the rounding errors of the steps; adding 0 turns −0 into 0.
+        // Seven digits drop the rounding errors of the steps; adding 0 turns −0 into 0.
         let tick = |v: f64| number(rounded(v / 10f64.powi(power), 7) + 0.0);
         numbers[i] = values.into_iter().map(|v| (place(v, i), tick(v))).collect();
     }

@@ -31,10 +31,10 @@ pub enum Effort {
     Full,
 }
 
-/// Largest number of unknowns of a mesh, of each effort.
-const MOST_UNKNOWNS: [usize; 2] = [10_000, 700_000];
+/// Largest number of unknowns of a mesh, of a bounded and of a full effort.
+const MAX_UNKNOWNS: [usize; 2] = [10_000, 700_000];
 /// Largest sum of unknowns over all solves.
-const MOST_WORK: [f64; 2] = [5e5, f64::INFINITY];
+const MAX_WORK: [f64; 2] = [5e5, f64::INFINITY];
 /// Error, relative to the displacement, below which no finer mesh is tried.
 const GOOD_ENOUGH: [f64; 2] = [1e-3, 1e-4];
 
@@ -167,7 +167,7 @@ fn on_fine_meshes(
         }
         if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
-            work -= FOLD_SHARE * MOST_WORK[effort as usize];
+            work -= FOLD_SHARE * MAX_WORK[effort as usize];
             status = solve(&mut simulation, effort, &mut work, observe)?;
         }
         let converged = match status {
@@ -192,8 +192,8 @@ fn on_fine_meshes(
         }
         let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
         let next = 4 * unknowns;
-        let next_fits = next <= MOST_UNKNOWNS[effort as usize]
-            && work + MIN_SOLVES_LEFT * next as f64 <= MOST_WORK[effort as usize];
+        let next_fits =
+            next <= MAX_UNKNOWNS[effort as usize] && work + MIN_SOLVES_LEFT * next as f64 <= MAX_WORK[effort as usize];
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {
             finest = Some(simulation);
@@ -293,8 +293,8 @@ fn solve(
 ) -> Result<Status, StudyError> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
-    let fraction = (unknowns as f64 / MOST_UNKNOWNS[effort as usize] as f64).min(1.0);
-    while *simulation.status() == Status::Running && *work <= MOST_WORK[effort as usize] {
+    let fraction = (unknowns as f64 / MAX_UNKNOWNS[effort as usize] as f64).min(1.0);
+    while *simulation.status() == Status::Running && *work <= MAX_WORK[effort as usize] {
         check(observe(Progress { fraction, now: Some(&now) }))?;
         let before = simulation.iterations();
         simulation.step();
@@ -328,7 +328,7 @@ impl Meshes {
         let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
         // A mesh given by the caller is kept.
         let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-        if 4 * unknowns_of(&own, element.entry()) > MOST_UNKNOWNS[effort as usize] {
+        if 4 * unknowns_of(&own, element.entry()) > MAX_UNKNOWNS[effort as usize] {
             return Err(StudyError::TooFine { elements: own.element_count() });
         }
         // The same nodes are used for the scene's points on every mesh, including the scene's own.
@@ -434,7 +434,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
-    let nodes = 0.5 * MOST_UNKNOWNS[0] as f64;
+    let nodes = 0.5 * MAX_UNKNOWNS[Effort::Bounded as usize] as f64;
     let cells = |short: f64, extra: usize| {
         (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
     };

@@ -10,11 +10,11 @@ use crate::scene::{Load, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, Status};
 
 /// Largest number of unknowns of a mesh.
-const MOST_UNKNOWNS: usize = 3500;
+const MAX_UNKNOWNS: usize = 3500;
 /// Largest sum of unknowns over the iterations that follow a load: about 50 ms.
-const MOST_WORK: usize = 40_000;
+const MAX_WORK: usize = 40_000;
 /// Largest sum for the first solution, which starts from rest.
-const FIRST_WORK: usize = 400_000;
+const MAX_FIRST_WORK: usize = 400_000;
 
 /// Fine solutions of a scene that follow its load.
 #[derive(Debug)]
@@ -41,12 +41,12 @@ impl LiveReference {
             let system = Arc::new(System::with_mesh(&own, meshes.mesh().ok()?).ok()?);
             let (dofs, nodes) = (system.dofs(), system.mesh().nodes().len());
             levels.push(Simulation::with_system(&own, system).ok()?);
-            if 4 * dofs > MOST_UNKNOWNS {
+            if 4 * dofs > MAX_UNKNOWNS {
                 break;
             }
             meshes.refine(&vec![Default::default(); nodes]);
         }
-        let finest = levels.last().filter(|finest| levels.len() > 1 && finest.system().dofs() <= MOST_UNKNOWNS)?;
+        let finest = levels.last().filter(|finest| levels.len() > 1 && finest.system().dofs() <= MAX_UNKNOWNS)?;
         let linear =
             Simulation::with_system(&own.clone().with_method(MethodKind::Linear), finest.system().clone()).ok()?;
         Some(Self { key: key(scene), own, levels, linear, moved, is_started: false })
@@ -68,10 +68,10 @@ impl LiveReference {
             }
         }
         let goes_on = std::mem::replace(&mut self.is_started, false);
-        if !(goes_on && self.solve(&own, MOST_WORK)) {
+        if !(goes_on && self.solve(&own, MAX_WORK)) {
             // Far from the last load.
             self.levels.iter_mut().for_each(Simulation::reset);
-            self.solve(&own, FIRST_WORK).then_some(())?;
+            self.solve(&own, MAX_FIRST_WORK).then_some(())?;
         }
         self.is_started = true;
         self.linear.change_scene(&own.with_method(MethodKind::Linear)).ok()?;

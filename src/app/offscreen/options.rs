@@ -41,7 +41,7 @@ pub struct LookArgs {
     pub adapter: AdapterArgs,
 }
 
-/// Options of a shot.
+/// Options of a shot, with the defaults of the command, but for the size, which is to be set.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct ShotOptions {
     /// Size in pixels, 64x64 to 8192x8192.
@@ -93,7 +93,7 @@ type PaneSettings = Vec<PaneSetting>;
 #[derive(Clone, Debug, PartialEq, Args)]
 pub struct RecordOptions {
     /// Duration to record: 2, 2s or 500ms. Default: the scene's dynamics.duration.
-    #[arg(long, value_name = "TIME", value_parser = within(range("dynamics.duration")))]
+    #[arg(long, value_name = "TIME", value_parser = within(const { range("dynamics.duration") }))]
     pub seconds: Option<f64>,
     /// Playback speed, simulated seconds per second: 0.1 is slow motion.
     #[arg(long, value_name = "FACTOR", value_parser = within(PLAYBACK_SPEED))]

@@ -120,8 +120,8 @@ enum Property {
 }
 
 impl LimitPoint {
-    /// Returns `true` if the load has a property, and `None` if the reference solution does not tell; `None` instead of an
-    /// answer if it was not sought at this load.
+    /// Returns the answer if it was sought at this load: `Some(true)` if the load has the property, `None` if the reference
+    /// solution does not tell.
     fn answer(&self, property: Property) -> Option<Option<bool>> {
         match property {
             Property::Converges => Some(Some(self.converges)),
@@ -546,8 +546,7 @@ impl MethodLimits {
             let point = |factor, is_compared| sweep.point(&own, system, (factor, is_compared), observe);
             sweep.follow(row, &factors, &point, &is_sought)
         })?;
-        let limits = lock(&sweep.limits).clone();
-        Ok(limits)
+        Ok(lock(&sweep.limits).clone())
     }
 }
 

@@ -62,8 +62,7 @@ pub(super) fn limits(
         };
         sweep.follow(row, &factors, &point, &|property, _| property == Property::Converges)
     })?;
-    let limits = lock(&sweep.limits).clone();
-    Ok(limits)
+    Ok(lock(&sweep.limits).clone())
 }
 
 /// Motions of a scene on its own mesh, and their reference.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use web_time::Instant;
 
-use self::plan::{MOST_STEPS, TIMING, settings};
+use self::plan::{MAX_STEPS, TIMING, settings};
 pub(super) use self::plan::{REFERENCE_STEPS, Samples, meshes};
 pub use self::reference::MotionReference;
 use self::reference::run;
@@ -88,7 +88,7 @@ fn first_run(
 ) -> Result<(Measurement, u32), StudyError> {
     let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
     let steps = u64::from(steps_of_sample) * u64::from(samples.count);
-    let is_cut = steps > u64::from(extent.pick(MOST_STEPS));
+    let is_cut = steps > u64::from(extent.pick(MAX_STEPS));
     let (steps, path) = if is_cut {
         run(&mut simulation, MIN_STEPS);
         (MIN_STEPS, Vec::new())
@@ -128,7 +128,7 @@ pub fn time_of_motion(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
     let goes_on = || observe(Progress::at(0.0)).is_continue();
     let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_some() && goes_on())?;
     let steps = (Samples::of(scene, Extent::Quick).ok()?.duration() / scene.dynamics.time_step).round().max(1.0);
-    let steps = if steps > f64::from(Extent::Quick.pick(MOST_STEPS)) { MIN_STEPS } else { steps as u32 };
+    let steps = if steps > f64::from(Extent::Quick.pick(MAX_STEPS)) { MIN_STEPS } else { steps as u32 };
     let begun = Instant::now();
     run(&mut simulation, 1);
     let of_step = begun.elapsed().as_secs_f64();

@@ -18,13 +18,13 @@ use crate::study::setting::{Setting, Stepping};
 /// one counts.
 const LONGEST: [(f64, f64); 2] = [(2.0, 60.0), (4.0, 120.0)];
 /// Largest number of samples of a path; a longer motion is sampled, and stepped, more coarsely.
-const MOST_SAMPLES: [f64; 2] = [240.0, 480.0];
+const MAX_SAMPLES: [f64; 2] = [240.0, 480.0];
 /// Longest time step relative to the scene's.
 const COARSEST: [f64; 2] = [1.0, 2.0];
 /// Numbers of time steps per sampling interval, which is the longest time step.
 const STEPS: [&[u32]; 2] = [&[1, 2, 4], &[1, 2, 4, 8, 16]];
 /// Number of reference steps between samples: four in the shortest step of the settings.
-pub(in crate::study) const REFERENCE_STEPS: [u32; 2] = [4 * 4, 4 * 16];
+pub(in crate::study) const REFERENCE_STEPS: [u32; 2] = [4 * STEPS[0][2], 4 * STEPS[1][4]];
 /// Numbers of solves per step; 0 iterates to the tolerance.
 const SOLVES: [&[u32]; 2] = [&[1, 0], &[1, 2, 0]];
 /// Numbers of nodes along the beam relative to the scene's mesh.
@@ -32,7 +32,7 @@ const MESHES: [&[f64]; 2] = [&[0.5, 1.0], &[0.25, 0.5, 1.0, 1.5]];
 /// Number of nodes along the beam of the reference's mesh, relative to the scene's.
 pub(super) const REFERENCE_MESH: [f64; 2] = [2.0, 3.0];
 /// Largest number of steps of a run; longer ones are shortened.
-pub(super) const MOST_STEPS: [u32; 2] = [20_000, 100_000];
+pub(super) const MAX_STEPS: [u32; 2] = [20_000, 100_000];
 /// Time spent on timing a setting.
 pub(super) const TIMING: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(200)];
 
@@ -67,7 +67,7 @@ impl Samples {
         let duration = scene.dynamics.duration.min(longest);
         let mut interval = (extent.pick(COARSEST) * own).min(duration / MIN_STEPS);
         // Doubled, so that the scene's own step remains one of the measured steps.
-        while duration / interval > extent.pick(MOST_SAMPLES) {
+        while duration / interval > extent.pick(MAX_SAMPLES) {
             interval *= 2.0;
         }
         Ok(Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 })
