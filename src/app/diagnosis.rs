@@ -80,12 +80,12 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
     let Some(first) = reference.first() else { return Errors::default() };
     // A reference that is behind the load belongs to the body that it was asked for.
-    let behind = input.live.filter(|live| !live.is_of(input.scene));
+    let behind = input.session.live().filter(|live| !live.is_of(input.scene));
     let percent_of = |u: Option<Vector2<f64>>| Some((error_percent(u?, first.displacement)?, u?));
     // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
     let is_elsewhere = input.path.is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
     let own = percent_of(behind.map_or_else(|| first_probe(simulation), |behind| behind.own))
-        .filter(|_| !input.is_fallback && !is_elsewhere);
+        .filter(|_| input.session.fallback().is_none() && !is_elsewhere);
     let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
@@ -237,9 +237,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
-    // The solve from rest is without the pull of a grab.
-    let is_found = simulation.status().is_success() && simulation.mouse_spring().is_none();
-    match input.session.timed_from_rest().filter(|_| is_found) {
+    match input.session.timed_from_rest().filter(|_| simulation.status().is_success()) {
         Some(solve) if !solve.is_solved => add(tr("not reached from rest").to_owned()),
         // From a state under another load, fewer or more may have been needed.
         Some(solve) if solve.iterations > 0 => add(count(solve.iterations, "iteration")),
@@ -298,7 +296,7 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
 
 /// Describes a drawn body that is not the result for the scene; `None` if it is.
 pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
-    input.is_fallback.then(|| equilibrium_text(input.shown.scene(), input.scene))
+    input.session.fallback().map(|drawn| equilibrium_text(drawn.scene(), input.scene))
 }
 
 /// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or

@@ -3,7 +3,6 @@
 use crate::app::language::Language;
 use crate::app::prelude::*;
 use crate::app::session::Session;
-use crate::app::session::facts::Live;
 use crate::app::widgets::load_scale::OpeningLoads;
 use crate::study::PathSummary;
 
@@ -24,16 +23,12 @@ pub(crate) struct Readout<'a> {
     /// Reference solution that errors are measured against, or the one that follows the load; `None` until it has been
     /// computed.
     pub reference: Option<&'a Reference>,
-    /// Reference solution that follows the load, if errors are measured against it.
-    pub live: Option<&'a Live>,
     /// Reason why it could not be computed.
     pub reference_failure: Option<&'a Sentence>,
     /// Load path from rest, compared with the state; `None` until it has been computed.
     pub path: Option<PathSummary>,
     /// Range of the displayed field's values in the drawn state.
     pub value_range: [f64; 2],
-    /// `true` if another body than the simulation's is drawn.
-    pub is_fallback: bool,
     /// Language of the user interface.
     pub language: Language,
 }

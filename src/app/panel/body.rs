@@ -27,7 +27,7 @@ const PRESETS: [MaterialPreset; 4] = [
 /// Returns the rows of the material. The limit of Poisson's ratio differs between plane stress and plane strain.
 fn material_rows(plane: Plane) -> [NumberRow; 4] {
     [
-        NumberField::new("Young E", keys::range("material.young"), 1e3..=1e12)
+        NumberField::new("Young E", const { keys::range("material.young") }, 1e3..=1e12)
             .logarithmic(1e3)
             .tip("Young's modulus, Pa: stiffness of the material. Rubber 1e6, wood 1e10, steel 2e11.")
             .row(|s| s.material.young, |s, v| s.material.young = v),
@@ -37,11 +37,11 @@ fn material_rows(plane: Plane) -> [NumberRow; 4] {
                  than 0.5.",
             )
             .row(|s| s.material.poisson, |s, v| s.material.poisson = v),
-        NumberField::new("Density", keys::range("material.density"), 0.0..=20_000.0)
+        NumberField::new("Density", const { keys::range("material.density") }, 0.0..=20_000.0)
             .logarithmic(1.0)
             .tip("Density, kg/m³: sets the weight, and the inertia in motion.")
             .row(|s| s.material.density, |s, v| s.material.density = v),
-        NumberField::new("Thickness t", keys::range("material.thickness"), 1e-3..=10.0)
+        NumberField::new("Thickness t", const { keys::range("material.thickness") }, 1e-3..=10.0)
             .logarithmic(1e-3)
             .tip("Thickness out of the plane, m: stiffness and weight are proportional to it.")
             .row(|s| s.material.thickness, |s, v| s.material.thickness = v),
@@ -56,6 +56,8 @@ pub(super) fn material_summary(scene: &Scene) -> String {
     let name = PRESETS.iter().find(is_like).map(|preset| tr(preset.name).to_lowercase());
     joined(name.into_iter().chain([engineering(young, "Pa")]))
 }
+
+const CELLS: limits::Limit = keys::range("beam.cells");
 
 /// Numbers of cells that follow the size of a beam, so that the size of a cell stays about the same; in a much smaller
 /// beam, whose size has been typed in other units, the number stays.
@@ -77,8 +79,7 @@ impl CellsThatFollow {
             if now < SMALLER * size {
                 return cells;
             }
-            (f64::from(cells) * now / size).round().clamp(keys::range("beam.cells").min, keys::range("beam.cells").max)
-                as u32
+            (f64::from(cells) * now / size).round().clamp(CELLS.min, CELLS.max) as u32
         };
         let from = reference.filter(|&from| at(from, old) == cells).unwrap_or((old, cells));
         *reference = Some(from);
@@ -93,7 +94,10 @@ pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
         "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.";
     const HEIGHT: &str =
         "Height of the beam, m. The number of cells across it adapts; points with loads or supports move with it.";
-    let sides = [("Length", keys::range("beam.length"), LENGTH), ("Height", keys::range("beam.height"), HEIGHT)];
+    let sides = [
+        ("Length", const { keys::range("beam.length") }, LENGTH),
+        ("Height", const { keys::range("beam.height") }, HEIGHT),
+    ];
     for (axis, (label, limit, tip)) in sides.into_iter().enumerate() {
         let [present, original] = [beam, original].map(|beam| [beam.length, beam.height][axis]);
         let field = NumberField::new(label, limit, original / SPAN..=original * SPAN);
@@ -158,7 +162,7 @@ pub(super) fn mesh(ui: &mut Ui, panel: &mut Panel<'_>) {
         (0, "Cells along", "Cells along the beam; each is two triangles or a quadrilateral.", 400.0),
         (1, "Cells across", "Cells across the beam; each is two triangles or a quadrilateral.", 40.0),
     ] {
-        let field = NumberField::new(label, keys::range("beam.cells"), 1.0..=most).logarithmic(1.0).whole().tip(tip);
+        let field = NumberField::new(label, CELLS, 1.0..=most).logarithmic(1.0).whole().tip(tip);
         let cells = |scene: &Scene| scene.beam.as_ref().map(|beam| f64::from(beam.cells[axis]));
         panel.field(ui, &field, cells, |scene, new| {
             scene.beam.iter_mut().for_each(|beam| beam.cells[axis] = new as u32);

@@ -6,7 +6,6 @@ use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::scene::LoadId;
 use crate::scene::limits::Limit;
-use crate::sentence::sentence;
 
 /// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;
@@ -53,7 +52,7 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let direction = direction.unwrap_or(panel.state.force_direction());
     let [usual, largest] = force_range(input.opening, &scene.material, input.simulation.system());
     // A negative force can be typed for one in the opposite direction.
-    let limit = keys::range("load.force");
+    let limit = const { keys::range("load.force") };
     let field = NumberField::new("Force", Limit { min: -limit.max, ..limit }, 0.0..=largest)
         .around(usual)
         .tip("Magnitude of the force, N. Other values can be typed, such as 12 kN; a negative one reverses the force.");
@@ -84,7 +83,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(panel.state.gravity_direction).unwrap_or(DOWN);
     let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
-    let field = NumberField::new("Gravity", keys::range("load.acceleration"), 0.0..=1000.0)
+    let field = NumberField::new("Gravity", const { keys::range("load.acceleration") }, 0.0..=1000.0)
         .around(if original > 0.0 { original } else { EARTH })
         .tip("Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.");
     if let Some(new) = panel.number(ui, &field, magnitude, Some(original)) {
@@ -96,7 +95,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
         });
     }
     let [usual, largest] = moment_range(input.opening, &scene.material, input.simulation.system());
-    let field = NumberField::new("Moment", keys::range("load.moment"), -largest..=largest)
+    let field = NumberField::new("Moment", const { keys::range("load.moment") }, -largest..=largest)
         .around(usual)
         .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");
     let [current, original] = [scene, input.original].map(|scene| moment_of(scene).unwrap_or(0.0));

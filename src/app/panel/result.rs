@@ -7,7 +7,7 @@ use crate::app::panel::supports;
 use crate::app::session::clock::fraction;
 use crate::app::widgets::text::UNKNOWN;
 use crate::simulation::Motion;
-use crate::study::{Claim, Reference};
+use crate::study::Claim;
 
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -46,7 +46,8 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         row("State", state, "State of the body that is drawn");
     }
     let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
-    let text = match input.is_fallback {
+    let is_fallback = input.session.fallback().is_some();
+    let text = match is_fallback {
         true => fill!("%{n} to the state that is drawn, residual %{residual}", n, residual),
         false => fill!("%{n} since the last change, residual %{residual}", n, residual),
     };
@@ -75,10 +76,10 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if method == MethodKind::Warped {
         let own = || search.certificate()?.fixed_point_rho;
-        let rho = if input.is_fallback { own() } else { rho(input) };
+        let rho = if is_fallback { own() } else { rho(input) };
         let text = rho.filter(|_| simulation.status().is_success()).map(|rho| {
             let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
-            let load = load_text(input.shown.scene()).filter(|_| input.is_fallback);
+            let load = load_text(input.shown.scene()).filter(|_| is_fallback);
             load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
         });
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";

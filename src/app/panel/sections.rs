@@ -63,7 +63,8 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             panel.edit("Sections", |scene| _ = scene.sections.remove(chosen));
         }
         if ui.button(tr("Add a section")).clicked() {
-            panel.edit("Sections", |scene| *scene = with_middle_section(scene, input.simulation.system()));
+            let added = with_middle_section(scene, input.simulation.system());
+            panel.actions.push(Action::Edit("Sections", Box::new(added)));
         }
     });
 }

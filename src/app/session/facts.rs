@@ -212,7 +212,7 @@ pub(crate) fn first_probe(body: &Simulation) -> Option<Vector2<f64>> {
 #[derive(Debug)]
 pub(crate) struct Live {
     /// Scene without the settings on which the reference does not depend.
-    key: Scene,
+    pub key: Scene,
     pub reference: Reference,
     /// Displacements of the first probe, m: of the body, and by linear theory.
     pub own: Option<Vector2<f64>>,

@@ -223,6 +223,11 @@ impl Session {
         facts.failure(&self.scene).map(Err).or_else(|| facts.get(&self.scene).map(Ok))
     }
 
+    /// Returns the reference solution, or the one that follows the load.
+    pub(crate) fn known_reference(&self) -> Option<&Reference> {
+        self.reference().and_then(Result::ok).or_else(|| self.live().map(|live| &live.reference))
+    }
+
     /// Returns the reference solution that follows the load, until that of [`Self::reference`] is known. Scenes without an
     /// error at rest have none.
     pub(crate) fn live(&self) -> Option<&Live> {
@@ -231,15 +236,24 @@ impl Session {
         self.live.known().filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.scene))
     }
 
-    /// Returns time and result of a solve from rest; `None` if they are not known for the present load.
+    /// Returns time and result of a solve from rest; `None` if they are not known for the present load, or the body is
+    /// grabbed: the solve is without the pull.
     pub(crate) fn timed_from_rest(&self) -> Option<&SolveFromRest> {
+        self.timed_solve().filter(|_| !self.is_grabbed())
+    }
+
+    fn timed_solve(&self) -> Option<&SolveFromRest> {
         let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.scene).map(|(_, solve)| solve);
         self.facts.time.get(&self.scene).or(own)
     }
 
-    /// Returns time and result at the load at which the hand rested last, during a press.
+    /// Returns time and result at the load at which the hand rested last, during the drag of a load.
     pub(crate) fn last_from_rest(&self) -> Option<&SolveFromRest> {
-        self.facts.time.latest().filter(|_| self.is_held)
+        self.facts.time.latest().filter(|_| self.is_held && !self.is_grabbed())
+    }
+
+    fn is_grabbed(&self) -> bool {
+        self.model.simulation.mouse_spring().is_some()
     }
 
     pub(crate) fn timings(&self) -> &Timings {
@@ -559,10 +573,10 @@ impl Session {
     fn search(&mut self) {
         self.timings = Timings::default();
         let since = Instant::now();
-        while *self.model.simulation.status() == Status::Running || self.starts_again() {
+        while *self.model.simulation.status() == Status::Running {
             self.iterate_once();
+            self.start_again();
             if self.is_slow || since.elapsed() >= self.frame_left {
-                self.starts_again();
                 break;
             }
         }
@@ -570,15 +584,13 @@ impl Session {
     }
 
     /// Goes back to rest after a search from another state that has found no equilibrium: an iteration may lead to one from
-    /// there. Returns `true` if it has.
-    fn starts_again(&mut self) -> bool {
+    /// there.
+    fn start_again(&mut self) {
         let simulation = &mut self.model.simulation;
         let is_free = simulation.mouse_spring().is_none() && !self.is_slow;
-        let again = is_lost(simulation) && is_free && !std::mem::replace(&mut self.is_from_rest, true);
-        if again {
+        if is_lost(simulation) && is_free && !std::mem::replace(&mut self.is_from_rest, true) {
             self.playback.reset(simulation);
         }
-        again
     }
 
     /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
@@ -764,7 +776,7 @@ impl Session {
         const SHORT: Duration = Duration::from_millis(2);
         let last = self.facts.time.latest().filter(|solve| solve.is_solved);
         let time = last.map_or(self.timings.total(), |solve| solve.timings.total());
-        if time >= SHORT || self.timed_from_rest().is_some() {
+        if time >= SHORT || self.timed_solve().is_some() {
             return;
         }
         let timed = self.timed.take().map(|(timed, _)| timed);
@@ -861,6 +873,7 @@ impl Session {
             (self.model, self.timings) = before;
             return;
         }
+        self.is_from_rest = false;
         self.model.simulation.release();
         self.playback.each(Simulation::release);
     }

@@ -1,9 +1,5 @@
 //! Public interface of the lab: read and set by the window, screenshots, recordings and tests.
 
-use std::path::Path;
-
-use web_time::Duration;
-
 use crate::app::ThemeChoice;
 use crate::app::interface::*;
 use crate::app::language::{self, Language};
@@ -16,7 +12,6 @@ use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::mesh::MaterialPoint;
 use crate::render::{Camera, Frame, View};
-use crate::scene::IntegratorKind;
 use crate::simulation::SimulationError;
 use crate::state::State;
 use crate::study::Study;

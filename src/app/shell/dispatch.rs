@@ -57,7 +57,7 @@ impl Lab {
     }
 
     pub(super) fn act(&mut self, ctx: &Context, action: Action) {
-        // What is laid out before the action shows its effect in the next frame.
+        // Bars and panel are laid out before the action; they show its effect in the next frame.
         ctx.request_repaint();
         match action {
             Action::Open(_) | Action::New(_) | Action::OpenFile | Action::Close => self.depart(ctx, action),

@@ -1,7 +1,5 @@
 //! Dialog for a scene file: a path to type, the files of its folder to click, and recent files.
 
-use std::path::{Path, PathBuf};
-
 use crate::app::interface::*;
 
 /// Largest number of recent files that are offered.

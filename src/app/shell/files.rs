@@ -1,8 +1,6 @@
 //! Files: opening, saving, dropping, changes on disk, copies of the scene to the clipboard, the question before unsaved
 //! edits are lost, and the offer to restore the edits left by a crashed window.
 
-use std::path::Path;
-
 use crate::app::interface::*;
 use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::Edit;
@@ -10,7 +8,6 @@ use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question, Request};
-use crate::sentence::Sentence;
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.

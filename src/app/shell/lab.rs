@@ -275,12 +275,10 @@ impl Lab {
     /// Returns the state that bars, panel and cards show.
     pub(super) fn readout(&self) -> Readout<'_> {
         let Desk { session, viewport, view, .. } = &self.desk;
-        let reference = session.reference();
         Readout {
             session,
-            reference: reference.and_then(Result::ok).or(session.live().map(|live| &live.reference)),
-            live: session.live(),
-            reference_failure: reference.and_then(Result::err),
+            reference: session.known_reference(),
+            reference_failure: session.reference().and_then(Result::err),
             // Only an equilibrium is the end of a path, or of another one.
             path: (session.facts().path.get(session.scene()))
                 .filter(|_| {
@@ -289,7 +287,6 @@ impl Lab {
                 })
                 .map(|path| path.to(session.simulation().displacement())),
             value_range: viewport.body().value_range(),
-            is_fallback: session.fallback().is_some(),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),

@@ -1,7 +1,6 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
 use egui::{CentralPanel, Panel};
-use web_time::Duration;
 
 use crate::app::diagnosis::{self, Errors};
 use crate::app::interface::*;
@@ -69,8 +68,8 @@ impl Lab {
             }
             Mode::Measure => {
                 let mut measure = std::mem::take(&mut self.desk.measure);
-                let (Desk { session, view, .. }, shown) = (&self.desk, self.readout().shown);
-                drawer_panel(ui, MEASURE_HEIGHT).show(ui, |ui| measure.show(ui, session, shown, view, &mut actions));
+                let Desk { session, view, .. } = &self.desk;
+                drawer_panel(ui, MEASURE_HEIGHT).show(ui, |ui| measure.show(ui, session, view, &mut actions));
                 self.desk.measure = measure;
             }
         }

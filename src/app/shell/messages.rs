@@ -1,7 +1,5 @@
 //! Messages over the view: notices of the session, warnings and offers.
 
-use std::time::Duration;
-
 use egui::Panel;
 
 use crate::app::interface::*;
@@ -10,7 +8,6 @@ use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;
 use crate::app::widgets::text::boxed_text;
-use crate::sentence::Sentence;
 
 /// Time for which a message is shown.
 const TOAST: Duration = Duration::from_secs(4);

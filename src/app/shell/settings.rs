@@ -1,7 +1,6 @@
 //! Settings of the window, saved between runs.
 
 use std::io::{Error, ErrorKind};
-use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};

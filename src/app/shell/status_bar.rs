@@ -1,7 +1,6 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use egui::Galley;
 
@@ -82,12 +81,10 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
 
 fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
     let simulation = input.simulation;
-    // The solve from rest is without the pull of a grab.
-    let is_free = simulation.mouse_spring().is_none();
-    let solve = input.session.timed_from_rest().filter(|_| simulation.status().is_success() && is_free);
+    let solve = input.session.timed_from_rest().filter(|_| simulation.status().is_success());
     // While a load is dragged, a longer solve is not repeated.
     let is_last = solve.is_none() && simulation.status().is_success();
-    let shown = if is_last { input.session.last_from_rest().filter(|_| is_free) } else { solve };
+    let shown = if is_last { input.session.last_from_rest() } else { solve };
     let time = shown.filter(|solve| solve.is_solved);
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
     let rho = rho(input);
@@ -96,7 +93,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let is_without_reference = is_without_reference(input);
     // The error from rest is in the colour, and is no doubt if it is small.
     let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }).is_some();
-    let is_late = input.live.is_some_and(|live| live.is_late(input.shown));
+    let is_late = input.session.live().is_some_and(|live| live.is_late(input.shown));
     let color = match error_color(palette, errors.worst()) {
         _ if is_late => palette.secondary,
         color if is_doubtful && color == palette.good => palette.warning,
@@ -124,7 +121,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
         },
         ..BarNumber::new(
             ERROR,
-            error_text(errors.own, errors.bound, input.live.is_some()),
+            error_text(errors.own, errors.bound, input.session.live().is_some()),
             [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
             color,
         )

@@ -49,6 +49,8 @@ pub(crate) struct Overlay<'a> {
     pub ghost: Option<&'a [Vector2<f64>]>,
     /// Drawn outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
+    /// Scene of the reference solution.
+    pub exact_scene: Option<&'a Scene>,
     /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
     /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
@@ -367,8 +369,11 @@ fn pull(
     } else {
         painter.line_segment([from, to], stroke);
     }
-    let label =
-        format!("{}, {:.0}°", engineering(three_digits(force.norm()), "N"), force.y.atan2(force.x).to_degrees());
+    let label = format!(
+        "{}, {:.0}°",
+        engineering(three_digits(force.norm()), "N"),
+        force.y.atan2(force.x).to_degrees().round() + 0.0
+    );
     labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring, 200.0);
 }
 
@@ -624,8 +629,8 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
-        // The drawn body has another load.
-        let load = overlay.wanted.and_then(load_text);
+        // A body in place of a search has another load.
+        let load = overlay.wanted.and(overlay.exact_scene).and_then(load_text);
         let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
         lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }

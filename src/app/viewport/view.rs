@@ -81,8 +81,7 @@ impl<'a> Content<'a> {
         let session = self.session;
         let is_ended = !session.iterates() || session.fallback().is_some();
         let is_at_rest = !session.is_motion() && is_ended && session.simulation().mouse_spring().is_none();
-        let reference = session.reference().and_then(Result::ok).or(session.live().map(|live| &live.reference));
-        reference.filter(|_| is_at_rest)
+        session.known_reference().filter(|_| is_at_rest)
     }
 
     /// Returns the displacement of the linear solution, m, if it is displayed.
@@ -614,6 +613,7 @@ impl BodyView {
             apart: content.is_apart(),
             ghost,
             exact: &exact,
+            exact_scene: session.live().map(|live| &live.key).or(Some(simulation.scene())),
             errors,
             live,
             areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),

@@ -342,6 +342,7 @@ impl Pane {
                 exact: if wanted.is_some() { &[] } else { exact },
                 errors: Errors::default(),
                 live: None,
+                exact_scene: None,
                 areas: [None; 2],
                 time,
                 direction: input.direction,

@@ -46,9 +46,9 @@ pub(crate) fn turn_to(base: &mut Option<Scene>, scene: &Scene) {
     base.get_or_insert_with(|| scene.clone());
 }
 
-/// Shows the limits of the lab's scene: those of `base`, whose loads have the same proportions. `shown` is the drawn body.
-pub(crate) fn show(ui: &mut Ui, session: &Session, (base, shown): (&Scene, &Simulation), actions: &mut Vec<Action>) {
-    let (scene, facts) = (session.scene(), &session.facts().limits);
+/// Shows the limits of the lab's scene: those of `base`, whose loads have the same proportions.
+pub(crate) fn show(ui: &mut Ui, session: &Session, base: &Scene, actions: &mut Vec<Action>) {
+    let (scene, shown, facts) = (session.scene(), session.drawn(), &session.facts().limits);
     let Some(part) = part_of(base, scene) else { return };
     let progress = facts.progress().map(|(done, _)| done as f32);
     if let Some(reason) = facts.failure(base) {
@@ -365,7 +365,7 @@ impl<'a> StripChart<'a> {
                 "%{name}: within 1 %: %{good}; within 5 %: %{usable}; converges: %{converges}; strains above 10 %: %{law}"
             }
         };
-        let text = fill!(text, name, done = done.clone(), good, usable, finishes = converges, converges, law);
+        let text = fill!(text, name, done, good, usable, finishes = converges, converges, law);
         let response = ui.interact(rect, ui.scope_id().with(("strip", row)), Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, &text));
         let edge = if response.has_focus() || response.hovered() { palette.accent } else { Color32::TRANSPARENT };

@@ -27,15 +27,8 @@ impl Measure {
         self.limits_of = None;
     }
 
-    /// Shows a tab; `shown` is the drawn body.
-    pub(crate) fn show(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        shown: &Simulation,
-        view: &ViewOptions,
-        actions: &mut Vec<Action>,
-    ) {
+    /// Shows a tab.
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, view: &ViewOptions, actions: &mut Vec<Action>) {
         let scene = session.scene();
         let Some(tab) = view.measured(scene) else { return };
         ui.horizontal_wrapped(|ui| {
@@ -54,11 +47,13 @@ impl Measure {
         match tab {
             MeasureTab::HowFar => {
                 if let Some(base) = &self.limits_of {
-                    limits::show(ui, session, (base, shown), actions);
+                    limits::show(ui, session, base, actions);
                 }
             }
             MeasureTab::HowFast => self.budget.show(ui, scene, actions),
-            MeasureTab::LoadCurve => load_curve::show(ui, session, first_probe(shown), view.curve_plot, actions),
+            MeasureTab::LoadCurve => {
+                load_curve::show(ui, session, first_probe(session.drawn()), view.curve_plot, actions)
+            }
         }
     }
 }
