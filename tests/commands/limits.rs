@@ -147,7 +147,8 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     assert!(picture.contains("each error includes") && smallest < 1.1 * mesh + 0.1, "{smallest}, {mesh}");
 }
 
-/// Not between loads that were tried far apart: an arch jumps at 28.6 kN, the error of a column reaches 1 % at 198 N.
+/// The ends do not lie between loads that were tried far apart: an arch jumps at 28.6 kN, the error of a column reaches
+/// 1 % at 198 N.
 #[test]
 fn ends_are_those_of_single_solves() {
     let [jump, error] = [28_600.0 / 8372.4, 198.0 / 218.05];

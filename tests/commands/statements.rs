@@ -15,12 +15,6 @@ fn a_built_in_mesh_in_place_of_a_missing_file_is_said() {
     let output = warpbeam(&["solve", scene.to_str().unwrap(), "--reference", "none"]);
     assert!(stderr(&output).contains("../meshes/bracket.msh does not exist"), "{}", stderr(&output));
     assert!(!stderr(&warpbeam(&["solve", "bracket", "--reference", "none"])).contains("does not exist"));
-    // Built-in meshes are in metres by definition; only files may be in another unit.
-    for id in ids_of(Analysis::Static) {
-        assert_eq!(stderr(&warpbeam(&["solve", id, "--reference", "none"])), "", "{id}");
-    }
-    write_square(folder.path(), SQUARE_LOAD);
-    assert_eq!(stderr(&warpbeam_in(folder.path(), &["solve", "square.toml"])), "", "a square of one metre");
 }
 
 fn warnings(json: &serde_json::Value) -> Vec<&str> {
@@ -130,10 +124,7 @@ fn a_built_in_scene_has_no_warning_of_its_unit() {
         assert_eq!(stderr(&warpbeam(&["solve", id, "--reference", "none"])), "", "{id}");
     }
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
-    let scene = "name = \"Square\"\n[mesh]\nfile = \"square.msh\"\n[material]\nyoung = 1e4\npoisson = 0.3\n[[support]]\nedge = \"wall\"\n\
-        fix = [\"x\", \"y\"]\n[[load]]\nkind = \"gravity\"\nacceleration = [0, -0.1]\n";
-    fs::write(folder.path().join("square.toml"), scene).unwrap();
+    write_square(folder.path(), SQUARE_LOAD);
     assert_eq!(stderr(&warpbeam_in(folder.path(), &["solve", "square.toml"])), "", "a square of one metre");
     let large = include_str!("../data/square.msh").replace("\n1 0 0\n1 1 0\n0 1 0", "\n100 0 0\n100 100 0\n0 100 0");
     fs::write(folder.path().join("square.msh"), large).unwrap();

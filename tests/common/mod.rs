@@ -219,7 +219,10 @@ pub fn pairs<A: Clone, B>(a: impl IntoIterator<Item = A>, b: impl IntoIterator<I
     a.into_iter().flat_map(|a| b.clone().into_iter().map(move |b| (a.clone(), b))).collect()
 }
 
-/// Returns the largest displacement, m.
+/// Both directions of a support.
+pub const BOTH: &[Axis] = &[Axis::X, Axis::Y];
+
+/// Returns the largest length of the vectors of a list.
 pub fn largest(u: &[Vector2<f64>]) -> f64 {
     u.iter().map(|u| u.norm()).fold(0.0, f64::max)
 }

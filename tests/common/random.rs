@@ -1,5 +1,6 @@
 //! Random scenes from a fixed seed.
 
+use super::BOTH;
 use warpbeam::{Axis, ElementKind, Material, Plane, Scene};
 
 /// A fixed sequence of well-mixed 64-bit numbers (splitmix64, Steele et al. 2014).
@@ -30,7 +31,6 @@ impl Random {
     }
 }
 
-const BOTH: &[Axis] = &[Axis::X, Axis::Y];
 const PLANES: &[Plane] = &[Plane::Stress, Plane::Strain];
 const ELEMENTS: &[ElementKind] = &[ElementKind::T3, ElementKind::T6, ElementKind::Q4];
 

@@ -30,7 +30,8 @@ fn solved_like(row: &Row) -> Simulation {
     solved(&scene_with(row.scene, &[&set[0], &set[1]]))
 }
 
-/// To six digits, except in plane stress (CalculiX shears a wedge), large rotations and stresses recovered at the nodes.
+/// The results agree to six digits, except in plane stress (CalculiX shears a wedge), in large rotations, and for stresses
+/// at the nodes, which the programs recover differently.
 #[test]
 fn displacements_and_stresses_are_those_of_calculix() {
     let rows = rows();

@@ -17,7 +17,7 @@ fn tip(simulation: &Simulation) -> Vector2<f64> {
 #[test]
 fn the_reference_table_is_met() {
     let mut worst = [0.0f64; 3];
-    // Kind of load, L/H, α, angle, two numbers of the elastica and two of Reissner's beam, in units of L.
+    // A row has the kind of load, L/H, α, the angle, two numbers of the elastica and two of Reissner's beam, in units of L.
     for row in include_str!("../data/cantilever.csv").lines().filter(|line| !line.starts_with('#')).skip(1) {
         let (kind, values) = row.split_once(',').unwrap();
         let values: Vec<f64> = values.split(',').map(|value| value.parse().unwrap()).collect();
@@ -320,7 +320,7 @@ fn auto_takes_load_steps_where_needed() {
         assert!(auto.equilibrium().unwrap().load_steps() > 1);
         assert!((tip(&auto) - tip(&newton)).norm() < 1e-6 * tip(&newton).norm(), "{id}");
     }
-    // Of the load that is reported; the residual is that of the whole load.
+    // The last iterate balances the reported part of the load; the residual is that of the whole load.
     for (method, factor, limit) in
         [(MethodKind::Newton, 3.0, 50), (MethodKind::Newton, 30.0, 60), (MethodKind::Auto, 30.0, 60)]
     {

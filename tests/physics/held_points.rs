@@ -4,8 +4,6 @@
 use crate::common::*;
 use warpbeam::study::moved_points;
 
-const BOTH: &[Axis] = &[Axis::X, Axis::Y];
-
 /// Returns a beam on two supports at points, a pin and a roller, with a force on its right end.
 fn on_two_points([pin, roller]: [[f64; 2]; 2], force: Vector2<f64>) -> Scene {
     let mut scene = Scene::beam(10.0, 1.0).with_cells(9, 2).force("right", force);
@@ -231,7 +229,7 @@ fn scene_files_have_the_point_of_a_support() {
     assert_eq!(scene.supports[0].place, Place::At([3.4, 0.1]));
     let error = Scene::from_toml(&toml.replacen("at = [3.4, 0.1]", "edge = \"left\"", 1)).unwrap_err().to_string();
     assert!(error.contains("expected at = [x, y] with acts_on = \"point\" or a width, got an edge"), "{error}");
-    // So have loads.
+    // Scene files have the point of a load, too.
     let [point, node] =
         [Load::point_force([3.3, 0.1], [0.0, -1.0]), Load::force([3.3, 0.1], [0.0, -1.0])].map(|load| {
             let mut scene = Scene::beam(10.0, 1.0).clamp("left");

@@ -44,7 +44,7 @@ fn files_without_a_mesh_are_refused() {
     let mut nodes = square();
     nodes.extend([[0.5, 0.8], [1.0, 0.5], [0.5, 0.5]].map(Vector2::from));
     assert_eq!(mesh(nodes, ElementKind::T6, vec![0, 1, 2, 4, 5, 6], none()), Err(MeshError::Folded { element: 0 }));
-    // Without area; a clockwise triangle is turned.
+    // A mesh without area is refused; a clockwise triangle is turned.
     let nodes = vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0), Vector2::new(2.0, 0.0)];
     let mesh = Mesh::new(nodes.clone(), ElementKind::T3, vec![0, 2, 1], BTreeMap::new()).unwrap();
     assert_eq!(mesh.connectivity(), [0, 1, 2]);

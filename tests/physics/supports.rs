@@ -3,8 +3,6 @@
 use crate::common::*;
 use warpbeam::method::{Workspace, is_stable};
 
-const BOTH: &[Axis] = &[Axis::X, Axis::Y];
-
 fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
     let (s, c) = angle.sin_cos();
     Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y)

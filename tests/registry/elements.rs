@@ -271,7 +271,7 @@ fn patch_test(kind: ElementKind) {
         assert!(turned.rotations().iter().all(|r| (r.c - turn.c).hypot(r.s - turn.s) < 1e-13));
         for state in [linear, turned] {
             let forces = forces(&problem, &state);
-            let largest = forces.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
+            let largest = largest(forces.internal());
             for (x, f) in nodes(&problem).iter().zip(forces.internal()).filter(|(x, _)| is_inside(x)) {
                 assert!(f.norm() < 1e-12 * largest, "{plane:?} at {x}: {f}");
             }
@@ -576,7 +576,7 @@ fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind
     system.update_rotations(&mut strained, Kinematics::Linear);
     let elastic = forces(&problem, &strained);
     let viscous = force(&rest, StrainRate::Velocity(&small));
-    let size = viscous.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    let size = largest(&viscous);
     assert!(elastic.internal().iter().zip(&viscous).all(|(a, b)| (a - b).norm() < 1e-12 * size));
     // The same in a bent state, with free unknowns only.
     let start = state(&problem, bent);
@@ -614,7 +614,7 @@ fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind
     let quick: Vec<_> = u.iter().map(|u| u * 4.0).collect();
     let by_rate = force(&halves, StrainRate::Velocity(&quick));
     let by_difference = force(&halves, StrainRate::Difference(&[(4.0, u), (-1.0, &rest), (-3.0, &rest)]));
-    let size = by_rate.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    let size = largest(&by_rate);
     assert!(by_rate.iter().zip(&by_difference).all(|(a, b)| (a - b).norm() < 1e-12 * size));
     let work = |a: &[Vector2<f64>], b: &[Vector2<f64>]| -> f64 {
         between(a, b).iter().zip(a.iter().zip(b)).map(|(f, (a, b))| f.dot(&(b - a))).sum()
@@ -645,7 +645,7 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     let turn = Rotation::from_angle(1.1);
     let turned = state(&problem, |x| turn.apply(x));
     let offset = forces(&problem, &turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap());
-    let magnitude = offset.internal().iter().map(|f| f.norm()).fold(0.0, f64::max);
+    let magnitude = largest(offset.internal());
     assert!(magnitude > 1.0);
     // A x − R K X vanishes in a rigidly rotated body.
     assert!(forces(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));

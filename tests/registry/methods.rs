@@ -84,8 +84,7 @@ fn extremes_stay_finite(method: MethodKind) {
 
 /// Returns the largest distance between two displacements, relative to the largest displacement of the second.
 fn difference(a: &Simulation, b: &Simulation) -> f64 {
-    let size = largest(b.displacement());
-    a.displacement().iter().zip(b.displacement()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
+    largest_distance(a.displacement(), b.displacement()) / largest(b.displacement())
 }
 
 /// After any edit of a solved body, the result is that of a solve from rest.

@@ -277,7 +277,7 @@ fn translations_have_the_placeholders_of_their_originals() {
     }
 }
 
-/// Those of the texts in the sources in English, and those of the catalogue in Chinese.
+/// The fonts have the letters of the English texts in the sources and of the Chinese texts in the catalogue.
 #[test]
 fn the_fonts_have_every_letter() {
     let mut texts = "\u{2013}\u{201c}\u{201d}\u{2212}".to_owned();

@@ -323,7 +323,8 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     ui.expect(&["ERROR \u{2013} no reference"]);
 }
 
-/// A bar that converges with ρ above one, and a body that is inside out even if its equations are solved.
+/// The window explains a bar that converges with ρ above one, and a body that is inside out although its equations are
+/// solved.
 #[test]
 fn odd_results_are_explained() {
     let mut ui = open("article");

@@ -59,7 +59,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         }
         let factor = if last.factor + step > 1.0 - 0.5 * shortest { 1.0 } else { last.factor + step };
         let start = extrapolated(&points, factor);
-        let ahead = distance(&start, &last.u);
+        let ahead = largest_distance(&start, &last.u);
         let allowed = if points.len() > 1 { 0.25 * ahead } else { 4.0 * speed * (factor - last.factor) };
         let next = judge.equilibrium(start, factor, allowed);
         let least = shortest.min(0.1 * last.factor).max(SHARP);
@@ -87,7 +87,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
                     *work += more;
                     exchanged += more.abs();
                 }
-                speed = distance(&next.u, &last.u) / (next.factor - last.factor);
+                speed = largest_distance(&next.u, &last.u) / (next.factor - last.factor);
                 points.push(next);
                 if points.len() > 3 {
                     points.remove(0);
@@ -102,11 +102,6 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     let Point { factor, u, .. } = points.pop()?;
     let elastic = judge.problem.elastic_energy(&judge.problem.system().state_of(&u).ok()?);
     Some(SmallSteps { factor, u, bifurcations, work, exchanged, elastic })
-}
-
-/// Returns the largest distance of a node between two displacements, m.
-pub fn distance(a: &[Vector2<f64>], b: &[Vector2<f64>]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
 /// Returns the polynomial through up to three points at a load factor.

@@ -1,11 +1,9 @@
 //! Sweep over random bodies whose supports turn by up to 400° and move, alone and with loads, and whose points are held:
 //! the result of `solve`, the path of `curve`, small steps and the balance of work agree.
 
-use super::small_steps::{SHARP, SmallSteps, distance, follow};
+use super::small_steps::{SHARP, SmallSteps, follow};
 use super::{first_seed, share};
 use crate::common::*;
-
-const BOTH: &[Axis] = &[Axis::X, Axis::Y];
 
 /// Returns a slender body of height 1 m, E = 1 MPa, with supports that move or hold points.
 fn scene(seed: u64) -> Scene {
@@ -81,59 +79,14 @@ fn scene(seed: u64) -> Scene {
     scene.probe("probe", somewhere)
 }
 
-/// Returns the total of all loads and reactions relative to the sum of their magnitudes, and both, N.
-fn imbalance(simulation: &Simulation) -> [f64; 3] {
-    let (solution, problem) = (simulation.solution(), simulation.problem());
-    let mut external = vec![Vector2::zeros(); simulation.displacement().len()];
-    let kinematics = warpbeam::assembly::Kinematics::Corotated;
-    problem.loads().force(problem.system(), simulation.displacement(), kinematics, 1.0, &mut external);
-    let (total, loads) =
-        external.iter().fold((solution.reaction.force, 0.0), |(sum, size), f| (sum + f, size + f.norm()));
-    let size = loads + solution.supports.iter().map(|support| support.force.norm()).sum::<f64>();
-    [total.norm() / size, total.norm(), size]
-}
-
-/// Returns a column, a strip between clamps, one of which comes closer, or an arch, near its critical load.
-fn near_critical(seed: u64) -> Scene {
-    let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
-    let slenderness = 10f64.powf(random.between(1.0, 2.3));
-    let imperfection = 10f64.powf(random.between(-6.0, -2.0)) * random.one_of(&[-1.0, 1.0]);
-    let near = random.between(0.9, 1.3);
-    // A row of triangles is not symmetric, which would be an imperfection of its own.
-    let mut scene = Scene::beam(slenderness, 1.0).with_cells(24, 1).with_element(ElementKind::Q4);
-    scene.name = format!("near critical {seed}");
-    (scene.material.young, scene.material.poisson) = (1e6, random.between(0.0, 0.45));
-    let euler = PI.powi(2) * 1e6 / 12.0 / slenderness.powi(2);
-    let (kind, rise, middle) = (random.below(3), random.between(0.5, 4.0), 0.5 * slenderness);
-    match kind {
-        0 => {
-            let force = 0.25 * near * euler;
-            scene.clamp("left").force("right", [-force, force * imperfection]).probe("probe", "right")
-        }
-        1 => {
-            let by = [-4.0 * near * euler / 1e6 * slenderness, 0.0];
-            let scene = scene.clamp("left").clamp("right").moved(by, 0.0);
-            scene.force([middle, 0.5], [0.0, euler * imperfection]).probe("probe", [middle, 0.0])
-        }
-        _ => {
-            scene.beam.as_mut().unwrap().rise = rise;
-            let push = near * random.between(2.0, 30.0) * euler * rise / slenderness;
-            let scene = scene.clamp("left").clamp("right").force([middle, rise + 0.5], [0.0, -push]);
-            scene.probe("probe", [middle, rise])
-        }
-    }
-}
-
-/// Returns the differences between the results for a scene, in words, and a line about its path; `auto` may end this far
-/// from `newton`, relative to the largest displacement. Of a path that is not to be `judged`, only an end that small steps
-/// reach without an event counts.
-fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, String) {
+/// Returns the differences between the results for a scene, in words, and a line about its path.
+fn differences(scene: &Scene) -> (Vec<String>, String) {
     let (mut wrong, mut note) = (Vec::new(), String::new());
     let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
     let Some(path) = LoadPath::of(scene) else { return (vec!["no path".to_owned()], note) };
     let is_solved = *simulation.solve() == Status::Converged;
     note += &format!("{} iterations", simulation.iterations());
-    if judged && is_solved != path.end.is_none() {
+    if is_solved != path.end.is_none() {
         wrong.push(format!("solve {:?}, curve {:?}", simulation.status(), path.end));
     }
     if path.states.windows(2).any(|pair| pair[0].factor > pair[1].factor) {
@@ -144,28 +97,13 @@ fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, Stri
     let largest = largest(simulation.displacement());
     let near = |a: f64, b: f64| (a - b).abs() <= 2e-3;
     if is_solved {
-        // In a body hundreds of times as long as high, the inner forces, to which the residual is relative, are much larger
-        // than the loads, and rounding may change it by more than the tolerance.
-        let balances_further = || {
-            let mut exact = simulation.scene().clone();
-            exact.solver.tolerance = 1e-14;
-            let exact = solved(&exact);
-            exact.solution().residual_floor.is_some_and(|floor| floor > scene.solver.tolerance)
-                || imbalance(&exact)[0] <= 1e-5
-        };
-        // Without loads, supports that move with the body have no reactions.
-        let [off, total, forces] = imbalance(&simulation);
-        if !scene.loads.is_empty() && (off > 1e-3 || off > 1e-5 && !balances_further()) {
-            wrong.push(format!("{total} N are not balanced of {forces} N"));
-        }
         let end = path.states.last().unwrap();
         let off = (end.probes[0] - simulation.solution().probes[0].u).norm();
         if path.end.is_none() && off > 1e-4 * size {
             wrong.push(format!("solve and curve end {off:.4} m apart"));
         }
         match &events {
-            None if judged => wrong.push("solve is not known to end on its path".to_owned()),
-            None => {}
+            None => wrong.push("solve is not known to end on its path".to_owned()),
             Some(events) => {
                 let jumps = [events.jump, path.jump].map(|jump| jump.map(|jump| jump.factor));
                 let buckles = [&events.bifurcations, &path.bifurcations].map(|b| b.first().map(|b| b.factor));
@@ -188,8 +126,8 @@ fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, Stri
         if *auto.solve() != Status::Converged {
             wrong.push(format!("auto: {:?}", auto.status()));
         }
-        let off = distance(auto.displacement(), simulation.displacement());
-        if off > auto_off * largest {
+        let off = largest_distance(auto.displacement(), simulation.displacement());
+        if off > 0.02 * largest {
             wrong.push(format!("auto ends {off:.4} m off newton, of {largest:.3} m"));
         }
     }
@@ -217,7 +155,7 @@ fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, Stri
         }
     }
     note += &format!(", small steps to {:.4}, {:?}", small.factor, small.bifurcations);
-    wrong.extend(if judged { events_off(&small) } else { Vec::new() });
+    wrong.extend(events_off(&small));
     let judges_end = small.factor == 1.0 && reported.is_none();
     // EI/L is the energy of a turn of both ends by about a right angle.
     let beam = scene.beam.as_ref().unwrap();
@@ -229,7 +167,7 @@ fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, Stri
         wrong.push(format!("small steps: work {:?} J, {} J stored", small.work, small.elastic));
     }
     if is_solved && judges_end {
-        let off = distance(&small.u, simulation.displacement());
+        let off = largest_distance(&small.u, simulation.displacement());
         if off > 1e-3 * largest + 1e-9 * size {
             wrong.push(format!("solve ends {off:.4} m off small steps, of {largest:.3} m"));
         }
@@ -252,31 +190,23 @@ fn differences(scene: &Scene, auto_off: f64, judged: bool) -> (Vec<String>, Stri
     (wrong, note)
 }
 
-/// `solve`, `curve` and small steps agree on the end of the path and its events, and the work is the stored energy.
+/// Supports that turn and move, and points that are held: `solve`, `curve` and small steps agree on the end of the path
+/// and its events, and the work is the stored energy.
 #[test]
-fn random_bodies_end_on_their_path() {
-    // In the first ones, the path turns sharply just below the full load; then, bifurcations hide each other, or rounding
-    // beside them hides the path.
-    type Sweep = (fn(u64) -> Scene, u64, u64, &'static [u64], f64, bool);
-    let sweeps: [Sweep; 3] = [
-        (random::scene, 7000, 300, &[], 0.02, false),
-        (near_critical, 0, 200, &[20_097, 20_111, 30_084, 64_114], 0.05, true),
-        (scene, 500, 300, &[5210, 5072, 2180], 0.02, true),
-    ];
-    for (scene, first, count, hard, auto_off, is_judged) in sweeps {
-        let (mut judged, mut all) = (0, Vec::new());
-        for mut scene in (first_seed(first)..).take(share(count) as usize).chain(hard.iter().copied()).map(scene) {
-            scene.solver.accept_after = 0;
-            if Simulation::new(&scene).is_err() {
-                continue;
-            }
-            judged += 1;
-            let (wrong, note) = std::panic::catch_unwind(|| differences(&scene, auto_off, is_judged))
-                .unwrap_or_else(|_| (vec!["panicked".to_owned()], String::new()));
-            println!("{}: {note} {wrong:?}", scene.name);
-            all.extend(wrong.into_iter().map(|wrong| format!("{}: {wrong}", scene.name)));
+fn random_bodies_with_moved_supports_end_on_their_path() {
+    let (mut judged, mut all) = (0, Vec::new());
+    // In the last two, bifurcations hide each other; beside those of the one before, rounding hides the path.
+    for scene in (first_seed(500)..).take(share(300) as usize).chain([5210, 5072, 2180]).map(scene) {
+        if Simulation::new(&scene).is_err() {
+            continue;
         }
-        assert!(all.is_empty(), "{all:#?}");
-        assert!(judged >= 9 * share(count) / 10, "{judged} judged");
+        judged += 1;
+        let (wrong, note) = std::panic::catch_unwind(|| differences(&scene))
+            .unwrap_or_else(|_| (vec!["panicked".to_owned()], String::new()));
+        println!("{}: {note} {wrong:?}", scene.name);
+        all.extend(wrong.into_iter().map(|wrong| format!("{}: {wrong}", scene.name)));
     }
+    println!("{judged} judged");
+    assert!(all.is_empty(), "{all:#?}");
+    assert!(judged >= 9 * share(300) / 10, "{judged} judged");
 }
