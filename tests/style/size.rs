@@ -10,8 +10,8 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_803),
-    ("study", &["src/study"], 6_889),
+    ("app", &["src/app"], 24_790),
+    ("study", &["src/study"], 6_887),
     ("model", &["src/model", "src/scene"], 3_157),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_551),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_753),
+    ("tests", &["tests"], 19_849),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_564;
+const SRC: usize = 59_549;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
