@@ -29,7 +29,7 @@ fn have_ended(lab: &Lab) -> bool {
 
 fn are_judged(lab: &Lab) -> bool {
     let has_failed = |pane: &Pane| pane.end().is_some_and(|end| !end.status.is_success());
-    let judged = |pane: &Pane| pane.error_percent().is_some() && pane.seconds().is_some() || has_failed(pane);
+    let judged = |pane: &Pane| pane.error_percent.is_some() && pane.seconds().is_some() || has_failed(pane);
     // The error of a live reference comes before that of the reference.
     have_ended(lab) && !lab.is_computing() && lab.panes().iter().all(judged)
 }
@@ -52,10 +52,10 @@ fn panes_agree_with_solves(ui: &Ui) {
             continue;
         }
         let error = reference.first().unwrap().error_percent(&alone.solution().probes[0]).unwrap();
-        assert!((pane.error_percent().unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting());
+        assert!((pane.error_percent.unwrap() - error).abs() < 1e-6, "{}: {error}", pane.setting);
         let said = ui.texts().into_iter().find(|l| l.starts_with(&format!("Pane {}: ", number + 1))).unwrap();
         let iterations = count(alone.iterations(), "iteration");
-        for part in [format!("error {}", percent(error)), iterations, pane.setting().of(lab.scene()).to_string()] {
+        for part in [format!("error {}", percent(error)), iterations, pane.setting.of(lab.scene()).to_string()] {
             assert!(said.contains(&part), "{said}: {part}");
         }
     }
@@ -68,13 +68,13 @@ fn presets_make_panes_with_the_results_of_independent_solves() {
     ui.key_press(Key::K);
     ui.step();
     wait_for_panes(&mut ui);
-    let methods: Vec<_> = ui.state().panes().iter().map(|pane| pane.setting().method).collect();
+    let methods: Vec<_> = ui.state().panes().iter().map(|pane| pane.setting.method).collect();
     assert_eq!(methods, [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton].map(Some));
     panes_agree_with_solves(&ui);
     // The scene's own 30 kN is too large for the fixed-point iteration of more accurate elements.
     ui.click_for("t3 | t6 | q4", 1);
     wait_for_panes(&mut ui);
-    let elements: Vec<_> = ui.state().panes().iter().map(|pane| pane.setting().element).collect();
+    let elements: Vec<_> = ui.state().panes().iter().map(|pane| pane.setting.element).collect();
     assert_eq!(elements, [ElementKind::T3, ElementKind::T6, ElementKind::Q4].map(Some));
     panes_agree_with_solves(&ui);
     // Panes follow the panel in all settings except their own.
@@ -100,11 +100,11 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
     assert_eq!((&stopped.status, stopped.iterations), (&Status::Running, 4));
     // If the load changes during a solve, the result is that of the last load, and no result of one load is judged by the
     // reference solution of another: that would be an error of some 20 %. The reference that follows the load is up to 0.1 % off.
-    let before = lab.panes()[0].error_percent().unwrap();
+    let before = lab.panes()[0].error_percent.unwrap();
     for force in [-2000.0, -1500.0] {
         set(&mut ui, "cantilever", &format!("load.0.force=[0,{force}]"));
         for _ in 0..4 {
-            let error = ui.state().panes()[0].error_percent();
+            let error = ui.state().panes()[0].error_percent;
             assert!(
                 error.is_none_or(|error| (error - before).abs() < 0.2 * before + 0.1),
                 "{error:?} %, before {before} %"
@@ -119,9 +119,9 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
 
 fn panes_agree_with_solves_of(lab: &Lab, number: usize) -> Simulation {
     let pane = &lab.panes()[number];
-    let alone = ended(&pane.setting().apply(lab.scene()));
+    let alone = ended(&pane.setting.apply(lab.scene()));
     let end = pane.end().unwrap();
-    assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting());
+    assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting);
     alone
 }
 
@@ -170,8 +170,8 @@ fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
     let drawn = picture(&gpu, ui.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     let lab = ui.state();
     let background = lab.frame().background;
-    let at_rest = lab.panes().iter().map(|pane| (pane.place(), pane.simulation()));
-    let moving = lab.motion_panes().iter().map(|pane| (pane.place(), pane.simulation()));
+    let at_rest = lab.panes().iter().map(|pane| (pane.place, pane.simulation()));
+    let moving = lab.motion_panes().iter().map(|pane| (pane.place, pane.simulation()));
     for (place, simulation) in at_rest.chain(moving).filter_map(|(place, simulation)| place.zip(simulation)) {
         let mesh = simulation.system().mesh();
         let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
@@ -232,7 +232,7 @@ fn panes_of_motions_magnify_the_displacement() {
 fn panning_one_pane_pans_all() {
     let mut ui = compared("article", "linear,warped,newton,newton:t6");
     let before = ui.camera();
-    let from = ui.state().panes()[1].place().unwrap().left_bottom() + vec2(20.0, -20.0);
+    let from = ui.state().panes()[1].place.unwrap().left_bottom() + vec2(20.0, -20.0);
     ui.hold(from);
     ui.move_to(from + vec2(15.0, -9.0));
     ui.release(from + vec2(15.0, -9.0));
@@ -259,7 +259,7 @@ fn compare_fits_small_windows() {
                 assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?}");
             }
             ui.contains([format!("Close pane {number}")]);
-            let place = ui.state().panes()[number - 1].place().unwrap();
+            let place = ui.state().panes()[number - 1].place.unwrap();
             let is_large = place.width() >= 260.0 && place.height() >= 90.0;
             assert!(window.contains_rect(place) && is_large, "{size:?}: {place:?}");
         }
@@ -277,7 +277,7 @@ fn pickers_change_their_pane_alone() {
     let mut ui = compared("article", "linear,newton");
     pick(&mut ui, "Pane 2 mesh", "20×4");
     wait_for_panes(&mut ui);
-    let settings: Vec<PaneSetting> = ui.state().panes().iter().map(|pane| *pane.setting()).collect();
+    let settings: Vec<PaneSetting> = ui.state().panes().iter().map(|pane| pane.setting).collect();
     assert_eq!(settings, parse_panes("linear,newton:20x4").unwrap());
     assert_eq!(ui.scene().beam.as_ref().unwrap().cells, [5, 1]);
     panes_agree_with_solves(&ui);
@@ -292,7 +292,7 @@ fn beginning(ui: &Ui, begin: &str) -> Vec<(Pos2, String)> {
 #[test]
 fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     let mut ui = compared("article", "linear,warped,newton:t6");
-    let places: Vec<Rect> = ui.state().panes().iter().map(|pane| pane.place().unwrap()).collect();
+    let places: Vec<Rect> = ui.state().panes().iter().map(|pane| pane.place.unwrap()).collect();
     // Near the clamp, the bodies of all panes overlap.
     let pane = ui.state().panes()[1].simulation().unwrap();
     let rest = Vector2::new(1.0, 0.1);

@@ -190,7 +190,7 @@ fn panes_have_the_numbers_of_solve() {
         let bar = ui.state().seconds_from_rest();
         for (number, pane) in ui.state().panes().iter().enumerate() {
             let json = solve(pane.scene().unwrap());
-            let setting = pane.setting().of(ui.scene());
+            let setting = pane.setting.of(ui.scene());
             let what = format!("{id} at {factor}, {setting}");
             let header = shown.starting_with(&format!("Pane {}: ", number + 1)).unwrap();
             if json["status"] != "converged" {

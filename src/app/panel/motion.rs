@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
         let mut button = |speed: f64, word: &str, tip: &str| {
-            let chosen = (input.session.playback.clock.speed() - speed).abs() < 1e-9;
+            let chosen = (input.session.playback.clock.speed - speed).abs() < 1e-9;
             if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 panel.actions.push(Action::Speed(speed));
             }
@@ -72,7 +72,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         ui.label(tr("Compare integrators"))
             .on_hover_text(tr("The same motion with other integrators: outlines in the view, lines in the plots"));
         for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
-            let is_shown = input.session.playback.companions().iter().any(|c| c.integrator == entry.kind);
+            let is_shown = input.session.playback.companions.iter().any(|c| c.integrator == entry.kind);
             if ui.add(option_button(is_shown, tr(entry.id))).on_hover_text(tr(entry.about)).clicked() {
                 panel.actions.push(Action::Compare(entry.kind));
             }

@@ -163,7 +163,7 @@ fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, (name, what): (&str, 
 fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>) {
     row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
     let clock = &input.session.playback.clock;
-    let factor = match clock.factor() {
+    let factor = match clock.factor {
         Some(factor) if clock.lags() => fill!("%{factor} of real time: slower than asked", factor = fraction(factor)),
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
         None => UNKNOWN.to_owned(),

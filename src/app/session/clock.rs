@@ -39,15 +39,15 @@ pub(crate) fn fraction(speed: f64) -> String {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RealTimeClock {
     /// Requested playback speed, simulated seconds per second.
-    speed: f64,
+    pub speed: f64,
     /// Time of the last frame, s.
     last: Option<f64>,
     /// Simulated time that is due but not yet computed, s.
     owed: f64,
     /// Start of the current measuring interval, s, and simulated time since then, s.
     counted: (f64, f64),
-    /// Measured real-time factor: simulated seconds per second.
-    factor: Option<f64>,
+    /// Measured real-time factor, simulated seconds per second; `None` at rest, and during the first half second.
+    pub factor: Option<f64>,
 }
 
 /// Time steps of one frame: those that are due, limited by the available time, but at least one.
@@ -74,20 +74,10 @@ impl Default for RealTimeClock {
 }
 
 impl RealTimeClock {
-    /// Returns the requested playback speed, simulated seconds per second.
-    pub(crate) fn speed(&self) -> f64 {
-        self.speed
-    }
-
     /// Sets the requested playback speed, simulated seconds per second.
     pub(crate) fn set_speed(&mut self, speed: f64) {
         self.speed = speed.clamp(SLOWEST, 1.0);
         self.rest();
-    }
-
-    /// Returns the measured real-time factor; `None` at rest, and during the first half second.
-    pub(crate) fn factor(&self) -> Option<f64> {
-        self.factor
     }
 
     /// Returns `true` if the machine is too slow for the requested speed.
@@ -175,7 +165,7 @@ mod tests {
             made += steps.made;
         }
         assert!(made < 125);
-        assert!(clock.lags() && clock.factor().is_some_and(|f| (0.3..0.5).contains(&f)), "{clock:?}");
+        assert!(clock.lags() && clock.factor.is_some_and(|f| (0.3..0.5).contains(&f)), "{clock:?}");
     }
 
     #[test]

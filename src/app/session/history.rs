@@ -29,10 +29,10 @@ pub(crate) struct MotionSample {
 /// Samples and moments ordered by time.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    samples: VecDeque<MotionSample>,
+    pub samples: VecDeque<MotionSample>,
     /// Name of the probe.
-    probe: String,
-    moments: VecDeque<Moment>,
+    pub probe: String,
+    pub moments: VecDeque<Moment>,
     /// Dropped moments whose memory is reused.
     spare: Vec<Moment>,
 }
@@ -74,16 +74,6 @@ impl History {
             position: see(simulation.system().mesh().nodes()) + displacement,
             displacement,
         });
-    }
-
-    /// Returns all samples, the oldest first.
-    pub(crate) fn samples(&self) -> &VecDeque<MotionSample> {
-        &self.samples
-    }
-
-    /// Returns the name of the recorded probe.
-    pub(crate) fn probe(&self) -> &str {
-        &self.probe
     }
 
     /// Returns the samples of the last `duration` seconds, the oldest first.
@@ -135,11 +125,6 @@ impl History {
             None => motion.moment(),
         };
         self.moments.push_back(recorded);
-    }
-
-    /// Returns the moments, the oldest first.
-    pub(crate) fn moments(&self) -> &VecDeque<Moment> {
-        &self.moments
     }
 
     /// Returns the moment at exactly `time`, s.
@@ -196,10 +181,10 @@ mod tests {
     #[test]
     fn memory_and_count_are_bounded() {
         let (past, _) = after(20, 7);
-        let times: Vec<f64> = past.moments().iter().map(|moment| moment.state().time()).collect();
+        let times: Vec<f64> = past.moments.iter().map(|moment| moment.state().time()).collect();
         assert_eq!(times, [13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0], "the last seven");
-        assert!(after(20, 0).0.moments().len() <= 1, "no room for two");
-        assert_eq!(after(1000, 5000).0.moments().len(), MAX_MOMENTS);
+        assert!(after(20, 0).0.moments.len() <= 1, "no room for two");
+        assert_eq!(after(1000, 5000).0.moments.len(), MAX_MOMENTS);
     }
 
     #[test]

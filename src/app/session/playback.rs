@@ -26,12 +26,13 @@ pub(crate) struct Playback {
     pub clock: RealTimeClock,
     pub history: History,
     /// Time of the displayed moment, s; `None` if it is the latest.
-    shown: Option<f64>,
+    pub shown: Option<f64>,
     /// Playing time since the start, s: simulated time over speed.
-    played: f64,
+    pub played: f64,
     /// Playing time at which the last moment was recorded, s.
     kept: f64,
-    companions: Vec<Companion>,
+    /// The same motion under other integrators.
+    pub companions: Vec<Companion>,
     /// Integrators that became unstable and were removed from the comparison, until they are reported, with their longest
     /// stable step, s, if they have one.
     pub unstable: Vec<(IntegratorKind, Option<f64>)>,
@@ -62,13 +63,13 @@ impl Playback {
 
     fn make_step(&mut self, simulation: &mut Simulation) {
         self.discard_future();
-        if self.history.samples().is_empty() {
+        if self.history.samples.is_empty() {
             self.history.record(simulation);
             self.keep_moment(simulation);
         }
         let before = simulation.state().time();
         simulation.step();
-        self.played += (simulation.state().time() - before) / self.clock.speed();
+        self.played += (simulation.state().time() - before) / self.clock.speed;
         self.history.record(simulation);
         for companion in &mut self.companions {
             companion.simulation.step();
@@ -98,19 +99,9 @@ impl Playback {
 
     /// Returns the times of the first and the last recorded moment, s; `None` if there is only one or none.
     pub(crate) fn span(&self) -> Option<[f64; 2]> {
-        let moments = self.history.moments();
+        let moments = &self.history.moments;
         let ends = [moments.front()?.state().time(), moments.back()?.state().time()];
         (ends[0] < ends[1]).then_some(ends)
-    }
-
-    /// Returns the time of the displayed moment, s; `None` if it is the latest.
-    pub(crate) fn shown_time(&self) -> Option<f64> {
-        self.shown
-    }
-
-    /// Returns the playing time since the start, s.
-    pub(crate) fn played(&self) -> f64 {
-        self.played
     }
 
     /// Displays the recorded moment closest to `time`, s. Later moments are kept until the next step.
@@ -129,7 +120,7 @@ impl Playback {
     }
 
     fn keep_latest(&mut self, simulation: &Simulation) {
-        if self.shown.is_none() && !self.history.samples().is_empty() {
+        if self.shown.is_none() && !self.history.samples.is_empty() {
             self.keep_moment(simulation);
         }
     }
@@ -153,7 +144,7 @@ impl Playback {
     fn discard_future(&mut self) {
         let shown = self.shown.take();
         let is_whole = self.companions.iter().all(|companion| !companion.is_absent);
-        let latest = self.history.moments().back().map(|moment| moment.state().time()).filter(|_| !is_whole);
+        let latest = self.history.moments.back().map(|moment| moment.state().time()).filter(|_| !is_whole);
         let Some(time) = shown.or(latest) else { return };
         self.history.truncate_after(time);
         let here = self.history.at(time);
@@ -171,11 +162,6 @@ impl Playback {
         self.history.clear_moments();
         self.companions.iter_mut().for_each(|companion| companion.history.clear_moments());
         (self.shown, self.kept) = (None, self.played);
-    }
-
-    /// Returns the same motion under other integrators.
-    pub(crate) fn companions(&self) -> &[Companion] {
-        &self.companions
     }
 
     /// Returns `true` if a companion is still moving.
@@ -267,7 +253,7 @@ mod tests {
         let mut states = Vec::new();
         for _ in 0..5 {
             playback.step(&mut simulation);
-            let companion = playback.companions()[0].simulation.state().clone();
+            let companion = playback.companions[0].simulation.state().clone();
             states.push([simulation.state().clone(), companion]);
         }
         (playback, simulation, states)
@@ -281,19 +267,19 @@ mod tests {
             for [own, other] in states.iter().rev() {
                 playback.show_moment(own.time(), &mut simulation);
                 assert!(simulation.state() == own, "{}: {}", integrator.id, own.time());
-                let companion = &playback.companions()[0];
+                let companion = &playback.companions[0];
                 assert!(!companion.is_absent && companion.simulation.state() == other, "{}", own.time());
                 let at_present = own.time() == states[4][0].time();
-                assert_eq!(playback.shown_time().is_none(), at_present);
+                assert_eq!(playback.shown.is_none(), at_present);
             }
             // Continuing from an earlier moment repeats the same steps.
             playback.show_moment(states[2][0].time(), &mut simulation);
             playback.step(&mut simulation);
             let distance = |a: &State, b: &State| (a.displacement()[1] - b.displacement()[1]).norm();
             assert!(distance(simulation.state(), &states[3][0]) < 1e-9, "{}", integrator.id);
-            assert!(distance(playback.companions()[0].simulation.state(), &states[3][1]) < 1e-9);
+            assert!(distance(playback.companions[0].simulation.state(), &states[3][1]) < 1e-9);
             assert_eq!(playback.span().map(|span| span[1]), Some(simulation.state().time()), "the future is gone");
-            assert_eq!(playback.history.samples().back().map(|s| s.time), Some(simulation.state().time()));
+            assert_eq!(playback.history.samples.back().map(|s| s.time), Some(simulation.state().time()));
         }
     }
 
@@ -301,10 +287,10 @@ mod tests {
     fn a_companion_is_absent_before_it_was_added() {
         let (mut playback, mut simulation, _) = falling(IntegratorKind::TrBdf2);
         playback.show_moment(0.02, &mut simulation);
-        assert!(playback.companions()[0].is_absent);
+        assert!(playback.companions[0].is_absent);
         playback.step(&mut simulation);
         let is_along = |playback: &Playback, simulation: &Simulation| {
-            let companion = &playback.companions()[0];
+            let companion = &playback.companions[0];
             !companion.is_absent && companion.simulation.state().time() == simulation.state().time()
         };
         assert!(is_along(&playback, &simulation));
@@ -314,7 +300,7 @@ mod tests {
         playback.show_moment(0.01, &mut simulation);
         playback.toggle(IntegratorKind::ImplicitEuler, &simulation);
         playback.show_moment(1.0, &mut simulation);
-        assert!(playback.companions()[0].is_absent && playback.shown_time().is_none());
+        assert!(playback.companions[0].is_absent && playback.shown.is_none());
         playback.step(&mut simulation);
         assert!(is_along(&playback, &simulation));
     }

@@ -110,7 +110,7 @@ impl Lab {
 
     /// Fixes the camera and the range of the colour map.
     pub(crate) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
-        self.desk.viewport.set_camera(camera);
+        self.desk.viewport.camera.set_camera(camera);
         self.desk.view.fixed_range = Some(range);
     }
 
@@ -150,7 +150,7 @@ impl Lab {
     /// Returns the area of the view in the window, points.
     #[must_use]
     pub fn view_rect(&self) -> Rect {
-        self.desk.viewport.rect()
+        self.desk.viewport.rect
     }
 
     /// Returns the tips of the load arrows in the window, points, with the index of each load in the scene.
@@ -178,7 +178,7 @@ impl Lab {
     pub fn camera(&self) -> Camera {
         match self.desk.view.mode {
             Mode::Compare => self.desk.comparison().camera(),
-            _ => self.desk.viewport.camera(),
+            _ => self.desk.viewport.camera.shown,
         }
     }
 
@@ -213,13 +213,13 @@ impl Lab {
 
     /// Turns the animation of the camera on, as in a window, or off, as in images.
     pub fn set_easing(&mut self, eases: bool) {
-        self.desk.viewport.set_easing(eases);
+        self.desk.viewport.eases = eases;
     }
 
     /// Returns the pinned material point, whose values are shown over the body.
     #[must_use]
     pub fn probed(&self) -> Option<MaterialPoint> {
-        self.desk.viewport.probe()
+        self.desk.viewport.probe
     }
 
     /// Sets the number of unknowns above which a model is meshed and solved in the background.

@@ -27,7 +27,9 @@ impl Lab {
         }
         let mesh = session.simulation().system().mesh();
         if changed.mesh {
-            viewport.set_mesh(mesh);
+            // A camera set by the user is kept.
+            viewport.camera.set_body(mesh.bounds().into());
+            viewport.probe = None;
         }
         if changed.body || changed.document || changed.restart {
             viewport.clear_swept();
@@ -71,7 +73,7 @@ impl Lab {
             Action::Escape if self.desk.view.why => self.desk.view.why = false,
             Action::Cancel => self.cancel(),
             Action::Escape if self.desk.session.is_working() => self.cancel(),
-            Action::Escape => self.desk.viewport.clear_probe(),
+            Action::Escape => self.desk.viewport.probe = None,
             Action::Edit(label, scene) => {
                 let before = self.scene().loads.len();
                 let applied = self.desk.session.apply(Edit::Scene(label, scene));
@@ -120,7 +122,7 @@ impl Lab {
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
-                self.desk.viewport.fit();
+                self.desk.viewport.camera.fit();
                 self.desk.compare.fit();
                 self.desk.motions.fit();
             }

@@ -286,7 +286,7 @@ impl Lab {
                     *simulation.status() == Status::Converged && simulation.mouse_spring().is_none()
                 })
                 .map(|path| path.to(session.simulation().displacement())),
-            value_range: viewport.body().value_range(),
+            value_range: viewport.body.value_range(),
             scene: session.scene(),
             original: &session.document().original,
             opening: OpeningLoads::of(&session.document().opened),

@@ -201,7 +201,7 @@ impl Lab {
     /// Shows the compared panes in place of the body.
     fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let rect = ui.available_rect_before_wrap();
-        self.desk.viewport.set_rect(rect);
+        self.desk.viewport.rect = rect;
         // The reference solution does not depend on the iteration of the panel's own setting.
         let is_wanted = !self.desk.session.is_motion() && !ui.input(|i| i.pointer.any_down());
         if is_wanted && !self.desk.compare.goes_on() && self.desk.session.request_reference() {
@@ -227,7 +227,7 @@ impl Lab {
             scene: session.scene(),
             view,
             direction: panel.force_direction(),
-            eases: viewport.eases(),
+            eases: viewport.eases,
             reference: session.facts().reference.get(session.scene()).or(live.map(|live| &live.reference)),
             live,
             chosen: measure.budget.chosen(session.scene()),
@@ -256,7 +256,7 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
-        let rect = viewport.rect();
+        let rect = viewport.rect;
         let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
         actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
         self.desk.session.grab(interaction.grab);
@@ -265,7 +265,7 @@ impl Lab {
         viewport.update(ui.visuals(), &content);
         if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.displace(|points| lesson.learn.place(session.drawn(), session.geometry(), points));
+            viewport.body.displace(|points| lesson.learn.place(session.drawn(), session.geometry(), points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -285,7 +285,7 @@ impl Lab {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
-            let taken = (overlay::scale_bar_width(&self.desk.viewport.camera()), overlay::has_legend(rect.size()));
+            let taken = (overlay::scale_bar_width(&self.desk.viewport.camera.shown), overlay::has_legend(rect.size()));
             let now = self.simulation().state().time();
             time_line::show(ui, rect, taken, (&self.desk.session.playback, now), actions);
         }
@@ -294,8 +294,8 @@ impl Lab {
             let view = learn::CardView {
                 simulation: session.drawn(),
                 geometry: session.geometry(),
-                points: viewport.body().points(),
-                camera: viewport.camera(),
+                points: &viewport.body.points,
+                camera: viewport.camera.shown,
                 rect,
                 palette: Palette::new(ui.visuals()),
             };

@@ -26,8 +26,8 @@ impl Lab {
         own.view.mode = Mode::Explore;
         let Some(session) = session else { return };
         let mut desk = Desk::new(session);
-        desk.viewport.set_easing(own.viewport.eases());
-        desk.viewport.set_rect(own.viewport.rect());
+        desk.viewport.eases = own.viewport.eases;
+        desk.viewport.rect = own.viewport.rect;
         // A card has the controls that it needs, so the panel is closed until the user opens it.
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
@@ -80,7 +80,7 @@ impl Lab {
         view.color_with(setup.field);
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
-        viewport.fit();
+        viewport.camera.fit();
         session.set_running(!setup.waits);
         if setup.waits {
             self.reset();

@@ -168,7 +168,7 @@ fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
         true => (tr("slower than asked").into(), palette.error),
         false => (Cow::default(), palette.text),
     };
-    let value = match clock.factor() {
+    let value = match clock.factor {
         Some(factor) => format!("× {}", fraction(factor)),
         None if input.session.is_running() => UNKNOWN.to_owned(),
         None => tr("paused").to_owned(),

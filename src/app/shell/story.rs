@@ -179,7 +179,7 @@ impl Lab {
         let Some(story) = self.story.take() else { return };
         let Story { view, lesson, .. } = *story;
         (self.desk.view, self.lesson) = (view, lesson);
-        self.desk.viewport.fit();
+        self.desk.viewport.camera.fit();
         if self.lesson.is_some() {
             return self.set_card_up();
         }
@@ -199,10 +199,10 @@ impl Lab {
         let Desk { session, viewport, .. } = &mut self.desk;
         let (low, high) = session.simulation().system().mesh().bounds();
         let (low, high) = (low - Vector2::new(0.0, BEYOND.y), high + Vector2::new(BEYOND.x, 0.0));
-        let rect = viewport.rect();
+        let rect = viewport.rect;
         let size @ [_, height] = [rect.width(), rect.height()].map(f64::from);
         let [top, bottom] = MARGINS.map(|part| part * height);
-        viewport.set_camera(Camera::fit(low, high, size, Margins { sides: 76.0, top, bottom }));
+        viewport.camera.set_camera(Camera::fit(low, high, size, Margins { sides: 76.0, top, bottom }));
     }
 
     /// Paints the caption, and in the last part a ring around the tip of the arrow.

@@ -23,13 +23,13 @@ pub(crate) struct BodyMesh {
     /// Positions of the nodes, m.
     pub nodes: Vec<Vector2<f64>>,
     /// Positions of the drawn points, m.
-    points: Vec<Vector2<f64>>,
+    pub points: Vec<Vector2<f64>>,
     /// Factor of the displacement of nodes and points.
     magnification: f64,
     /// Revision number of points and values.
-    stamp: u64,
+    pub stamp: u64,
     /// Displayed field.
-    field: InterpolatedField,
+    pub field: InterpolatedField,
     /// Reference of the first probe in the solution that the field is the distance from; `None` for other fields.
     reference: Option<ProbeReference>,
     /// Components of the field at the drawn points.
@@ -142,16 +142,6 @@ impl BodyMesh {
         self.range = view.fixed_range.unwrap_or_else(follows);
     }
 
-    /// Returns the positions of the drawn points, m.
-    pub(crate) fn points(&self) -> &[Vector2<f64>] {
-        &self.points
-    }
-
-    /// Returns the revision number of points and values.
-    pub(crate) fn stamp(&self) -> u64 {
-        self.stamp
-    }
-
     /// Moves the drawn points until the next [`Self::update`].
     pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
         place(&mut self.points);
@@ -179,11 +169,6 @@ impl BodyMesh {
     /// Returns `true` if the field has a value at a drawn point.
     pub(crate) fn has_values(&self) -> bool {
         self.components.iter().flatten().any(|components| self.field.value(*components).is_some())
-    }
-
-    /// Returns the value of the field at a material point.
-    pub(crate) fn value_at(&self, mesh: &Mesh, point: MaterialPoint) -> Option<f64> {
-        self.field.at(mesh, point)
     }
 
     /// Returns the input of the body's render pass.

@@ -20,10 +20,11 @@ pub(crate) struct CameraController {
     /// Camera set by the user; `None` means fit to the body.
     own: Option<Camera>,
     /// Box that the camera fits, m.
-    whole: Box2,
+    pub whole: Box2,
     /// Box of the body at rest, m.
     rest: Box2,
-    shown: Camera,
+    /// Current camera.
+    pub shown: Camera,
     /// `true` until the first frame of a body, which is shown without animation.
     is_new: bool,
 }
@@ -33,11 +34,6 @@ impl CameraController {
     pub(crate) fn new(rest: Box2) -> Self {
         let camera = Camera { center: (rest[0] + rest[1]) * 0.5, scale: 1.0 };
         Self { own: None, whole: rest, rest, shown: camera, is_new: true }
-    }
-
-    /// Returns the current camera.
-    pub(crate) fn camera(&self) -> Camera {
-        self.shown
     }
 
     /// Changes to a body with the rest box `rest`, m. A camera set by the user is kept.
@@ -52,11 +48,6 @@ impl CameraController {
         if whole.iter().all(sound) {
             self.whole = whole;
         }
-    }
-
-    /// Returns the box that the camera fits, m.
-    pub(crate) fn whole(&self) -> Box2 {
-        self.whole
     }
 
     /// Returns to the camera that fits the whole body.
@@ -114,7 +105,7 @@ mod tests {
     const VIEW: [f64; 2] = [800.0, 600.0];
 
     fn fitted(controller: &CameraController) -> Camera {
-        let [low, high] = controller.whole();
+        let [low, high] = controller.whole;
         Camera::fit(low, high, VIEW, Margins::default())
     }
 
@@ -122,7 +113,7 @@ mod tests {
     fn the_first_camera_is_set_at_once_and_later_ones_ease() {
         let mut controller = CameraController::new(REST);
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
-        let first = controller.camera();
+        let first = controller.shown;
         assert_eq!(first, fitted(&controller));
         controller.set_whole([Vector2::new(0.0, -8.0), Vector2::new(10.0, 0.5)]);
         let goal = fitted(&controller);
@@ -130,13 +121,13 @@ mod tests {
         let mut last = distance(first);
         let mut frames = 0;
         while controller.aim(goal, Some(0.016)) {
-            assert!(distance(controller.camera()) < last, "it does not come nearer");
-            let scale = controller.camera().scale;
+            assert!(distance(controller.shown) < last, "it does not come nearer");
+            let scale = controller.shown.scale;
             assert!(scale >= goal.scale.min(first.scale) && scale <= goal.scale.max(first.scale), "it overshoots");
-            last = distance(controller.camera());
+            last = distance(controller.shown);
             frames += 1;
         }
-        assert_eq!(controller.camera(), goal);
+        assert_eq!(controller.shown, goal);
         assert!((10..200).contains(&frames), "{frames} frames");
     }
 
@@ -150,7 +141,7 @@ mod tests {
             for _ in 0..frames {
                 controller.aim(fitted(&controller), Some(0.12 / f64::from(frames)));
             }
-            controller.camera()
+            controller.shown
         };
         let (one, many) = (after(1), after(40));
         assert!((one.scale / many.scale - 1.0).abs() < 1e-9 && (one.center - many.center).norm() < 1e-9);
@@ -164,10 +155,10 @@ mod tests {
         controller.set_camera(own);
         controller.set_whole([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
-        assert_eq!(controller.camera(), own);
+        assert_eq!(controller.shown, own);
         controller.fit();
         assert!(controller.aim(fitted(&controller), Some(0.016)));
-        assert_ne!(controller.camera(), own);
+        assert_ne!(controller.shown, own);
     }
 
     #[test]
@@ -187,6 +178,6 @@ mod tests {
     fn a_state_that_is_not_finite_is_not_followed() {
         let mut controller = CameraController::new(REST);
         controller.set_whole([Vector2::new(f64::NAN, 0.0), Vector2::new(1.0, 1.0)]);
-        assert_eq!(controller.whole(), REST);
+        assert_eq!(controller.whole, REST);
     }
 }

@@ -154,7 +154,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     if let Some(linear) = overlay.ghost {
         draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
-    for companion in overlay.playback.companions().iter().filter(|companion| !companion.is_absent) {
+    for companion in overlay.playback.companions.iter().filter(|companion| !companion.is_absent) {
         let u = companion.simulation.displacement();
         let color = palette.integrator(companion.integrator);
         draw(&|n| drawn(n, u), Stroke::new(1.5, color));
@@ -314,11 +314,11 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     const DURATION: f64 = 2.0;
     const MAX_PIECES: usize = 400;
     let playback = overlay.playback;
-    let companions = playback.companions().iter().filter(|companion| !companion.is_absent);
+    let companions = playback.companions.iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
     for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
-        let end = playback.shown_time().unwrap_or(f64::INFINITY);
-        let end = end.min(history.samples().back().map_or(0.0, |s| s.time));
+        let end = playback.shown.unwrap_or(f64::INFINITY);
+        let end = end.min(history.samples.back().map_or(0.0, |s| s.time));
         let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
         let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(drawn).collect();
         let stride = points.len().div_ceil(MAX_PIECES).max(1);
@@ -617,7 +617,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         lines.push((palette.text, None, magnified(overlay.magnification)));
     }
     lines.push((palette.solution(overlay.scene), Some(LegendMark::Line), own));
-    for companion in overlay.playback.companions() {
+    for companion in &overlay.playback.companions {
         lines.push((
             palette.integrator(companion.integrator),
             Some(LegendMark::Line),

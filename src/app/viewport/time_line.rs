@@ -52,7 +52,7 @@ pub(crate) fn show(
 
     let palette = Palette::new(ui.visuals());
     let painter = ui.painter_at(view);
-    let is_past = playback.shown_time().is_some();
+    let is_past = playback.shown.is_some();
     let x = line.left() + line.width() * ((now - first) / (last - first)).clamp(0.0, 1.0) as f32;
     let y = line.center().y;
     let hot = response.hovered() || response.has_focus() || response.dragged();

@@ -104,22 +104,22 @@ struct Crossing {
 /// View of one body.
 #[derive(Debug)]
 pub(crate) struct BodyView {
-    camera: CameraController,
+    pub camera: CameraController,
     margins: Margins,
-    /// `true` if camera movements are animated, as in a window.
-    eases: bool,
+    /// `true` if camera movements are animated, as in a window, and not in images.
+    pub eases: bool,
     /// Area in the window, points.
-    rect: Rect,
+    pub rect: Rect,
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
-    probe: Option<MaterialPoint>,
+    pub probe: Option<MaterialPoint>,
     /// Card of the pinned point, if it is shown.
     card: Option<PointCard>,
     /// Choices of the user on the cards of points.
     card_choice: CardChoice,
     /// Rest position of the point whose menu was opened, m.
     menu: Option<Vector2<f64>>,
-    body: BodyMesh,
+    pub body: BodyMesh,
     /// Factor of the drawn displacement.
     magnification: f64,
     /// Choice of that factor at the last update.
@@ -153,56 +153,6 @@ impl BodyView {
         }
     }
 
-    /// Turns the animation of the camera on, as in a window, or off, as in images.
-    pub(crate) fn set_easing(&mut self, eases: bool) {
-        self.eases = eases;
-    }
-
-    pub(crate) fn eases(&self) -> bool {
-        self.eases
-    }
-
-    pub(crate) fn rect(&self) -> Rect {
-        self.rect
-    }
-
-    pub(crate) fn set_rect(&mut self, rect: Rect) {
-        self.rect = rect;
-    }
-
-    pub(crate) fn camera(&self) -> Camera {
-        self.camera.camera()
-    }
-
-    pub(crate) fn body(&self) -> &BodyMesh {
-        &self.body
-    }
-
-    /// Returns the pinned material point, whose values are shown.
-    pub(crate) fn probe(&self) -> Option<MaterialPoint> {
-        self.probe
-    }
-
-    pub(crate) fn clear_probe(&mut self) {
-        self.probe = None;
-    }
-
-    /// Fits the camera to the whole body.
-    pub(crate) fn fit(&mut self) {
-        self.camera.fit();
-    }
-
-    /// Sets the camera; it no longer follows the body.
-    pub(crate) fn set_camera(&mut self, camera: Camera) {
-        self.camera.set_camera(camera);
-    }
-
-    /// Changes to another mesh. A camera set by the user is kept.
-    pub(crate) fn set_mesh(&mut self, mesh: &Mesh) {
-        self.camera.set_body(mesh.bounds().into());
-        self.probe = None;
-    }
-
     /// Changes to the body of another document.
     pub(crate) fn start(&mut self, mesh: &Mesh) {
         self.camera = CameraController::new(mesh.bounds().into());
@@ -224,11 +174,11 @@ impl BodyView {
     /// Returns the same with the camera and the area in pixels.
     pub(crate) fn view<'a>(&'a self, content: &Content<'a>, pixels_per_point: f32) -> View<'a> {
         let viewport = viewport(self.rect, pixels_per_point);
-        View { viewport, frame: self.frame(content), camera: self.camera() }
+        View { viewport, frame: self.frame(content), camera: self.camera.shown }
     }
 
     fn projection(&self) -> Projection {
-        Projection { camera: self.camera(), rect: self.rect }
+        Projection { camera: self.camera.shown, rect: self.rect }
     }
 
     /// Processes the pointer. A press hits the targets of the last frame, because that is what the user sees.
@@ -258,7 +208,7 @@ impl BodyView {
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
         let simulation = content.drawn();
         // A colour range that changed with every frame would hide the motion.
-        let played = self.swept.is_some().then(|| content.session.playback.played());
+        let played = self.swept.is_some().then_some(content.session.playback.played);
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
             self.swept = None;
         }
@@ -288,11 +238,6 @@ impl BodyView {
     fn drawn_positions<'b>(&self, body: &'b Simulation) -> impl Iterator<Item = Vector2<f64>> + 'b {
         let magnification = self.magnification;
         body.system().mesh().nodes().iter().zip(body.displacement()).map(move |(x, u)| x + u * magnification)
-    }
-
-    /// Moves the drawn points.
-    pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
-        self.body.displace(place);
     }
 
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
@@ -328,7 +273,7 @@ impl BodyView {
     pub(crate) fn misses_body(&self) -> bool {
         let projection = self.projection();
         let is_out = |point: &Vector2<f64>| !self.rect.contains(projection.point(*point));
-        self.camera.is_moved() && self.body.points().iter().any(is_out)
+        self.camera.is_moved() && self.body.points.iter().any(is_out)
     }
 
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
@@ -368,16 +313,16 @@ impl BodyView {
             let beside = || {
                 let at = self.projection().place(response.interact_pointer_pos()?);
                 let outline = &content.session.geometry().boundary;
-                content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera().scale)
+                content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera.shown.scale)
             };
             let clicked = self.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
             let (system, outline) = (content.simulation().system(), &content.session.geometry().boundary);
             let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
-            self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera().scale));
+            self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
         let present = OpeningLoads::of(scene);
-        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera().scale), present)
+        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale), present)
     }
 
     /// Returns the loads of the last frame's arrows.
@@ -410,7 +355,7 @@ impl BodyView {
 
     /// Returns the displayed field and its value at a material point.
     fn field_at(&self, content: &Content<'_>, point: MaterialPoint) -> (Field, Option<f64>) {
-        (content.options.field, self.body.value_at(content.mesh(), point))
+        (content.options.field, self.body.field.at(content.mesh(), point))
     }
 
     /// Shows the values at the pointer and at the pinned point; returns the scene with a probe that is to be kept.
@@ -442,7 +387,7 @@ impl BodyView {
         let card = self.card.filter(is_well_placed).unwrap_or_else(|| {
             let projection = self.projection();
             let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
-            let corners: Vec<_> = self.body.points().iter().map(|point| projection.point(*point)).collect();
+            let corners: Vec<_> = self.body.points.iter().map(|point| projection.point(*point)).collect();
             let body = probe::spread(&corners, &content.session.geometry().triangles);
             PointCard::new(point, self.rect, self.card_choice, (&body, at, &tips))
         });
@@ -470,7 +415,7 @@ impl BodyView {
         let is_stepped = !is_motion && (session.is_slow || !session.is_running());
         if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
             let (mut low, mut high) = content.mesh().bounds();
-            let before = if drags { Some(self.camera.whole()) } else { self.swept.filter(|_| is_motion) };
+            let before = if drags { Some(self.camera.whole) } else { self.swept.filter(|_| is_motion) };
             if let Some([before_low, before_high]) = before {
                 (low, high) = (low.inf(&before_low), high.sup(&before_high));
             }
@@ -479,7 +424,7 @@ impl BodyView {
                     (low, high) = (low.inf(&p), high.sup(&p));
                 }
             };
-            include(&mut self.body.points().iter().copied());
+            include(&mut self.body.points.iter().copied());
             include(&mut self.exact(content).iter().flatten().copied());
             if let Some(reach) = content.reach() {
                 include(&mut self.drawn_positions(reach));
@@ -489,10 +434,10 @@ impl BodyView {
             let least = least_margins(size);
             self.margins = self.with_room_for_arrows(content, least, [low, high], size);
         }
-        let [low, high] = self.camera.whole();
+        let [low, high] = self.camera.whole;
         let mut fitted = self.fitted(content, low, high, size);
         if drags {
-            fitted.scale = fitted.scale.min(self.camera().scale);
+            fitted.scale = fitted.scale.min(self.camera.shown.scale);
         }
         let dt = f64::from(ui.input(|i| i.stable_dt));
         if self.camera.aim(fitted, (self.eases && !drags).then_some(dt)) {
@@ -503,7 +448,7 @@ impl BodyView {
     /// Returns `true` if the drawn body is at most `times` as large as at rest; a diverging iterate may be larger.
     fn is_of_usual_size(&self, content: &Content<'_>, times: f64) -> bool {
         let (low, high) = content.mesh().bounds();
-        let [from, to] = self.body.points().iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
+        let [from, to] = self.body.points.iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
         (to - from).norm() < times * (high - low).norm()
     }
 
@@ -607,7 +552,7 @@ impl BodyView {
             system: shown.system(),
             geometry: session.geometry(),
             options: content.options,
-            camera: self.camera(),
+            camera: self.camera.shown,
             positions: &self.body.nodes,
             magnification: self.magnification,
             apart: content.is_apart(),
@@ -648,11 +593,11 @@ impl BodyView {
             Status::Running | Status::Finished => session.is_motion(),
             _ => false,
         };
-        let is_another = self.crossing.stamp != self.body.stamp();
+        let is_another = self.crossing.stamp != self.body.stamp;
         if self.magnification != 1.0 || self.crossing.is_reported || !(is_due && is_sound && is_another) {
             return false;
         }
-        (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp());
+        (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp);
         self.crossing.is_reported =
             content.mesh().passes_through_itself(&session.geometry().boundary, &self.body.nodes);
         self.crossing.is_reported

@@ -111,7 +111,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     } else {
         (false, if input.session.is_running() { iterations } else { tr("paused").to_owned() })
     };
-    let error = pane.error.filter(|_| !bad);
+    let error = pane.error_percent.filter(|_| !bad);
     let judged = error.zip(input.reference.and_then(Reference::first));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), Sense::hover());
     let painter = ui.painter();

@@ -134,7 +134,7 @@ impl Compare {
 
     /// Returns the camera of all panes.
     pub(crate) fn camera(&self) -> Camera {
-        self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, CameraController::camera)
+        self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, |controller| controller.shown)
     }
 
     /// Returns `true` if the user has moved the camera.
@@ -166,7 +166,7 @@ impl Compare {
             self.reset();
         }
         let time_step = self.panes.iter().find_map(|pane| Some(pane.scene()?.dynamics.time_step));
-        self.played += time_step.unwrap_or_default() / self.clock.speed();
+        self.played += time_step.unwrap_or_default() / self.clock.speed;
         self.runs().for_each(Run::step);
     }
 
@@ -453,11 +453,11 @@ impl Compare {
         // The view must not move while a load is grabbed.
         let holds = self.panes.iter().any(|pane| pane.pointer.holds());
         let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
-        if !holds && (is_settled || controller.whole() == rest) {
+        if !holds && (is_settled || controller.whole == rest) {
             controller.set_body(rest);
             controller.set_whole(whole);
         }
-        let [low, high] = controller.whole();
+        let [low, high] = controller.whole;
         let dt = f64::from(ui.input(|i| i.stable_dt));
         if controller.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
             ui.ctx().request_repaint();
@@ -478,9 +478,9 @@ impl Compare {
         let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
             self.panes.iter().filter(|pane| pane.run.is_sound()).partition(|pane| is_linear(pane));
         let bounds = exact.iter().flatten().fold(rest, grow);
-        let bounds = others.iter().flat_map(|pane| pane.body_mesh.points()).fold(bounds, grow);
+        let bounds = others.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
         let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
-        let with = linear.iter().flat_map(|pane| pane.body_mesh.points()).fold(bounds, grow);
+        let with = linear.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
         let has_reference = input.reference.is_some() && input.view.exact;
         let is_known = !others.is_empty() || has_reference;
         if !is_known || size_of(with) < LARGEST * size_of(bounds) { with } else { bounds }
@@ -497,7 +497,7 @@ impl Compare {
         let count = sound().count();
         // A body that has left is not looked for.
         let before = self.swept.filter(|_| count >= self.sound).unwrap_or(rest);
-        let swept = sound().flat_map(|pane| pane.body_mesh.points()).filter(is_near).fold(before, grow);
+        let swept = sound().flat_map(|pane| &pane.body_mesh.points).filter(is_near).fold(before, grow);
         (self.sound, self.swept) = (count, Some(swept));
         swept
     }

@@ -33,9 +33,12 @@ use crate::render::{Camera, View};
 /// Scene with settings of its own, compared with others.
 #[derive(Debug, Default)]
 pub struct Pane {
-    pub(super) setting: PaneSetting,
+    /// Settings of the pane.
+    pub setting: PaneSetting,
     pub(super) run: Run,
-    pub(super) error: Option<f64>,
+    /// Error of the result at the first probe, percent of the reference displacement, as of the last
+    /// [`crate::app::Lab::ui`].
+    pub error_percent: Option<f64>,
     /// Displacements of the first probe under the last loads, m.
     recent: VecDeque<(Scene, Vector2<f64>)>,
     /// Bodies drawn in place of a search that has found no equilibrium.
@@ -49,8 +52,8 @@ pub struct Pane {
     pub(super) body_mesh: BodyMesh,
     /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     pub(super) range: Option<[f64; 2]>,
-    /// Area in which the body is drawn.
-    pub(super) place: Option<Rect>,
+    /// Area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
+    pub place: Option<Rect>,
     pub(super) pointer: Pointer,
 }
 
@@ -72,12 +75,6 @@ impl Pane {
         Self { setting, run: Run::new(setting.iterations), ..Self::default() }
     }
 
-    /// Returns the settings of the pane.
-    #[must_use]
-    pub fn setting(&self) -> &PaneSetting {
-        &self.setting
-    }
-
     /// Returns the scene with these settings, after the pane was first shown.
     #[must_use]
     pub fn scene(&self) -> Option<&Scene> {
@@ -88,13 +85,6 @@ impl Pane {
     #[must_use]
     pub fn end(&self) -> Option<&PaneEnd> {
         self.run.end()
-    }
-
-    /// Returns the error of the result at the first probe, percent of the reference displacement, as of the last
-    /// [`crate::app::Lab::ui`].
-    #[must_use]
-    pub fn error_percent(&self) -> Option<f64> {
-        self.error
     }
 
     /// Returns the computing time of the solve from rest, or of a motion's frame at 60 Hz, s; `None` until it has been
@@ -129,12 +119,6 @@ impl Pane {
     /// Measures the time of the solve from rest, and waits for it.
     pub(super) fn wait_for_time(&mut self) {
         self.timed_scene().iter().for_each(|scene| self.cost.wait(scene));
-    }
-
-    /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
-    #[must_use]
-    pub fn place(&self) -> Option<Rect> {
-        self.place
     }
 
     /// Returns the values of the displayed field at both ends of the colour map, as of the last
@@ -190,7 +174,7 @@ impl Pane {
             painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
             there
         });
-        let value = self.body_mesh.value_at(mesh, point);
+        let value = self.body_mesh.field.at(mesh, point);
         probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
     }
 
@@ -267,7 +251,7 @@ impl Pane {
         let error = |u: Option<Vector2<f64>>| error_percent(u?, first?.displacement);
         let Some(live) = input.live else {
             self.recent.clear();
-            self.error = error(u);
+            self.error_percent = error(u);
             return;
         };
         if let Some((scene, u)) = self.run.scene().cloned().zip(u) {
@@ -276,9 +260,9 @@ impl Pane {
             self.recent.truncate(MOST);
         }
         if self.in_place().is_some() {
-            self.error = None;
+            self.error_percent = None;
         } else if let Some((_, u)) = self.recent.iter().find(|(scene, _)| live.is_of(scene)) {
-            self.error = error(Some(*u));
+            self.error_percent = error(Some(*u));
         }
     }
     /// Shows the overlays of the body in its place, with the outline `exact` of the reference solution, m, and a scale bar
@@ -299,7 +283,7 @@ impl Pane {
         let wanted = self.run.scene().filter(|_| in_place.is_some());
         let scene = in_place.or(self.run.scene());
         let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
-        let projection = Projection { camera: controller.camera(), rect: place };
+        let projection = Projection { camera: controller.shown, rect: place };
         let forces = wanted.or(scene).and_then(|scene| self.forces(scene, time, input));
         let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&projection));
         let system = self.system.as_deref();
@@ -323,7 +307,7 @@ impl Pane {
             }
             CameraMove::Fit => controller.fit(),
         }
-        let camera = controller.camera();
+        let camera = controller.shown;
         let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
         if let Some((scene, system)) = scene.zip(system) {
             let note = wanted.map(|wanted| equilibrium_text(scene, wanted));

@@ -49,11 +49,11 @@ impl PlotLine {
 /// Shows the chosen plot, with the names of its lines above it.
 pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, integrator: IntegratorKind) {
     let palette = Palette::new(ui.visuals());
-    let companions = playback.companions().iter().map(|c| (c.integrator, &c.history));
+    let companions = playback.companions.iter().map(|c| (c.integrator, &c.history));
     let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
-    let probe = format!("{} {}", tr(playback.history.probe()), ["x", "y"][axis]);
-    let before_end = playback.shown_time().zip(playback.span()).map(|(shown, [_, last])| last - shown);
+    let probe = format!("{} {}", tr(&playback.history.probe), ["x", "y"][axis]);
+    let before_end = playback.shown.zip(playback.span()).map(|(shown, [_, last])| last - shown);
     let seconds = before_end.unwrap_or_default().max(SHOWN);
     let per_motion = |name: &dyn Fn(&str) -> String, width: f32, value: &dyn Fn(&MotionSample) -> f64| {
         let line = |&(kind, history): &(IntegratorKind, &History)| {
@@ -85,12 +85,12 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
             legend::entry(ui, &line.name, SAMPLE, &sample);
         }
     });
-    if playback.history.samples().is_empty() {
+    if playback.history.samples.is_empty() {
         ui.centered_and_justified(|ui| ui.weak(tr("No time step yet: press Run or Step.")));
         return;
     }
     // Displayed moment, if it is not the latest.
-    let cursor = playback.shown_time();
+    let cursor = playback.shown;
     still(&palette, id, (tr("time"), "s"), y).show(ui, |plot| {
         for PlotLine { name, color, width, points } in lines {
             plot.line(Line::new(name, PlotPoints::from(points)).color(color).width(width));
@@ -115,7 +115,7 @@ fn energies(history: &History, seconds: f64, palette: &Palette) -> Vec<PlotLine>
         ("lost by the integrator", lost, |s| s.ledger.integrator),
         ("energy input", put_in, |s| s.ledger.pulses + s.ledger.mouse_spring + s.ledger.edits),
     ];
-    let shown = kinds.into_iter().filter(|(_, _, value)| history.samples().iter().any(|s| value(s) != 0.0));
+    let shown = kinds.into_iter().filter(|(_, _, value)| history.samples.iter().any(|s| value(s) != 0.0));
     let line = |name, color, width, value: fn(&MotionSample) -> f64| {
         PlotLine::new((tr(name).to_owned(), color, width), (history, seconds), value)
     };
