@@ -170,9 +170,7 @@ fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
     let drawn = picture(&gpu, ui.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     let lab = ui.state();
     let background = lab.frame().background;
-    let at_rest = lab.panes().iter().map(|pane| (pane.place, pane.simulation()));
-    let moving = lab.motion_panes().iter().map(|pane| (pane.place, pane.simulation()));
-    for (place, simulation) in at_rest.chain(moving).filter_map(|(place, simulation)| place.zip(simulation)) {
+    for (place, simulation) in lab.panes().iter().filter_map(|pane| pane.place.zip(pane.simulation())) {
         let mesh = simulation.system().mesh();
         let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
         let mut seen = 0;
@@ -216,9 +214,9 @@ fn panes_of_motions_magnify_the_displacement() {
     let mut ui = open_of("chime", weak);
     ui.step();
     ui.key_press(Key::K);
-    wait(&mut ui, "motions", |lab| lab.motion_panes().iter().all(|pane| pane.simulation().is_some()));
+    wait(&mut ui, "motions", |lab| lab.panes().iter().all(|pane| pane.simulation().is_some()));
     wait(&mut ui, "a displacement", |lab| {
-        let bodies = lab.motion_panes().iter().filter_map(|pane| pane.simulation());
+        let bodies = lab.panes().iter().filter_map(|pane| pane.simulation());
         bodies.flat_map(|body| body.displacement()).any(|u| u.norm() > 1e-5)
     });
     ui.key_press(Key::Space);

@@ -746,19 +746,17 @@ fn integrators_are_compared_in_panes() {
     let mut ui = open_with("swing", scene_with("swing", &["beam.cells=[6,1]"]));
     ui.key_press(Key::K);
     ui.run_steps(4);
-    assert!(ui.state().panes().iter().all(|pane| pane.place.is_none()), "those of equilibria are inactive");
-    assert!(ui.state().motion_panes().iter().all(|pane| pane.place.is_some()));
-    let times = |lab: &Lab| -> Vec<f64> {
-        lab.motion_panes().iter().map(|pane| pane.simulation().unwrap().state().time()).collect()
-    };
+    assert!(ui.state().panes().iter().all(|pane| pane.place.is_some()));
+    let times =
+        |lab: &Lab| -> Vec<f64> { lab.panes().iter().map(|pane| pane.simulation().unwrap().state().time()).collect() };
     let before = ui.simulation().state().time();
     wait(&mut ui, "a second of motion", |lab| times(lab).iter().all(|t| *t > 1.0));
     let all = times(ui.state());
     assert!(all.len() == 3 && all.iter().all(|t| (t - all[0]).abs() < 1e-9), "one clock: {all:?}");
     // The motions wait while their times are measured.
-    assert!(ui.state().motion_panes().iter().all(|pane| pane.seconds().is_some_and(|time| time > 0.0)));
+    assert!(ui.state().panes().iter().all(|pane| pane.seconds().is_some_and(|time| time > 0.0)));
     let drift = |kind: IntegratorKind| {
-        let pane = ui.state().motion_panes().iter().find(|pane| pane.setting.integrator == Some(kind)).unwrap();
+        let pane = ui.state().panes().iter().find(|pane| pane.setting.integrator == Some(kind)).unwrap();
         pane.simulation().unwrap().motion().unwrap().ledger().drift()
     };
     let (kept, lost) = (drift(IntegratorKind::EnergyMomentum), drift(IntegratorKind::ImplicitEuler));

@@ -86,12 +86,6 @@ impl Lab {
         self.desk.compare.panes()
     }
 
-    /// Returns the panes in which motions are compared.
-    #[must_use]
-    pub fn motion_panes(&self) -> &[Pane] {
-        self.desk.motions.panes()
-    }
-
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
     #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
@@ -177,7 +171,7 @@ impl Lab {
     #[must_use]
     pub fn camera(&self) -> Camera {
         match self.desk.view.mode {
-            Mode::Compare => self.desk.comparison().camera(),
+            Mode::Compare => self.desk.compare.camera(),
             _ => self.desk.viewport.camera.shown,
         }
     }
@@ -327,7 +321,7 @@ impl Lab {
     /// Returns the displayed bodies, as of the last [`Self::ui`], at this number of pixels per point.
     pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
         match self.desk.view.mode {
-            Mode::Compare => self.desk.comparison().views(self.desk.view.wireframe, pixels_per_point),
+            Mode::Compare => self.desk.compare.views(self.desk.view.wireframe, pixels_per_point),
             _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
         }
     }

@@ -16,7 +16,7 @@ use crate::scene::LoadId;
 impl Lab {
     /// Updates the window after changes of the session.
     pub(super) fn apply_session_changes(&mut self) {
-        let Desk { session, viewport, view, panel, compare, motions, measure, .. } = &mut self.desk;
+        let Desk { session, viewport, view, panel, compare, measure, .. } = &mut self.desk;
         let changed = session.take_changed();
         if changed == Changed::default() {
             return;
@@ -34,10 +34,12 @@ impl Lab {
         if changed.body || changed.document || changed.restart {
             viewport.clear_swept();
         }
+        if changed.document || compare.in_motion != session.is_motion() {
+            *compare = Compare::new(session.is_motion());
+        }
         if changed.document {
             *panel = PanelState::default();
             measure.open(session.scene());
-            (*compare, *motions) = (Compare::new(false), Compare::new(true));
             viewport.start(mesh);
             view.why = false;
             view.fixed_range = None;
@@ -97,10 +99,7 @@ impl Lab {
                     self.desk.session.set_running(!is_running);
                 }
             }
-            Action::Step | Action::Forward if self.compares_motions() => {
-                self.desk.session.pause();
-                self.desk.motions.step();
-            }
+            Action::Forward if self.compares_motions() => self.step(),
             Action::Step => self.step(),
             Action::Scrub(_) | Action::Back | Action::Forward
                 if !self.desk.session.is_motion()
@@ -117,14 +116,13 @@ impl Lab {
             }
             Action::Speed(speed) => {
                 self.desk.session.playback.clock.set_speed(speed);
-                self.desk.motions.clock.set_speed(speed);
+                self.desk.compare.clock.set_speed(speed);
             }
             Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
                 self.desk.viewport.camera.fit();
                 self.desk.compare.fit();
-                self.desk.motions.fit();
             }
             // The drawer of the other kind of scene does not exist here.
             Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
@@ -201,9 +199,8 @@ impl Lab {
 
     /// Returns to rest, or to the start of the motion.
     pub(super) fn reset(&mut self) {
-        let Desk { session, viewport, compare, motions, .. } = &mut self.desk;
+        let Desk { session, viewport, compare, .. } = &mut self.desk;
         compare.reset();
-        motions.reset();
         let is_here = !session.is_in_background();
         session.reset();
         if is_here {

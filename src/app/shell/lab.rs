@@ -34,9 +34,7 @@ pub(super) struct Desk {
     pub viewport: BodyView,
     pub view: ViewOptions,
     pub panel: PanelState,
-    /// Comparisons of equilibria and of motions.
     pub compare: Compare,
-    pub motions: Compare,
     pub measure: Measure,
     pub sections: SectionPlot,
 }
@@ -45,13 +43,12 @@ impl Desk {
     pub(super) fn new(session: Session) -> Self {
         Self {
             viewport: BodyView::new(session.simulation().system().mesh()),
-            session,
             view: ViewOptions::default(),
             panel: PanelState::default(),
-            compare: Compare::new(false),
-            motions: Compare::new(true),
+            compare: Compare::new(session.is_motion()),
             measure: Measure::default(),
             sections: SectionPlot::default(),
+            session,
         }
     }
 
@@ -67,10 +64,6 @@ impl Desk {
         let limits_of = limits_of.as_ref().filter(|_| shows_limits);
         session.turn_limits_to(limits_of);
         (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
-    }
-
-    pub(super) fn comparison(&self) -> &Compare {
-        if self.session.is_motion() { &self.motions } else { &self.compare }
     }
 }
 
@@ -192,10 +185,10 @@ impl Lab {
             return self.story.is_some() || self.iterates();
         }
         if self.compares_motions() {
-            let Desk { session, motions, .. } = &mut self.desk;
+            let Desk { session, compare, .. } = &mut self.desk;
             session.poll();
             session.playback.clock.rest();
-            motions.advance_motions(session, now);
+            compare.advance_motions(session, now);
         } else if self.desk.session.advance(now) {
             self.show_last_line();
         }
@@ -214,7 +207,7 @@ impl Lab {
     #[must_use]
     pub fn iterates(&self) -> bool {
         if self.compares_motions() {
-            return self.desk.session.is_running() && self.desk.motions.goes_on() && !self.desk.motions.is_timing;
+            return self.desk.session.is_running() && self.desk.compare.goes_on() && !self.desk.compare.is_timing;
         }
         self.desk.session.iterates()
     }
@@ -293,7 +286,7 @@ impl Lab {
             simulation: session.simulation(),
             shown: session.drawn(),
             ended: match view.mode {
-                Mode::Compare => !self.desk.comparison().goes_on(),
+                Mode::Compare => !self.desk.compare.goes_on(),
                 _ => session.has_ended(),
             },
             language: self.settings.language,

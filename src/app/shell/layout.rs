@@ -210,7 +210,7 @@ impl Lab {
         let (compare, input) = self.compared();
         let interaction = compare.show(ui, &input);
         self.edit_loads(ui.ctx(), &interaction);
-        if self.desk.comparison().is_moved() {
+        if self.desk.compare.is_moved() {
             fit_button(ui, rect, actions);
         }
         let painter = ui.painter_at(rect);
@@ -219,9 +219,8 @@ impl Lab {
     }
 
     fn compared(&mut self) -> (&mut Compare, CompareInput<'_>) {
-        let Desk { session, viewport, view, panel, measure, compare, motions, .. } = &mut self.desk;
-        let is_motion = session.is_motion();
-        let live = session.live().filter(|_| !is_motion);
+        let Desk { session, viewport, view, panel, measure, compare, .. } = &mut self.desk;
+        let live = session.live().filter(|_| !session.is_motion());
         let input = CompareInput {
             session,
             scene: session.scene(),
@@ -232,7 +231,7 @@ impl Lab {
             live,
             chosen: measure.budget.chosen(session.scene()),
         };
-        (if is_motion { motions } else { compare }, input)
+        (compare, input)
     }
 
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {

@@ -68,7 +68,7 @@ type PaneChange = Option<Option<PaneSetting>>;
 #[derive(Debug, Default)]
 pub(crate) struct Compare {
     /// `true` if the panes show motions.
-    in_motion: bool,
+    pub in_motion: bool,
     panes: Vec<Pane>,
     /// Camera of all panes; `None` before the first frame.
     controller: Option<CameraController>,
