@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use crate::app::platform::IS_PAGE;
-use crate::app::view_options::{CurvePlot, Toggle};
+use crate::app::view_options::Toggle;
 use crate::scene::{IntegratorKind, Scene};
 use crate::simulation::Field;
 use crate::study::figure::Figure;
+use crate::study::path_chart::Ordinate;
 
 /// Request from a click, a drag or a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +61,7 @@ pub(crate) enum Action {
     /// Switch to the other language.
     ToggleLanguage,
     /// Plot these quantities in the load curve.
-    Plot(CurvePlot),
+    Plot(Ordinate),
     /// Save a figure to a file.
     Export(Box<Figure>, FigureFile),
     /// Save an image of the window.

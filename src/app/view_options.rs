@@ -6,6 +6,7 @@ use crate::format::round_down;
 use crate::scene::limits::Limit;
 use crate::scene::{Analysis, Scene};
 use crate::simulation::{Field, PointValues};
+use crate::study::path_chart::Ordinate;
 
 /// Mode of the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,35 +77,6 @@ pub(crate) enum MotionPlot {
     Energy,
     /// Displacement of the first probe against time.
     Tip,
-}
-
-/// Quantities that a load curve shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CurvePlot {
-    /// Reaction of a moving support against its prescribed displacement.
-    Reaction,
-    /// Components of the displacement against each other.
-    Path,
-    /// Horizontal component of the displacement against the load.
-    X,
-    /// Vertical component of the displacement against the load.
-    Y,
-}
-
-impl CurvePlot {
-    /// Returns the plot of the component along `axis`: 0 is x, 1 is y.
-    pub(crate) fn component(axis: usize) -> Self {
-        if axis == 0 { Self::X } else { Self::Y }
-    }
-
-    pub(crate) fn text(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Reaction => ("Reaction", "Reaction of the support against its displacement"),
-            Self::Path => ("Path", "Path of the first probe: u_y against u_x, in equal scales"),
-            Self::X => ("u_x", "u_x of the first probe against load"),
-            Self::Y => ("u_y", "u_y of the first probe against load"),
-        }
-    }
 }
 
 /// Part of the display that can be shown or hidden.
@@ -209,7 +181,7 @@ pub(crate) struct ViewOptions {
     /// Tab of Measure.
     pub tab: MeasureTab,
     /// Quantities of the load curve; `None` means the default ones.
-    pub curve_plot: Option<CurvePlot>,
+    pub curve_plot: Option<Ordinate>,
     /// `true` if bars and panel are drawn; images may omit them.
     pub bars: bool,
     /// `true` if the panel is open in a window that is wide enough for it.

@@ -9,7 +9,7 @@ use crate::scene::{MethodKind, Place, Scene};
 use crate::sentence::{Sentence, sentence};
 
 /// The pair of quantities that is drawn.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ordinate {
     /// The reaction of a support that moves, else the larger displacement component of the first probe.
     Usual,

@@ -9,7 +9,6 @@ use crate::app::modes::measure::first_probe;
 use crate::app::prelude::*;
 use crate::app::session::Session;
 use crate::app::session::facts::Curve;
-use crate::app::view_options::CurvePlot;
 use crate::app::widgets::buttons::options;
 use crate::app::widgets::text::boxed_text;
 use crate::format::{engineering, engineering_pair_among, three_digits};
@@ -17,13 +16,21 @@ use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, In
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 
+/// Quantities that a load curve can show, each with its name and a description; the first only of a moving support.
+const PLOTS: [(Ordinate, &str, &str); 4] = [
+    (Ordinate::Usual, "Reaction", "Reaction of the support against its displacement"),
+    (Ordinate::Path(0), "Path", "Path of the first probe: u_y against u_x, in equal scales"),
+    (Ordinate::Component(0, 0), "u_x", "u_x of the first probe against load"),
+    (Ordinate::Component(0, 1), "u_y", "u_y of the first probe against load"),
+];
+
 /// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
 /// being computed, or the scene has none. `body` is the displacement of the first probe of the drawn equilibrium, m.
 pub(crate) fn show(
     ui: &mut Ui,
     session: &Session,
     body: Option<Vector2<f64>>,
-    chosen: Option<CurvePlot>,
+    chosen: Option<Ordinate>,
     actions: &mut Vec<Action>,
 ) {
     let (scene, fact) = (session.scene(), &session.facts().curve);
@@ -39,7 +46,7 @@ pub(crate) fn show(
         return;
     };
     let offered = curve.offered();
-    let shown = chosen.filter(|plot| offered.contains(plot)).unwrap_or_else(|| curve.usual());
+    let shown = chosen.filter(|own| offered.iter().any(|(other, ..)| other == own)).unwrap_or_else(|| curve.usual());
     let mut drawn = curve.figure(shown);
     if let Some(body) = body.filter(|_| looked_for) {
         move_scene(&mut drawn, body);
@@ -56,7 +63,7 @@ pub(crate) fn show(
     }
     let show_table = |ui: &mut Ui| {
         ui.horizontal_wrapped(|ui| {
-            let texts = offered.iter().map(|&plot| (plot, plot.text().0.to_owned(), plot.text().1));
+            let texts = offered.iter().map(|&(plot, word, tip)| (plot, word.to_owned(), tip));
             actions.extend(options(ui, texts, Some(shown)).map(Action::Plot));
             figure::export_menu(ui, &drawn, actions);
         });
@@ -73,27 +80,23 @@ pub(crate) fn show(
 
 impl Curve {
     /// Returns the quantities that can be shown.
-    fn offered(&self) -> &'static [CurvePlot] {
-        match self {
-            Self::Path(of) if of.0.driven.is_some() => {
-                &[CurvePlot::Reaction, CurvePlot::Path, CurvePlot::X, CurvePlot::Y]
-            }
-            _ => &[CurvePlot::Path, CurvePlot::X, CurvePlot::Y],
-        }
+    fn offered(&self) -> &'static [(Ordinate, &'static str, &'static str)] {
+        let is_driven = matches!(self, Self::Path(of) if of.0.driven.is_some());
+        if is_driven { &PLOTS } else { &PLOTS[1..] }
     }
 
     /// Returns the default quantities: the reaction of a moving support, else the larger component of the displacement
     /// over the load, where a result has another value than the exact beam at the same load.
-    fn usual(&self) -> CurvePlot {
+    fn usual(&self) -> Ordinate {
         let tip = |state: &PathState| state.probes.first().copied();
-        CurvePlot::component(match self {
-            Self::Path(of) if of.0.driven.is_some() => return CurvePlot::Reaction,
-            Self::Beam(of) => dominant_axis(of.0.samples.iter().map(|s| s.exact)),
-            Self::Path(of) => dominant_axis(of.0.states.iter().filter_map(tip)),
-        })
+        match self {
+            Self::Path(of) if of.0.driven.is_some() => Ordinate::Usual,
+            Self::Beam(of) => Ordinate::Component(0, dominant_axis(of.0.samples.iter().map(|s| s.exact))),
+            Self::Path(of) => Ordinate::Component(0, dominant_axis(of.0.states.iter().filter_map(tip))),
+        }
     }
 
-    fn figure(&self, shown: CurvePlot) -> Figure {
+    fn figure(&self, shown: Ordinate) -> Figure {
         match self {
             Self::Beam(of) => beam(&of.0, &of.1.0, shown),
             Self::Path(of) => path(&of.0, &of.1.0, shown),
@@ -107,14 +110,8 @@ fn pair(u: Vector2<f64>, column: &[Vector2<f64>]) -> String {
     engineering_pair_among([u.x, u.y].map(three_digits), &column, "m")
 }
 
-fn path(path: &LoadPath, scene: &Scene, shown: CurvePlot) -> Figure {
-    let ordinate = match shown {
-        CurvePlot::Reaction => Ordinate::Usual,
-        CurvePlot::Path => Ordinate::Path(0),
-        CurvePlot::X => Ordinate::Component(0, 0),
-        CurvePlot::Y => Ordinate::Component(0, 1),
-    };
-    Figure { title: curve_title(scene), ..path_chart::figure(path, scene, &ordinate, &|name| said(name)) }
+fn path(path: &LoadPath, scene: &Scene, shown: Ordinate) -> Figure {
+    Figure { title: curve_title(scene), ..path_chart::figure(path, scene, &shown, &|name| said(name)) }
 }
 
 /// Moves the mark of the scene from the end of the path to the displacement of the body, which may be at rest elsewhere.
@@ -129,7 +126,7 @@ fn curve_title(scene: &Scene) -> String {
     format!("{}: {}", tr(&scene.name), tr("Load curve"))
 }
 
-fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
+fn beam(curve: &LoadCurve, scene: &Scene, shown: Ordinate) -> Figure {
     let LoadAxis { name, unit, full } = LoadAxis::of(scene);
     let line = |value: fn(&Sample) -> Vector2<f64>| -> Vec<FigurePoint> {
         let samples = curve.samples.iter();
@@ -177,9 +174,9 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: CurvePlot) -> Figure {
         title: curve_title(scene),
         // The quantities are load, u_x and u_y.
         axes: match shown {
-            CurvePlot::Path => [1, 2],
-            CurvePlot::X => [0, 1],
-            CurvePlot::Y | CurvePlot::Reaction => [0, 2],
+            Ordinate::Path(_) => [1, 2],
+            Ordinate::Component(_, 0) => [0, 1],
+            _ => [0, 2],
         },
         series: all,
         head: [fill!("at %{load}", load), fill!("(u_x, u_y) of %{probe}", probe = tr(probe))],
@@ -210,7 +207,7 @@ mod tests {
     fn the_mark_of_the_scene_is_at_the_body() {
         let scene = open(&Source { name: "jump".into(), assignments: Vec::new() }).unwrap();
         let followed = LoadPath::of(&scene).unwrap();
-        let before = path(&followed, &scene, CurvePlot::Y);
+        let before = path(&followed, &scene, Ordinate::Component(0, 1));
         let mut after = before.clone();
         move_scene(&mut after, Vector2::new(1.0, 2.0));
         for (before, after) in before.series.iter().zip(&after.series) {
