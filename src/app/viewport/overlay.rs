@@ -31,16 +31,13 @@ use crate::study::Reference;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
-    /// Scene of the drawn body.
-    pub scene: &'a Scene,
+    /// Drawn body with the loads of its scene.
+    pub body: ForceArrows<'a>,
     /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
-    pub system: &'a System,
     pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
     pub camera: Camera,
-    /// Drawn positions of the nodes, m.
-    pub positions: &'a [Vector2<f64>],
     /// Factor of the drawn displacement.
     pub magnification: f64,
     /// `true` if the elements are drawn apart from each other: nothing is painted at the body's own place then.
@@ -49,20 +46,8 @@ pub(crate) struct Overlay<'a> {
     pub ghost: Option<&'a [Vector2<f64>]>,
     /// Drawn outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// Scene of the reference solution.
-    pub exact_scene: Option<&'a Scene>,
-    /// Errors of the tip displacement, of the solution and of linear theory.
-    pub errors: Errors,
     /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
     pub live: Option<bool>,
-    /// Relative changes of the area of the drawn body and of the linear solution.
-    pub areas: [Option<f64>; 2],
-    /// Simulated time, s.
-    pub time: f64,
-    /// Direction of the arrow of a zero force, degrees.
-    pub direction: f64,
-    /// Loads that the scene opens with.
-    pub opening: OpeningLoads,
     /// Load arrow under the pointer, or grabbed and dragged by it.
     pub hot: Option<HotHandle>,
     /// Grab of the body, and its force, N.
@@ -73,15 +58,27 @@ pub(crate) struct Overlay<'a> {
     pub sections: &'a [(Section, String)],
     /// Reactions of the supports, if one of them moves.
     pub reactions: &'a [SupportReaction],
+    /// Note about the state, and its colour.
+    pub note: Option<(&'a str, Color32)>,
+    /// Content of line key and colour bar; `None` for a pane, which shares those of all panes.
+    pub legends: Option<Legends<'a>>,
+}
+
+/// Content of the line key and the colour bar.
+pub(crate) struct Legends<'a> {
+    /// Scene of the reference solution.
+    pub exact_scene: &'a Scene,
+    /// Errors of the tip displacement, of the solution and of linear theory.
+    pub errors: Errors,
+    /// Relative changes of the area of the drawn body and of the linear solution.
+    pub areas: [Option<f64>; 2],
     /// Values of the field at both ends of the colour map.
     pub color_range: [f64; 2],
     /// `true` if the field has a value at a point of the body.
     pub has_values: bool,
-    /// Note about the state, and its colour.
-    pub note: Option<(&'a str, Color32)>,
 }
 
-/// Paints all overlays.
+/// Paints all overlays; those of a pane are at the body only.
 pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
     if rect.width() < 8.0 || rect.height() < 8.0 {
         return;
@@ -91,17 +88,22 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         dim(painter, rect, &palette);
     }
     outlines(painter, rect, overlay, &palette);
+    let mut labels = Labels { painter, visuals, taken: Vec::new() };
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
-    let key = key(painter, rect, overlay, &palette, visuals);
-    let legend = legend(painter, rect, overlay, &palette, visuals);
-    let mut labels = Labels { painter, visuals, taken: key.into_iter().chain(legend).collect() };
+    if let Some(legends) = &overlay.legends {
+        labels.taken.extend(key(painter, rect, overlay, legends, &palette));
+        labels.taken.extend(legend(painter, rect, overlay, legends, &palette));
+    }
     on_body(&mut labels, rect, overlay);
-    scale_bar(painter, rect, &overlay.camera, &palette);
+    if overlay.legends.is_some() {
+        scale_bar(painter, rect, &overlay.camera, &palette);
+    }
     if let Some((spring, force)) = overlay.mouse_spring {
         pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay, spring, force);
     }
     if let Some((note, color)) = overlay.note {
-        labels.add(rect.center_top() + vec2(0.0, 46.0), Align2::CENTER_TOP, note, color, rect.width() - 48.0);
+        let (below, beside) = if overlay.legends.is_some() { (46.0, 48.0) } else { (8.0, 24.0) };
+        labels.add(rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP, note, color, rect.width() - beside);
     }
 }
 
@@ -110,23 +112,9 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
     painter.rect_filled(rect, 0.0, palette.canvas.gamma_multiply(0.55));
 }
 
-/// Paints the overlays that belong to the body: outlines, supports, loads.
-pub(crate) fn body(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
-    let palette = Palette::new(visuals);
-    if overlay.wanted.is_some() {
-        dim(painter, rect, &palette);
-    }
-    outlines(painter, rect, overlay, &palette);
-    let mut labels = Labels { painter, visuals, taken: Vec::new() };
-    on_body(&mut labels, rect, overlay);
-    if let Some((note, color)) = overlay.note {
-        labels.add(rect.center_top() + vec2(0.0, 8.0), Align2::CENTER_TOP, note, color, rect.width() - 24.0);
-    }
-}
-
 /// Paints the outlines of the body, of the body at rest, and of other solutions.
 fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
-    let Overlay { geometry, system, camera, .. } = *overlay;
+    let Overlay { geometry, camera, .. } = *overlay;
     let projection = Projection { camera, rect };
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &geometry.outline {
@@ -146,7 +134,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
             }
         }
     };
-    let rest = |n: u32| system.mesh().nodes()[n as usize];
+    let rest = |n: u32| overlay.body.system.mesh().nodes()[n as usize];
     let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.magnification;
     if overlay.options.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
@@ -160,7 +148,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
         draw(&|n| drawn(n, u), Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.scene)));
+        draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.body.scene)));
     }
     for line in overlay.exact.iter().filter(|_| overlay.live != Some(true)) {
         // A background stroke keeps the line visible over the body.
@@ -184,9 +172,9 @@ fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
     }
     if !overlay.apart {
         // A force on an edge is distributed along it; its arrow is that of the whole.
-        for load in &overlay.scene.loads {
+        for load in &overlay.body.scene.loads {
             if let Load::Force { place: Place::Edge(edge), .. } = load
-                && arrow::is_seen(load, overlay.time)
+                && arrow::is_seen(load, overlay.body.time)
             {
                 for segment in edge_segments(&projection, overlay, edge) {
                     painter.line_segment(segment, Stroke::new(2.5, palette.load));
@@ -211,9 +199,9 @@ fn edge_segments<'a>(
     overlay: &'a Overlay<'_>,
     edge: &str,
 ) -> impl Iterator<Item = [Pos2; 2]> + use<'a> {
-    let segments = overlay.system.mesh().edges().get(edge).into_iter().flatten();
+    let segments = overlay.body.system.mesh().edges().get(edge).into_iter().flatten();
     segments.flat_map(|side| side.nodes().windows(2)).filter_map(|piece| {
-        let [from, to] = [*piece.first()?, *piece.get(1)?].map(|n| overlay.positions.get(n as usize).copied());
+        let [from, to] = [*piece.first()?, *piece.get(1)?].map(|n| overlay.body.positions.get(n as usize).copied());
         projection.segment(from?, to?)
     })
 }
@@ -245,13 +233,13 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
         let plus = to + tangent * OUTSIDE - normal * 9.0;
         painter.text(plus, Align2::CENTER_CENTER, "+", FontId::proportional(BODY), color);
         let SectionForces { normal: tension, shear, moment } = section.forces;
-        let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.system.size());
+        let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.body.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {
             if force.abs() > least {
                 arrow::paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
             }
         }
-        if moment.abs() > least * overlay.system.size() {
+        if moment.abs() > least * overlay.body.system.size() {
             MomentArrow::new(0, middle, moment, moment.abs()).paint_arrow(painter, color, 3.0);
         }
         // The label is at the upper end, outside the body.
@@ -277,9 +265,9 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
 /// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
 fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
     const RADIUS: f32 = 3.5;
-    let (mesh, color) = (overlay.system.mesh(), labels.visuals.strong_text_color());
-    let drawn = |at: [f64; 2]| probe::place(mesh, overlay.positions, mesh.locate(at.into())?);
-    for own in &overlay.scene.probes {
+    let (mesh, color) = (overlay.body.system.mesh(), labels.visuals.strong_text_color());
+    let drawn = |at: [f64; 2]| probe::place(mesh, overlay.body.positions, mesh.locate(at.into())?);
+    for own in &overlay.body.scene.probes {
         let Place::At(at) = own.place else { continue };
         let Some(at) = drawn(at).map(|at| projection.point(at)) else { continue };
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
@@ -316,7 +304,7 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
     let playback = overlay.playback;
     let companions = playback.companions.iter().filter(|companion| !companion.is_absent);
     let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.scene))).chain(others) {
+    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.body.scene))).chain(others) {
         let end = playback.shown.unwrap_or(f64::INFINITY);
         let end = end.min(history.samples.back().map_or(0.0, |s| s.time));
         let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
@@ -344,9 +332,9 @@ fn pull(
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
-    let mesh = overlay.system.mesh();
+    let mesh = overlay.body.system.mesh();
     let weights = mesh.weights(spring.point()).unwrap_or_default();
-    let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.positions[n as usize] * w).sum();
+    let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.body.positions[n as usize] * w).sum();
     let [from, to] = [held, spring.target()].map(|p| projection.point(p));
     painter.circle_filled(from, 4.5, palette.mouse_spring);
     painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.mouse_spring));
@@ -382,7 +370,7 @@ fn pull(
 fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
-    let (positions, pattern) = (overlay.positions, overlay.system.pattern());
+    let (positions, pattern) = (overlay.body.positions, overlay.body.system.pattern());
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; positions.len()];
     for side in &overlay.geometry.boundary {
@@ -414,7 +402,7 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
         }
     }
     let nodes = (0..).zip(drawn).filter(|(_, drawn)| !drawn).map(|(n, _)| (positions[n as usize], pattern.fixed(n)));
-    for (at, fixed) in nodes.chain(overlay.system.held_places(positions)) {
+    for (at, fixed) in nodes.chain(overlay.body.system.held_places(positions)) {
         if fixed == [false, false] {
             continue;
         }
@@ -433,14 +421,12 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
 
 fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     let (painter, visuals) = (labels.painter, labels.visuals);
-    let Overlay { scene, system, positions, time, .. } = *overlay;
-    let of =
-        |scene| ForceArrows { scene, system, positions, time, direction: overlay.direction, opening: overlay.opening };
+    let of = |scene| ForceArrows { scene, ..overlay.body };
     // The filled arrow belongs to the body, and the outline is the load that was asked for.
-    let forces = of(overlay.wanted.unwrap_or(scene));
+    let forces = of(overlay.wanted.unwrap_or(overlay.body.scene));
     let is_outline = overlay.wanted.is_some();
     if is_outline {
-        let (arrows, moments) = (of(scene).arrows(projection), of(scene).moment_arrows(projection));
+        let (arrows, moments) = (overlay.body.arrows(projection), overlay.body.moment_arrows(projection));
         arrows.iter().for_each(|own| own.paint_body_load(painter, palette.load, visuals));
         moments.into_iter().for_each(|own| _ = own.paint_arrow(painter, palette.load, 3.0));
     }
@@ -465,7 +451,7 @@ fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: 
     /// Height above the arrow, and of the label and the time line under it, points.
     const TOP: f32 = 30.0;
     const UNDER: f32 = 56.0;
-    for load in overlay.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.time)) {
+    for load in overlay.body.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.body.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
         let direction = vec2(*x as f32, -*y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
@@ -484,7 +470,7 @@ fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: 
 fn moved_supports(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
-    for (support, reaction) in overlay.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
+    for (support, reaction) in overlay.body.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
         let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
@@ -526,7 +512,13 @@ pub(crate) fn is_tiny(options: &ViewOptions, view: Vec2) -> bool {
 }
 
 /// Paints the colour bar with its title and ticks in the lower right corner, and returns its area.
-fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Option<Rect> {
+fn legend(
+    painter: &Painter,
+    rect: Rect,
+    overlay: &Overlay<'_>,
+    legends: &Legends<'_>,
+    palette: &Palette,
+) -> Option<Rect> {
     const MAX_TICKS: u32 = 5;
     const SIZE: Vec2 = vec2(240.0, 10.0);
     if !has_legend(rect.size()) {
@@ -534,24 +526,24 @@ fn legend(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palett
     }
     let field = overlay.options.field;
     let (factor, unit) = field.display_unit();
-    let [low, high] = overlay.color_range.map(|end| factor * end);
-    let (power, symbol) = if overlay.has_values { prefix(&[low, high], unit) } else { (0, "") };
+    let [low, high] = legends.color_range.map(|end| factor * end);
+    let (power, symbol) = if legends.has_values { prefix(&[low, high], unit) } else { (0, "") };
     let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
     let raw = if raw { tr(", each element alone") } else { "" };
-    let range = match (overlay.has_values, overlay.options.fixed_range) {
+    let range = match (legends.has_values, overlay.options.fixed_range) {
         (false, _) => tr(", not known"),
         (true, Some(_)) => tr(", fixed range"),
         (true, None) => "",
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
-    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| overlay.has_values).map(|value| {
+    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| legends.has_values).map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
         (((value - low) / (high - low)) as f32, text)
     });
     let font = FontId::proportional(SMALL);
     let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));
-    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.rect_filled(frame, 5.0, palette.canvas.gamma_multiply(0.85));
     painter.text(corner, Align2::LEFT_TOP, title, font.clone(), palette.text);
     let bar = Rect::from_min_size(corner + vec2(0.0, 19.0), SIZE);
     color_bar(painter, bar, palette.map(field));
@@ -595,7 +587,7 @@ pub(crate) fn magnified(factor: f64) -> String {
 }
 
 /// Paints the line key with the error of each solution, and returns its area.
-fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, visuals: &Visuals) -> Option<Rect> {
+fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     if rect.width() < KEY_WIDTH {
@@ -607,16 +599,16 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
         [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()
     };
-    let Errors { own, bound, linear, .. } = overlay.errors;
-    let own = match overlay.scene.analysis {
-        Analysis::Static => values(overlay.scene.solver.method.id(), [own, bound], overlay.areas[0]),
-        Analysis::Dynamic => values(overlay.scene.dynamics.integrator.id(), [None; 2], overlay.areas[0]),
+    let Errors { own, bound, linear, .. } = legends.errors;
+    let own = match overlay.body.scene.analysis {
+        Analysis::Static => values(overlay.body.scene.solver.method.id(), [own, bound], legends.areas[0]),
+        Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], legends.areas[0]),
     };
     let mut lines = Vec::new();
     if overlay.magnification != 1.0 {
         lines.push((palette.text, None, magnified(overlay.magnification)));
     }
-    lines.push((palette.solution(overlay.scene), Some(LegendMark::Line), own));
+    lines.push((palette.solution(overlay.body.scene), Some(LegendMark::Line), own));
     for companion in &overlay.playback.companions {
         lines.push((
             palette.integrator(companion.integrator),
@@ -625,12 +617,12 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
         ));
     }
     if overlay.ghost.is_some() {
-        let text = values(MethodKind::Linear.id(), [linear, None], overlay.areas[1]);
+        let text = values(MethodKind::Linear.id(), [linear, None], legends.areas[1]);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
         // A body in place of a search has another load.
-        let load = overlay.wanted.and(overlay.exact_scene).and_then(load_text);
+        let load = overlay.wanted.and_then(|_| load_text(legends.exact_scene));
         let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
         lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }
@@ -659,7 +651,7 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette, 
     let corner = rect.left_top() + vec2(16.0, 12.0);
     let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW));
     let frame = frame.expand2(vec2(8.0, 4.0));
-    painter.rect_filled(frame, 5.0, visuals.extreme_bg_color.gamma_multiply(0.85));
+    painter.rect_filled(frame, 5.0, palette.canvas.gamma_multiply(0.85));
     for (color, mark, galley, place) in placed {
         let left = corner + place + vec2(0.0, 0.5 * ROW);
         if let Some(mark) = mark {

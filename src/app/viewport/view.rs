@@ -13,7 +13,7 @@ use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::overlay::{self, Overlay};
+use crate::app::viewport::overlay::{self, Legends, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe::{CardChoice, CardRequest, Pinned, PointCard};
 use crate::app::viewport::projection::{Projection, viewport};
@@ -547,33 +547,30 @@ impl BodyView {
         let (ghost, exact) = (self.ghost(content), self.exact(content));
         let live = session.live().map(|live| live.is_late(shown));
         let overlay = Overlay {
-            scene: shown.scene(),
+            body: ForceArrows { scene: shown.scene(), ..self.forces(content) },
             wanted: fallback.map(|_| simulation.scene()),
-            system: shown.system(),
             geometry: session.geometry(),
             options: content.options,
             camera: self.camera.shown,
-            positions: &self.body.nodes,
             magnification: self.magnification,
             apart: content.is_apart(),
             ghost,
             exact: &exact,
-            exact_scene: session.live().map(|live| &live.key).or(Some(simulation.scene())),
-            errors,
             live,
-            areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
-            time: shown.state().time(),
-            direction: content.direction,
-            opening: OpeningLoads::of(&session.document().opened),
             hot: self.pointer.hot_handle(),
             // The force of a paused motion would be that of the pointer's velocity alone.
             mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
             playback: &session.playback,
             sections: &sections,
             reactions: &reactions,
-            color_range: self.body.range,
-            has_values: self.body.has_values(),
             note,
+            legends: Some(Legends {
+                exact_scene: session.live().map_or(simulation.scene(), |live| &live.key),
+                errors,
+                areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
+                color_range: self.body.range,
+                has_values: self.body.has_values(),
+            }),
         };
         overlay::paint(painter, self.rect, &overlay, visuals);
         if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {

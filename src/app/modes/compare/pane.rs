@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui};
 
 use super::CompareInput;
 use super::setting::PaneSetting;
-use crate::app::diagnosis::{Errors, equilibrium_text};
+use crate::app::diagnosis::equilibrium_text;
 use crate::app::prelude::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
@@ -309,38 +309,29 @@ impl Pane {
         }
         let camera = controller.shown;
         let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
-        if let Some((scene, system)) = scene.zip(system) {
-            let note = wanted.map(|wanted| equilibrium_text(scene, wanted));
+        if let Some(body) = scene.and_then(|scene| self.forces(scene, time, input)) {
+            let note = wanted.map(|wanted| equilibrium_text(body.scene, wanted));
             let overlay = Overlay {
                 sections: &[],
                 apart: false,
-                scene,
+                body,
                 wanted,
-                system,
                 geometry: &self.geometry,
                 options: input.view,
                 camera,
-                positions: &self.body_mesh.nodes,
                 magnification,
                 ghost: None,
                 exact: if wanted.is_some() { &[] } else { exact },
-                errors: Errors::default(),
                 live: None,
-                exact_scene: None,
-                areas: [None; 2],
-                time,
-                direction: input.direction,
-                opening: OpeningLoads::of(&input.session.document().opened),
                 hot: pointer.hot_handle(),
                 mouse_spring: None,
                 reactions: &[],
                 // The past of a motion is not drawn.
                 playback: &Playback::default(),
-                color_range: self.body_mesh.range,
-                has_values: self.body_mesh.has_values(),
                 note: note.as_deref().map(|note| (note, palette.text)),
+                legends: None,
             };
-            overlay::body(&painter, place, &overlay, ui.visuals());
+            overlay::paint(&painter, place, &overlay, ui.visuals());
         }
         if number == 0 {
             overlay::scale_bar(&painter, place, &camera, &palette);
