@@ -1,11 +1,8 @@
 //! Actions that panel, keys and drawers request from the lab.
 
-use std::path::PathBuf;
-
 use crate::app::platform::IS_PAGE;
+use crate::app::prelude::*;
 use crate::app::view_options::Toggle;
-use crate::scene::{IntegratorKind, Scene};
-use crate::simulation::Field;
 use crate::study::figure::Figure;
 use crate::study::path_chart::Ordinate;
 

@@ -1,14 +1,11 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
-use crate::app::action::{Action, FigureFile};
-use crate::app::prelude::*;
-
-use egui::{Align2, Color32, FontId, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotBounds, PlotPoints, Points};
 
+use crate::app::action::FigureFile;
+use crate::app::interface::*;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
 use crate::app::widgets::plot::{segments, still};
 use crate::study::figure::{Figure, FigurePoint, FigureSeries, Ink, Mark};
 

@@ -6,13 +6,12 @@ use crate::app::ThemeChoice;
 use crate::app::language::Language;
 use crate::app::modes::compare::{PaneSetting, parse_panes};
 use crate::app::modes::learn::card_count;
+use crate::app::prelude::*;
 use crate::app::view_options::Magnification;
 use crate::dynamics::INTEGRATORS;
-use crate::scene::IntegratorKind;
 use crate::scene::keys::range;
 use crate::scene::limits::PLAYBACK_SPEED;
 use crate::scene::units::within;
-use crate::simulation::Field;
 
 /// Largest side of a shot, pixels.
 const MAX_SHOT_SIDE: u32 = 8192;

@@ -3,9 +3,7 @@
 use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::session::has_mesh_of;
-use crate::app::widgets::number_field::{NumberRow, show_message};
-use crate::format::number;
-use crate::scene::{Beam, Material, Plane};
+use crate::scene::Plane;
 
 struct MaterialPreset {
     name: &'static str,

@@ -11,9 +11,7 @@ use crate::app::viewport::menu::{
     acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,
 };
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::load_scale::OpeningLoads;
-use crate::app::widgets::number_field::{Messages, read, show_message};
-use crate::assembly::{Edge, System};
+use crate::app::widgets::number_field::read;
 use crate::study::moved_points;
 
 /// Name of the section, with which its messages are kept.

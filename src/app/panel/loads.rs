@@ -4,7 +4,6 @@ use crate::app::interface::*;
 use crate::app::panel::{Panel, combo, edges};
 use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::scene::LoadId;
 use crate::scene::limits::Limit;
 
 /// Gravitational acceleration on earth, m/s².

@@ -8,9 +8,6 @@ use egui::text::{LayoutJob, TextWrapping};
 use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::viewport::arrow::DOWN;
-use crate::app::widgets::buttons::choice;
-use crate::app::widgets::number_field::{Messages, NumberRow, show_message};
-use crate::method::METHODS;
 
 mod body;
 pub(crate) mod edges;

@@ -4,8 +4,6 @@
 use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::session::clock::{fraction, speed_of_period};
-use crate::app::widgets::number_field::NumberRow;
-use crate::dynamics::INTEGRATORS;
 
 /// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];

@@ -5,8 +5,6 @@ use crate::app::interface::*;
 use crate::app::language::signed_percent;
 use crate::app::panel::supports;
 use crate::app::session::clock::fraction;
-use crate::app::widgets::text::UNKNOWN;
-use crate::simulation::Motion;
 use crate::study::Claim;
 
 /// Width of the names of the rows, points.

@@ -5,7 +5,6 @@ use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::panel::supports::TURNS;
 use crate::app::viewport::menu::with_middle_section;
-use crate::scene::SectionLine;
 use crate::study::section_chart;
 
 /// Shows the chosen section: its forces, its place and direction, and buttons that show its stress and remove it.

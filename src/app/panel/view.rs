@@ -2,7 +2,6 @@
 
 use crate::app::interface::*;
 use crate::app::panel::{Panel, combo};
-use crate::app::view_options::Magnification;
 
 pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     let shown = panel.view.field;

@@ -1,8 +1,7 @@
 //! Real-time clock of a motion: the number of time steps that are due depends on the elapsed time, not on the frame
 //! rate.
 
-use web_time::{Duration, Instant};
-
+use crate::app::prelude::*;
 use crate::format::two_digits;
 
 /// Displayed frames per second for which the costs of motions are stated.

@@ -3,10 +3,9 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::Vector2;
-
+use crate::app::prelude::*;
 use crate::dynamics::Ledger;
-use crate::simulation::{Moment, Simulation};
+use crate::simulation::Moment;
 
 /// Largest number of samples; older ones are dropped.
 const MAX_SAMPLES: usize = 8192;

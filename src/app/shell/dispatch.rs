@@ -2,16 +2,13 @@
 
 use crate::app::interface::*;
 use crate::app::modes::compare::Compare;
-use crate::app::modes::figure;
-use crate::app::modes::learn;
+use crate::app::modes::{figure, learn};
 use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request};
-use crate::app::view_options::Magnification;
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
-use crate::scene::LoadId;
 
 impl Lab {
     /// Updates the window after changes of the session.

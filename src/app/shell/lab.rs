@@ -6,15 +6,14 @@ use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::measure::{Measure, limits};
 use crate::app::panel::PanelState;
+use crate::app::session::Notice;
 use crate::app::session::document::{Document, built_in};
 use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;
-use crate::app::session::{Notice, Session};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
 use crate::app::shell::settings::Settings;
 use crate::app::viewport::view::{BodyView, CardContent, Content};
-use crate::app::widgets::load_scale::OpeningLoads;
 
 /// Request of the lab to the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

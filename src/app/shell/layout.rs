@@ -12,9 +12,7 @@ use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{shortcuts, status_bar, toolbar};
-use crate::app::task::thread::POLL;
-use crate::app::viewport::menu;
-use crate::app::viewport::{overlay, time_line};
+use crate::app::viewport::{menu, overlay, time_line};
 use crate::app::widgets::palette;
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.

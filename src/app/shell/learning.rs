@@ -4,7 +4,6 @@
 use crate::app::interface::*;
 use crate::app::modes::learn::Learn;
 use crate::app::panel::PanelState;
-use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Lesson};
 

@@ -7,7 +7,6 @@ use crate::app::panel::edges;
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::menu;
-use crate::app::widgets::text::boxed_text;
 
 /// Time for which a message is shown.
 const TOAST: Duration = Duration::from_secs(4);

@@ -5,10 +5,9 @@ use std::io::{Error, ErrorKind};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::app::ThemeChoice;
 use crate::app::interface::*;
 use crate::app::language::Language;
-use crate::app::platform;
+use crate::app::{ThemeChoice, platform};
 
 /// Largest number of recent files.
 const MAX_RECENT: usize = 10;

@@ -1,7 +1,5 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
-use std::borrow::Cow;
-
 use egui::Galley;
 
 use crate::app::diagnosis::{
@@ -13,8 +11,7 @@ use crate::app::language::filled;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
 use crate::app::widgets::buttons::{Icon, icon_button};
-use crate::app::widgets::text::{UNKNOWN, semibold};
-use crate::format::{grouped, two_digits};
+use crate::format::grouped;
 
 /// Name of the error, and the least width of the slot of its remark, points: what follows stays in place when the remark
 /// changes.

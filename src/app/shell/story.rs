@@ -8,7 +8,6 @@ use crate::app::panel::PanelState;
 use crate::app::platform::page;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab, Story};
-use crate::render::{Camera, Margins};
 
 struct Part {
     /// Text over the body, of at most eight words.

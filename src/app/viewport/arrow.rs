@@ -1,16 +1,9 @@
 //! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
 
-use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, Visuals, vec2};
-use nalgebra::Vector2;
-
+use crate::app::interface::*;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::load_scale::{LoadScale, OpeningLoads};
-use crate::app::widgets::text::Labels;
-use crate::assembly::System;
-use crate::format::{engineering, round_down, rounded, three_digits};
-use crate::mesh::Mesh;
-use crate::scene::{Load, Material, Place, Scene};
+use crate::format::rounded;
 
 /// Smallest length that is drawn, points: long enough to be grabbed.
 const STUB: f64 = 16.0;

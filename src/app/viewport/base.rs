@@ -6,10 +6,6 @@ use crate::app::viewport::arrow::point_of_application;
 use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::text::boxed_text;
-use crate::assembly::System;
-use crate::mesh::{Mesh, Segment};
-use crate::scene::SectionLine;
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to

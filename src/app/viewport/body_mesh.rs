@@ -1,21 +1,11 @@
 //! Displayed mesh of a body: positions of its points, and colours of its field. Kept between frames.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use egui::{Color32, Visuals};
-use nalgebra::Vector2;
-
-use crate::app::view_options::ViewOptions;
-use crate::app::widgets::palette::Palette;
-use crate::assembly::System;
-use crate::mesh::{MaterialPoint, Mesh};
+use crate::app::interface::*;
 use crate::render::Frame;
-use crate::render::colormap::ColorMap;
-use crate::render::display_geometry::DisplayGeometry;
 use crate::render::interpolated_field::{Components, InterpolatedField};
-use crate::simulation::{Field, Simulation};
-use crate::study::{ProbeReference, Reference};
+use crate::study::ProbeReference;
 
 /// Displayed mesh of a body in its current state.
 #[derive(Debug, Default)]

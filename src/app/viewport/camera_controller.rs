@@ -1,8 +1,6 @@
 //! Camera controller: the camera fits the whole body, with smooth transitions, or stays where the user has moved it.
 
-use nalgebra::Vector2;
-
-use crate::render::{Camera, Margins};
+use crate::app::interface::*;
 
 /// Lowest and highest corner of a box, m.
 type Box2 = [Vector2<f64>; 2];

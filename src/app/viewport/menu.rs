@@ -5,11 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use crate::app::interface::*;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::load_scale::OpeningLoads;
-use crate::assembly::{Edge, System};
-use crate::format::two_digits;
-use crate::mesh::{Mesh, Segment, axis_angle, bent, straightened};
-use crate::scene::{Probe, SectionLine};
+use crate::mesh::{axis_angle, bent, straightened};
+use crate::scene::Probe;
 use crate::section;
 
 /// Entry of the menu: its text, and the scene that it leads to.

@@ -2,14 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-
+use crate::app::interface::*;
 use crate::app::viewport::arrow::{Arrow, MIN_SPAN, paint_grip, power_of_ten_above};
-use crate::app::widgets::load_scale::{LoadScale, OpeningLoads, STRAIGHT};
-use crate::app::widgets::text::Labels;
-use crate::assembly::System;
-use crate::format::{engineering, round_down, three_digits};
-use crate::scene::Material;
 
 /// Radius at the start of the arrow, points; it grows by the pitch with every revolution, so that revolutions do not
 /// overlap.

@@ -1,33 +1,16 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
-use std::borrow::Cow;
-
-use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
-use crate::app::widgets::text::Labels;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, Visuals, pos2, vec2};
-use nalgebra::Vector2;
-
 use crate::app::diagnosis::{Errors, error_text, load_text};
-use crate::app::language::{area_text, fill, tr};
+use crate::app::interface::*;
 use crate::app::session::history::MotionSample;
-use crate::app::session::playback::Playback;
-use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::{self, ForceArrows};
 use crate::app::viewport::handle::HotHandle;
 use crate::app::viewport::moment_arrow::MomentArrow;
-use crate::app::widgets::legend::LegendMark;
-use crate::app::widgets::load_scale::OpeningLoads;
-use crate::app::widgets::palette::{BODY, Palette, SMALL};
-use crate::assembly::{MouseSpring, System};
-use crate::format::{engineering, number, prefix, round_down, three_digits, ticks};
-use crate::render::Camera;
-use crate::render::colormap::ColorMap;
-use crate::render::display_geometry::DisplayGeometry;
-use crate::scene::{Analysis, Load, MethodKind, Place, Scene};
+use crate::app::viewport::probe;
+use crate::app::viewport::projection::Projection;
+use crate::assembly::MouseSpring;
 use crate::section::{Section, SectionForces};
 use crate::simulation::SupportReaction;
-use crate::study::Reference;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {

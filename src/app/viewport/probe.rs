@@ -1,15 +1,10 @@
 //! Values at the point under the pointer, and at a pinned point.
 
-use egui::{
-    Align2, Area, Color32, Frame, Grid, Order, Painter, Pos2, Rect, RichText, Role, Stroke, Ui, Vec2, WidgetInfo, vec2,
-};
-use nalgebra::{Matrix2, Vector2};
+use egui::{Area, Grid, Order};
+use nalgebra::Matrix2;
 
-use crate::app::language::{fill, tr};
-use crate::app::widgets::text::boxed_text;
-use crate::format::{engineering, engineering_pair, three_digits};
-use crate::mesh::{MaterialPoint, Mesh};
-use crate::simulation::{Field, PointState, PointValues};
+use crate::app::interface::*;
+use crate::simulation::PointState;
 
 /// Distance within which a click hits a pinned point, points.
 const NEAR: f32 = 9.0;

@@ -1,9 +1,7 @@
 //! Projection from the plane of the body to the window.
 
-use egui::{Pos2, Rect, vec2};
-use nalgebra::Vector2;
-
-use crate::render::{Camera, Viewport};
+use crate::app::interface::*;
+use crate::render::Viewport;
 
 /// Projection from metres to window positions.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,9 @@
 //! Time line under a body in motion: the recorded seconds, with a knob at the displayed moment.
 
-use egui::{Align2, CursorIcon, EventFilter, FontId, Key, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{CursorIcon, EventFilter};
 
-use crate::app::action::Action;
-use crate::app::language::tr;
-use crate::app::session::playback::Playback;
+use crate::app::interface::*;
 use crate::app::viewport::overlay::LEGEND_WIDTH;
-use crate::app::widgets::palette::{Palette, SMALL};
 
 /// Shortest line, points.
 const SHORTEST: f32 = 80.0;

@@ -1,32 +1,22 @@
 //! View of one body: camera, drawn mesh, pointer, and overlays.
 
-use std::borrow::Cow;
-
-use egui::{Color32, Painter, Pos2, Rect, Response, Sense, Ui, Visuals};
-use nalgebra::Vector2;
-
 use crate::app::diagnosis::Errors;
-use crate::app::session::{Session, has_mesh_of};
-use crate::app::view_options::{Magnification, ViewOptions};
+use crate::app::interface::*;
+use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::handle::Handle;
+use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
-use crate::app::viewport::probe::{CardChoice, CardRequest, Pinned, PointCard};
+use crate::app::viewport::probe::{self, CardChoice, CardRequest, Pinned, PointCard};
 use crate::app::viewport::projection::{Projection, viewport};
-use crate::app::viewport::{menu, probe};
-use crate::app::widgets::load_scale::OpeningLoads;
-use crate::app::widgets::palette::Palette;
-use crate::mesh::{MaterialPoint, Mesh};
-use crate::render::{Camera, Frame, Margins, View};
-use crate::scene::{Load, MethodKind, Place, Scene};
+use crate::render::Frame;
 use crate::section::{Section, SectionForces};
-use crate::simulation::{Field, Simulation, Status};
 use crate::state::largest;
-use crate::study::{Reference, section_chart};
+use crate::study::section_chart;
 
 /// Largest margins around the body when the camera is fitted, points, and their largest part of the view: room for the
 /// load arrow, the line key above and the colour bar below.

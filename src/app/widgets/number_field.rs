@@ -10,14 +10,12 @@ use egui::{
     UiBuilder,
 };
 
-use crate::app::language::{fill, said, tr};
+use crate::app::prelude::*;
 use crate::app::widgets::load_scale::LoadScale;
 use crate::app::widgets::palette::Palette;
 use crate::format::{editable, number, three_digits};
-use crate::scene::Scene;
 use crate::scene::limits::Limit;
 use crate::scene::units::{self, UnitError};
-use crate::sentence::{Sentence, sentence};
 
 /// Messages next to fields, by the field's label.
 pub(crate) type Messages = BTreeMap<&'static str, Sentence>;

@@ -3,9 +3,8 @@
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
+use crate::app::prelude::*;
 use crate::render::colormap::ColorMap;
-use crate::scene::{Analysis, IntegratorKind, MethodKind, Scene};
-use crate::simulation::Field;
 use crate::study::color;
 
 /// Size of body text, points.

@@ -1,9 +1,8 @@
 //! Text on a box, semibold text, the names of keys, and the sign for an unknown number.
 
-use std::sync::Arc;
-
 use egui::{Align2, Color32, Context, FontId, Galley, Painter, Pos2, Rect, Vec2, Visuals, pos2, vec2};
 
+use crate::app::prelude::*;
 use crate::app::widgets::palette::BODY;
 
 /// Sign in place of an unknown number.

@@ -1,8 +1,5 @@
 //! Open window: its surface, its graphics device, and what draws into it.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
 use egui::{ClippedPrimitive, ViewportId};
 use egui_wgpu::ScreenDescriptor;
 use winit::dpi::PhysicalSize;
@@ -13,6 +10,7 @@ use crate::app::AppError;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::platform::clipboard::Clipboard;
 use crate::app::platform::new_file::NewFile;
+use crate::app::prelude::*;
 use crate::render::{AdapterSearch, Candidate, Gpu, NO_WINDOW, RenderError, View, instance, read_texture, wanted_name};
 
 /// Window, and the graphics resources that draw into it. The order of the fields matters: the surface must be dropped

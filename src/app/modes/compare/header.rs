@@ -1,26 +1,13 @@
 //! Layout of the panes, their headers with pickers and results, and the key under them.
 
 use egui::emath::GuiRounding;
-use egui::{
-    Align, Align2, Color32, ComboBox, FontId, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2,
-};
 
 use super::pane::{Condition, Pane};
 use super::setting::PANES;
 use super::{CompareInput, PaneChange};
 use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip};
-use crate::app::language::{area_text, sentence};
-use crate::app::prelude::*;
-use crate::app::view_options::ViewOptions;
+use crate::app::interface::*;
 use crate::app::viewport::overlay;
-use crate::app::widgets::buttons::choice;
-use crate::app::widgets::legend::LegendMark;
-use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-use crate::app::widgets::text::semibold;
-use crate::dynamics::INTEGRATORS;
-use crate::format::{engineering, engineering_pair, prefix, three_digits, two_digits};
-use crate::method::METHODS;
-use crate::simulation::Motion;
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;

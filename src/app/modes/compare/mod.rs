@@ -1,26 +1,20 @@
 //! Comparison of two to four settings side by side, at rest or in motion: one load, one clock, one camera, one colour
 //! range.
 
-use egui::{Button, Context, Panel, Rect, Ui, UiBuilder, vec2};
+use egui::Panel;
 
 use self::header::{Grid, grow};
 use self::setting::PANES;
-use crate::app::prelude::*;
-use crate::app::session::Session;
+use crate::app::interface::*;
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
-use crate::app::task::thread::{POLL, QUIET_POLL};
-use crate::app::view_options::ViewOptions;
+use crate::app::task::thread::QUIET_POLL;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
-use crate::app::widgets::buttons::option_button;
-use crate::dynamics::INTEGRATORS;
-use crate::method::METHODS;
-use crate::render::{Camera, Margins, View};
 use crate::state::largest;
 use crate::study::Setting;
 

@@ -2,20 +2,16 @@
 
 use std::collections::VecDeque;
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui};
-
 use super::CompareInput;
 use super::setting::PaneSetting;
 use crate::app::diagnosis::equilibrium_text;
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
-use crate::app::session::playback::Playback;
 use crate::app::session::run::{PaneEnd, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
-use crate::app::view_options::ViewOptions;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
@@ -23,12 +19,7 @@ use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::{Projection, viewport};
-use crate::app::widgets::load_scale::OpeningLoads;
-use crate::app::widgets::palette::{BODY, Palette};
-use crate::assembly::System;
 use crate::exact_beam::error_percent;
-use crate::render::display_geometry::DisplayGeometry;
-use crate::render::{Camera, View};
 
 /// Scene with settings of its own, compared with others.
 #[derive(Debug, Default)]

@@ -5,11 +5,10 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::app::language::{self, tr};
+use crate::app::interface::*;
+use crate::app::language;
 use crate::element::ELEMENTS;
 use crate::format::count;
-use crate::method::METHODS;
-use crate::scene::{ElementKind, IntegratorKind, MethodKind, Scene};
 use crate::study::Setting;
 
 /// Smallest and largest number of panes.

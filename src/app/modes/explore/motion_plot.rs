@@ -1,15 +1,10 @@
 //! Plots of a motion: energy by kind, and displacement of the first probe over time.
 
-use crate::app::prelude::*;
-use crate::app::view_options::MotionPlot;
-use egui::{Color32, Ui, Vec2, vec2};
 use egui_plot::{Line, PlotPoints, VLine};
 
+use crate::app::interface::*;
 use crate::app::session::history::{History, MotionSample};
-use crate::app::session::playback::Playback;
-use crate::app::widgets::buttons::option_button;
-use crate::app::widgets::legend;
-use crate::app::widgets::palette::Palette;
+use crate::app::view_options::MotionPlot;
 use crate::app::widgets::plot::still;
 
 const PLOTS: [(MotionPlot, &str, &str); 2] = [

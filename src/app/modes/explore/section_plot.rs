@@ -1,14 +1,9 @@
 //! Plots of sections: the stress along each section of the scene, and N, V and M along its beam.
 
-use egui::Ui;
-
-use crate::app::action::Action;
+use crate::app::interface::*;
 use crate::app::modes::figure;
-use crate::app::platform::IS_PAGE;
-use crate::app::prelude::*;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::menu::with_middle_section;
-use crate::app::widgets::buttons::options;
 use crate::format::Context;
 use crate::section::{Section, SectionError};
 use crate::simulation::Equilibrium;

@@ -3,8 +3,6 @@
 use super::{Learn, triangle};
 use crate::app::interface::*;
 use crate::app::language::signed_percent;
-use crate::format::number;
-use crate::scene::LoadId;
 use crate::scene::limits::Limit;
 
 /// Largest force of the slider, N.

@@ -1,7 +1,5 @@
 //! Formulas as egui text: italic letters, `^{…}` for superscripts, `_{…}` for subscripts, `` `…` `` for upright words.
 
-use std::sync::Arc;
-
 use egui::text::LayoutJob;
 use egui::{Galley, TextFormat};
 

@@ -2,9 +2,8 @@
 
 use super::Learn;
 use crate::app::interface::*;
-use crate::progress::{Observer, Progress};
 use crate::simulation::probe_results;
-use crate::study::{Effort, Reference};
+use crate::study::Effort;
 
 /// Error of an element on the scene's cells.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

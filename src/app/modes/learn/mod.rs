@@ -1,16 +1,14 @@
 //! Mode Learn: the article on a row of cards. Each card sets up its scene, and the user can change everything at any
 //! time. The user's own scene is put aside, and restored when the mode ends.
 
+use cards::CardDisplay;
 use egui::Panel;
+use locking::ElementError;
 
 use crate::app::interface::*;
 use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
-use crate::app::task::thread::POLL;
 use crate::app::widgets::buttons::at_right;
-use crate::app::widgets::number_field::Messages;
-use crate::render::Camera;
-use crate::render::display_geometry::DisplayGeometry;
 
 mod area;
 mod cards;
@@ -23,11 +21,8 @@ mod matrices;
 mod residuals;
 mod triangle;
 
-use cards::CardDisplay;
 pub(crate) use cards::{CARDS, Card};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
-
-use locking::ElementError;
 
 /// Height of the row of cards, points, and its largest fraction of the window's height.
 const HEIGHT: f32 = 258.0;

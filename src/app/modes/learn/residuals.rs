@@ -4,7 +4,6 @@
 use super::step_buttons;
 use crate::app::diagnosis::rho_number;
 use crate::app::interface::*;
-use crate::method::METHODS;
 
 /// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {

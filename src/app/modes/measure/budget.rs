@@ -1,28 +1,19 @@
 //! Error against time of all settings measured on this machine, and the settings within given limits.
 
-use crate::app::session::facts::StudyFact;
-use crate::app::task::keyed::Keyed;
-use crate::app::widgets::plot::{X_AXIS, fixed, marker, segments};
-use egui::{Align2, Button, Context, FontId, ProgressBar, RichText, ScrollArea, Stroke, Ui, vec2};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi,
     Points, Polygon, Text, VLine,
 };
 
-use crate::app::action::Action;
 use crate::app::diagnosis::drift_text;
-use crate::app::language::{bound_percent, count, fill, joined, percent, said, tr};
+use crate::app::interface::*;
+use crate::app::language::bound_percent;
 use crate::app::session::clock::FRAMES;
-use crate::app::task::thread::POLL;
-use crate::app::widgets::number_field::{Messages, NumberField};
-use crate::app::widgets::palette::Palette;
-use crate::dynamics::INTEGRATORS;
+use crate::app::session::facts::StudyFact;
+use crate::app::task::keyed::Keyed;
+use crate::app::widgets::plot::{X_AXIS, fixed, marker, segments};
 use crate::element::ELEMENTS;
-use crate::format::{engineering, number, three_digits, two_digits};
-use crate::method::METHODS;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
-use crate::scene::{Analysis, Scene, keys, limits};
-use crate::sentence::Sentence;
 use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};
 
 /// The study of the scene, and the largest error and time that a setting may have.

@@ -1,21 +1,13 @@
 //! Loads up to which each method and element holds, with the load of the scene on the same axis; of a motion, time steps
 //! up to which each integrator does.
 
-use egui::{
-    Align2, Color32, EventFilter, FontId, ProgressBar, Rect, Role, ScrollArea, Sense, Stroke, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
-};
+use egui::EventFilter;
 
-use crate::app::action::Action;
+use crate::app::interface::*;
 use crate::app::modes::measure::first_probe;
-use crate::app::prelude::*;
-use crate::app::session::Session;
 use crate::app::session::facts::with_default_methods;
-use crate::app::widgets::legend;
-use crate::app::widgets::palette::{Palette, SMALL};
-use crate::format::{number, prefix, six_digits, three_digits};
+use crate::format::six_digits;
 use crate::plot::{ScaledAxis, rating_color};
-use crate::scene::{Analysis, Beam, Load};
 use crate::study::Setting;
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};

@@ -4,13 +4,9 @@ pub(crate) mod budget;
 pub(crate) mod limits;
 pub(crate) mod load_curve;
 
-use egui::{Button, Ui};
-
-use crate::app::action::Action;
+use crate::app::interface::*;
 use crate::app::modes::measure::budget::Budget;
-use crate::app::prelude::*;
-use crate::app::session::{Session, facts};
-use crate::app::view_options::{MeasureTab, Toggle, ViewOptions};
+use crate::app::session::facts;
 
 /// State of Measure.
 #[derive(Debug, Default)]
