@@ -670,13 +670,17 @@ impl Session {
         self.facts.request_at_rest(&self.scene, shown, true);
     }
 
-    /// Solves the scene from rest and certifies the result; for a body so small that this takes less than a frame.
+    /// Solves the scene from rest and certifies the result, or computes ρ at the equilibrium that the warped iteration does
+    /// not reach; for a body so small that this takes less than a frame.
     pub(crate) fn solve_from_rest(&mut self) {
         self.reset();
         while *self.model.simulation.status() == Status::Running {
             self.iterate();
         }
         self.certify();
+        if self.lacks_rho() {
+            self.facts.rho.wait(&self.scene);
+        }
     }
 
     fn certify(&mut self) {
@@ -814,11 +818,6 @@ impl Session {
     pub(crate) fn lacks_rho(&self) -> bool {
         let is_warped = self.scene.solver.method == MethodKind::Warped && !self.is_motion();
         is_warped && self.has_ended() && *self.model.simulation.status() != Status::Converged
-    }
-
-    /// Computes ρ at the equilibrium, and waits for it.
-    pub(crate) fn wait_for_rho(&mut self) {
-        self.facts.rho.wait(&self.scene);
     }
 
     /// Displays `state`; returns `false` if it does not fit the mesh.

@@ -292,8 +292,7 @@ impl Lab {
                 simulation: session.drawn(),
                 geometry: session.geometry(),
                 points: &viewport.body.points,
-                camera: viewport.camera.shown,
-                rect,
+                projection: viewport.projection(),
                 palette: Palette::new(ui.visuals()),
             };
             if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {

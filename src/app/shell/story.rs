@@ -143,10 +143,6 @@ impl Lab {
             return self.end_story();
         }
         session.solve_from_rest();
-        let is_lost = method == MethodKind::Warped && !session.simulation().status().is_success();
-        if is_lost {
-            session.wait_for_rho();
-        }
         self.apply_session_changes();
     }
 

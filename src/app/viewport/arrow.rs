@@ -50,24 +50,6 @@ pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s].map(|component| rounded(component, 12))
 }
 
-/// Returns the largest force with a visible effect, N, rounded up to a power of ten: the force that strains the whole
-/// section by 1, or, for slender bodies, a thousand times the force that bends the body by its length under linear
-/// theory.
-fn largest_force(material: &Material, system: &System) -> f64 {
-    const TIMES: f64 = 1e3;
-    let [bending, axial] = bending_force(material, system);
-    power_of_ten_above(axial.min(TIMES * bending))
-}
-
-/// Returns the force that bends a body by its length under linear theory, and the force that strains its section by 1,
-/// N.
-fn bending_force(material: &Material, system: &System) -> [f64; 2] {
-    let [length, height] = system.strip();
-    let axial = material.young * material.thickness * height;
-    // 3EI/L² with I = t h³/12.
-    [0.25 * axial * (height / length).powi(2), axial]
-}
-
 /// Returns the smallest power of ten that is not below `value`, limited to a range without overflow.
 pub(crate) fn power_of_ten_above(value: f64) -> f64 {
     /// A value above a power of ten by rounding only counts as that power.
@@ -99,10 +81,16 @@ fn room(rect: Rect, from: Pos2, direction: Vec2) -> f64 {
 
 /// Returns the forces, N, that scale the arrows and sliders of a scene: the largest opening force and the largest force
 /// of sliders. For a scene without forces the first is the one that bends its body by about a third of its length under
-/// linear theory.
+/// linear theory. The second is the largest one with a visible effect, rounded up to a power of ten: it strains the whole
+/// section by 1, or, for slender bodies, is a thousand times the force that bends the body by its length.
 pub(crate) fn force_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
-    let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending_force(material, system)[0]));
-    [usual, largest_force(material, system).max(MIN_SPAN * usual)]
+    const TIMES: f64 = 1e3;
+    let [length, height] = system.strip();
+    let axial = material.young * material.thickness * height;
+    // 3EI/L² with I = t h³/12.
+    let bending = 0.25 * axial * (height / length).powi(2);
+    let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending));
+    [usual, power_of_ten_above(axial.min(TIMES * bending)).max(MIN_SPAN * usual)]
 }
 
 /// Returns the point of application of a load or a support: the middle of its edge, its node, or its point of the body;

@@ -20,25 +20,17 @@ const START: f64 = TAU / 8.0;
 /// Radius around the centre, in points, inside which the pointer's angle is ignored.
 const MIDDLE: f32 = 5.0;
 
-/// Returns the moment that rolls the rest shape up once, 2πEI/L, N m, rounded up to a power of ten.
-fn largest_moment(material: &Material, system: &System) -> f64 {
-    power_of_ten_above(rolling_moment(material, system))
-}
-
-/// Returns the moment that rolls a straight body up once, N m.
-fn rolling_moment(material: &Material, system: &System) -> f64 {
-    let [length, height] = system.strip();
-    TAU * material.young * material.thickness * height.powi(3) / (12.0 * length)
-}
-
 /// Returns the moments, N m, that scale the arrows and sliders of a scene: the largest opening moment and the largest
-/// moment of sliders. For a scene without moments the first is about a tenth of the moment that rolls the body up once, or
-/// of the moment of the largest opening force about the other end of the body, if that is smaller.
+/// moment of sliders. The second rolls the rest shape up once, rounded up to a power of ten. For a scene without moments
+/// the first is about a tenth of that moment, or of the moment of the largest opening force about the other end of the
+/// body, if that is smaller.
 pub(crate) fn moment_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
-    let of_force = opening.force.map_or(f64::INFINITY, |force| force * system.strip()[0]);
-    let usual = || round_down(0.1 * rolling_moment(material, system).min(of_force));
-    let usual = opening.moment.unwrap_or_else(usual);
-    [usual, largest_moment(material, system).max(MIN_SPAN * usual)]
+    let [length, height] = system.strip();
+    // 2πEI/L with I = t h³/12.
+    let rolling = TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
+    let of_force = opening.force.map_or(f64::INFINITY, |force| force * length);
+    let usual = opening.moment.unwrap_or_else(|| round_down(0.1 * rolling.min(of_force)));
+    [usual, power_of_ten_above(rolling).max(MIN_SPAN * usual)]
 }
 
 /// Circular arrow of a moment, in window coordinates.

@@ -6,17 +6,9 @@ use nalgebra::Matrix2;
 use crate::app::interface::*;
 use crate::simulation::PointState;
 
-/// Distance within which a click hits a pinned point, points.
-const NEAR: f32 = 9.0;
-
 /// Returns the weighted sum of `positions` at a material point: its position if these are the nodes' positions, m.
 pub(crate) fn place(mesh: &Mesh, positions: &[Vector2<f64>], point: MaterialPoint) -> Option<Vector2<f64>> {
     mesh.weights(point)?.iter().map(|&(n, w)| Some(positions.get(n as usize)? * w)).sum()
-}
-
-/// Returns `true` if a click is on a pinned point; both positions are in the window.
-pub(crate) fn is_on(kept: Pos2, click: Pos2) -> bool {
-    kept.distance(click) <= NEAR
 }
 
 /// Formats a value of a field with its unit.
@@ -56,27 +48,11 @@ const SCALE_AND_BAR: f32 = 84.0;
 /// Choices of the user on the cards of points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CardChoice {
-    axes: Axes,
+    /// `true` if stresses are in the axes x and y of the material at rest, rotated by R; they are in those of space else.
+    in_material: bool,
     /// `true` if all values are shown where they hide much of the body too.
-    shows_all: bool,
+    pub shows_all: bool,
     shows_matrices: bool,
-}
-
-impl CardChoice {
-    /// Begins the card of another point, with as many values as fit.
-    pub(crate) fn begin(&mut self) {
-        self.shows_all = false;
-    }
-}
-
-/// Axes of the stresses on a card.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Axes {
-    /// x and y of space.
-    #[default]
-    Space,
-    /// x and y of the material at rest, rotated by R.
-    Material,
 }
 
 /// Request of a card.
@@ -95,21 +71,19 @@ fn displacement_row(point: &PointState) -> Row {
     ("u", metres(point.displacement), "Displacement")
 }
 
-/// Returns the values of a point, with the stresses in these axes.
-fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
+/// Returns the values of a point, with the stresses in the axes of space or of the material.
+fn rows_of(point: &PointState, in_material: bool) -> Vec<Row> {
     let get = |field: Field| point.field(field).map(|v| three_digits(field.display_unit().0 * v));
     let one = |field: Field| get(field).map(|v| engineering(v, field.display_unit().1));
     let two = |a: Field, b: Field| Some(engineering_pair([get(a)?, get(b)?], a.display_unit().1));
     let none = |text: Option<String>| text.unwrap_or_else(|| tr("none").to_owned());
-    let (x, y, xy) = match axes {
-        Axes::Space => (Field::StressX, Field::StressY, Field::ShearStress),
-        Axes::Material => (Field::MaterialStressX, Field::MaterialStressY, Field::MaterialShearStress),
+    let (x, y, xy) = match in_material {
+        true => (Field::MaterialStressX, Field::MaterialStressY, Field::MaterialShearStress),
+        false => (Field::StressX, Field::StressY, Field::ShearStress),
     };
     // Capitals are the axes of the material, which rotate with it.
-    let [stresses, shear_stress] = match axes {
-        Axes::Material if !point.is_linear => ["σ_X, σ_Y", "τ_XY"],
-        _ => ["σ_x, σ_y", "τ_xy"],
-    };
+    let rotates = in_material && !point.is_linear;
+    let [stresses, shear_stress] = if rotates { ["σ_X, σ_Y", "τ_XY"] } else { ["σ_x, σ_y", "τ_xy"] };
     let ([strains, shear_strain], strain) = if point.is_linear {
         (["ε_x, ε_y", "γ_xy"], "Strain ε = sym F − I of linear theory")
     } else {
@@ -120,7 +94,7 @@ fn rows_of(point: &PointState, axes: Axes) -> Vec<Row> {
         rows.push(("θ", none(one(Field::RotationAngle)), "Angle of the rotation R"));
     }
     let principal = two(Field::LargerPrincipalStress, Field::SmallerPrincipalStress);
-    let direction = principal_direction(point).filter(|_| axes == Axes::Space || point.is_linear);
+    let direction = principal_direction(point).filter(|_| !rotates);
     let direction = direction.map_or_else(String::new, |angle| format!(", {:.0}°", angle.to_degrees().round() + 0.0));
     let out_of_plane = point.cauchy.map(|stress| stress.zz).filter(|stress| *stress != 0.0);
     let normal =
@@ -194,7 +168,7 @@ pub(crate) fn spread(corners: &[Pos2], triangles: &[[u32; 3]]) -> Vec<Pos2> {
 /// Place of the card of a pinned point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointCard {
-    point: MaterialPoint,
+    pub point: MaterialPoint,
     view: Rect,
     shows_all: bool,
     size: Vec2,
@@ -233,19 +207,10 @@ impl PointCard {
         if choice.shows_all || fits { all } else { best(FEW).0 }
     }
 
-    /// Returns `true` if the card is of a point.
-    pub(crate) fn is_of(&self, point: MaterialPoint) -> bool {
-        self.point == point
-    }
-
-    /// Returns `true` if the card was placed for the point, the view and the choice.
-    pub(crate) fn is_for(&self, point: MaterialPoint, view: Rect, choice: CardChoice) -> bool {
-        (self.point, self.view, self.shows_all) == (point, view, choice.shows_all)
-    }
-
-    /// Returns `true` if the card covers a position in the window.
-    pub(crate) fn hides(&self, at: Pos2) -> bool {
-        self.area().contains(at)
+    /// Returns `true` if the card was placed for the point, the view and the choice, and does not cover the point, which is
+    /// at `at` in the window.
+    pub(crate) fn suits(&self, point: MaterialPoint, view: Rect, choice: CardChoice, at: Pos2) -> bool {
+        (self.point, self.view, self.shows_all) == (point, view, choice.shows_all) && !self.area().contains(at)
     }
 
     /// Returns the position of the aligned point of the card, in the window.
@@ -310,7 +275,7 @@ fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut C
         PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
     };
     let matrices = matrices_of(point);
-    let rows = rows_of(point, choice.axes);
+    let rows = rows_of(point, choice.in_material);
     ui.horizontal(|ui| {
         ui.strong(&title);
         let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
@@ -326,8 +291,8 @@ fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut C
     if !is_short && !point.is_linear {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
-            for (own, name) in [(Axes::Space, "space x, y"), (Axes::Material, "material X, Y")] {
-                ui.selectable_value(&mut choice.axes, own, RichText::new(tr(name)).size(12.0));
+            for (own, name) in [(false, "space x, y"), (true, "material X, Y")] {
+                ui.selectable_value(&mut choice.in_material, own, RichText::new(tr(name)).size(12.0));
             }
         });
     }

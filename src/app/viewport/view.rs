@@ -167,7 +167,8 @@ impl BodyView {
         View { viewport, frame: self.frame(content), camera: self.camera.shown }
     }
 
-    fn projection(&self) -> Projection {
+    /// Returns the projection of the last [`Self::fit_camera`].
+    pub(crate) fn projection(&self) -> Projection {
         Projection { camera: self.camera.shown, rect: self.rect }
     }
 
@@ -245,6 +246,8 @@ impl BodyView {
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
     pub(crate) fn take(&mut self, interaction: &Interaction, response: &Response, content: &Content<'_>) {
+        /// Distance within which a click hits a pinned point, points.
+        const NEAR: f32 = 9.0;
         match interaction.camera {
             CameraMove::None => {}
             CameraMove::To(camera) => self.camera.set_camera(camera),
@@ -254,7 +257,7 @@ impl BodyView {
         let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
-            let is_unpinned = kept.is_some_and(|kept| probe::is_on(kept, click));
+            let is_unpinned = kept.is_some_and(|kept| kept.distance(click) <= NEAR);
             self.probe = (!is_unpinned).then_some(rounded(content, point));
         }
     }
@@ -369,11 +372,11 @@ impl BodyView {
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
         // Another point begins with the values that fit.
-        if self.card.is_none_or(|card| !card.is_of(point)) {
-            self.card_choice.begin();
+        if self.card.is_none_or(|card| card.point != point) {
+            self.card_choice.shows_all = false;
         }
         // The card stays where it is while the body moves, unless the point comes under it.
-        let is_well_placed = |card: &PointCard| card.is_for(point, self.rect, self.card_choice) && !card.hides(at);
+        let is_well_placed = |card: &PointCard| card.suits(point, self.rect, self.card_choice, at);
         let card = self.card.filter(is_well_placed).unwrap_or_else(|| {
             let projection = self.projection();
             let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();

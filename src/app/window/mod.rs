@@ -191,9 +191,7 @@ impl App {
         app.keep_settings();
         app.error.map_or(Ok(()), Err)
     }
-}
 
-impl App {
     /// Draws a frame; after the first error of a device, makes the graphics resources again.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let drawn = if self.device_failure().is_none() { self.frame(event_loop) } else { Ok(()) };

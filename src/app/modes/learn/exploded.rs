@@ -39,7 +39,7 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
             let rest: Vec<Vector2<f64>> = nodes.iter().map(|&n| mesh.nodes()[n as usize]).collect();
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
             let shift = mean(view.points_of(element)) - mean(corners);
-            let line: Vec<_> = corners.iter().map(|p| view.place(p + shift)).collect();
+            let line: Vec<_> = corners.iter().map(|p| view.projection.point(p + shift)).collect();
             for (width, color) in [(3.2_f32, view.palette.canvas), (1.5, view.palette.exact)] {
                 painter.add(Shape::closed_line(line.clone(), Stroke::new(width, color.gamma_multiply(strength))));
             }

@@ -8,6 +8,7 @@ use locking::ElementError;
 use crate::app::interface::*;
 use crate::app::session::facts::without_solver;
 use crate::app::task::keyed::{Keyed, facts};
+use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::at_right;
 
 mod area;
@@ -69,18 +70,11 @@ pub(crate) struct CardView<'a> {
     pub geometry: &'a DisplayGeometry,
     /// Positions of the drawn points, m.
     pub points: &'a [Vector2<f64>],
-    pub camera: Camera,
-    pub rect: Rect,
+    pub projection: Projection,
     pub palette: Palette,
 }
 
 impl CardView<'_> {
-    /// Returns the window position of a point of the plane.
-    fn place(&self, p: Vector2<f64>) -> Pos2 {
-        let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
-        self.rect.center() + vec2(x, y)
-    }
-
     /// Returns `true` if there are too many elements to paint each of them.
     fn is_fine(&self) -> bool {
         self.simulation.system().mesh().element_count() > MAX_ELEMENTS
@@ -97,7 +91,7 @@ impl CardView<'_> {
         let points = self.points_of(element);
         let lattice = (entry.cell.lattice)(entry.drawn_pieces);
         let around = lattice.sides.iter().flat_map(|side| &side[..side.len().saturating_sub(1)]);
-        around.filter_map(|&p| points.get(p as usize)).map(|&p| self.place(p)).collect()
+        around.filter_map(|&p| points.get(p as usize)).map(|&p| self.projection.point(p)).collect()
     }
 }
 
@@ -170,7 +164,7 @@ impl Learn {
 
     /// Selects the element that is drawn at a position in the window.
     pub(crate) fn pick(&mut self, view: &CardView<'_>, at: Pos2) {
-        let place = |p: u32| view.points.get(p as usize).map(|&p| view.place(p));
+        let place = |p: u32| view.points.get(p as usize).map(|&p| view.projection.point(p));
         let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
         let found = view.geometry.triangles.iter().position(|corners| {
             let [Some(a), Some(b), Some(c)] = corners.map(place) else { return false };
