@@ -67,7 +67,7 @@ impl Session {
 
     /// Returns `true` if the requested scene is set up in the background.
     fn is_wanted_in_background(&self) -> bool {
-        self.is_large && self.needs_work(&self.scene)
+        self.is_large && self.needs_work(&self.present.scene)
     }
 
     /// Returns `true` if a scene takes too long for the time between two frames: a new mesh takes longer than an
@@ -90,13 +90,13 @@ impl Session {
 
     /// Notes whether the wanted scene is large.
     pub(super) fn note_size(&mut self) {
-        self.is_large = self.is_large(&self.scene);
+        self.is_large = self.is_large(&self.present.scene);
     }
 
     /// Requests a scene, which the next background solve uses.
     pub(super) fn request_scene(&mut self, scene: Scene) {
         self.keep_before();
-        self.scene = scene;
+        self.present.scene = scene;
         self.note_size();
         self.changed.scene = true;
         self.stop_solve();
@@ -117,7 +117,7 @@ impl Session {
         if self.background.before.is_none() {
             self.background.before = Some(Box::new(Before {
                 since: Instant::now(),
-                version: self.version(),
+                version: self.present.clone(),
                 depth: self.undo.depth(),
                 label: None,
                 is_another_document: false,
@@ -157,10 +157,10 @@ impl Session {
     fn receive(&mut self, outcome: SolveOutcome) {
         let Some(solve) = self.background.solve.take() else { return };
         match outcome {
-            Ok(model) if solve.scene == self.scene => self.display(*model),
+            Ok(model) if solve.scene == self.present.scene => self.display(*model),
             // The next solve continues with the model of one that an edit has superseded.
-            Ok(model) if has_mesh_of(&self.scene, &solve.scene) => self.start_solve(Some(model)),
-            Err(error) if solve.scene == self.scene => {
+            Ok(model) if has_mesh_of(&self.present.scene, &solve.scene) => self.start_solve(Some(model)),
+            Err(error) if solve.scene == self.present.scene => {
                 let label = self.background.before.as_ref().and_then(|before| before.label);
                 self.roll_back();
                 self.notices.push(Notice { label, message: (&error).into() });
@@ -191,9 +191,9 @@ impl Session {
             return;
         }
         let own = returned.as_ref().map_or(&self.model.simulation, |model| &model.simulation);
-        let is_new = !has_mesh_of(&self.scene, own.scene());
+        let is_new = !has_mesh_of(&self.present.scene, own.scene());
         let is_needed = returned.is_some()
-            || own.scene() != &self.scene
+            || own.scene() != &self.present.scene
             || self.background.from_rest
             || self.background.iterations.is_some()
             || self.running && *own.status() == Status::Running;
@@ -214,9 +214,9 @@ impl Session {
         };
         let Some(base) = base else { return };
         // Iterations of a body that is not that large are made between two frames.
-        let is_made_here = !self.running || self.scene.unknowns() <= self.most_unknowns;
+        let is_made_here = !self.running || self.present.scene.unknowns() <= self.most_unknowns;
         let request = SolveRequest {
-            scene: self.scene.clone(),
+            scene: self.present.scene.clone(),
             base,
             from_rest: std::mem::take(&mut self.background.from_rest),
             iterations: self.background.iterations.take().or(is_made_here.then_some(0)),
@@ -245,7 +245,7 @@ impl Session {
         let Some(before) = std::mem::take(&mut self.background).before else { return };
         let Before { version, depth, model, .. } = *before;
         self.undo.take_back(depth);
-        Version { document: self.document, scene: self.scene } = version;
+        self.present = version;
         self.note_size();
         if let Some(model) = model {
             let scene = self.model.simulation.scene().clone();

@@ -87,9 +87,8 @@ pub(crate) struct Grab {
 /// One model being worked on.
 #[derive(Debug)]
 pub(crate) struct Session {
-    document: Document,
-    /// Requested scene. It differs from the simulation's scene only while a background solve is in progress.
-    scene: Scene,
+    /// Document, and the requested scene, which differs from the simulation's only while a background solve is in progress.
+    present: Version,
     undo: UndoHistory,
     /// Displayed model; a copy of it while it is solved in the background.
     model: Model,
@@ -144,8 +143,7 @@ impl Session {
         let mut model = Model::new(simulation, None);
         model.linear = solve_linear(model.simulation.scene(), model.simulation.system(), None);
         let mut session = Self {
-            document: Document::new(source, scene.clone()),
-            scene,
+            present: Version { document: Document::new(source, scene.clone()), scene },
             undo: UndoHistory::default(),
             model,
             most_unknowns: MAX_UNKNOWNS,
@@ -178,12 +176,12 @@ impl Session {
     }
 
     pub(crate) fn document(&self) -> &Document {
-        &self.document
+        &self.present.document
     }
 
     /// Returns the requested scene.
     pub(crate) fn scene(&self) -> &Scene {
-        &self.scene
+        &self.present.scene
     }
 
     pub(crate) fn simulation(&self) -> &Simulation {
@@ -220,7 +218,7 @@ impl Session {
             return Some(Err(&UNSTABLE));
         }
         let facts = &self.facts.reference;
-        facts.failure(&self.scene).map(Err).or_else(|| facts.get(&self.scene).map(Ok))
+        facts.failure(&self.present.scene).map(Err).or_else(|| facts.get(&self.present.scene).map(Ok))
     }
 
     /// Returns the reference solution, or the one that follows the load.
@@ -233,7 +231,9 @@ impl Session {
     pub(crate) fn live(&self) -> Option<&Live> {
         let has_error = |reference: &Reference| reference.first().is_some();
         let is_wanted = self.reference().is_none() && self.facts.reference.latest().is_some_and(has_error);
-        self.live.known().filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.scene))
+        self.live
+            .known()
+            .filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.present.scene))
     }
 
     /// Returns time and result of a solve from rest; `None` if they are not known for the present load, or the body is
@@ -243,8 +243,8 @@ impl Session {
     }
 
     fn timed_solve(&self) -> Option<&SolveFromRest> {
-        let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.scene).map(|(_, solve)| solve);
-        self.facts.time.get(&self.scene).or(own)
+        let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.present.scene).map(|(_, solve)| solve);
+        self.facts.time.get(&self.present.scene).or(own)
     }
 
     /// Returns time and result at the load at which the hand rested last, during the drag of a load.
@@ -295,7 +295,12 @@ impl Session {
 
     /// Returns `true` if the scene has unsaved edits.
     pub(crate) fn is_edited(&self) -> bool {
-        self.scene != self.document.original
+        self.unsaved().is_some()
+    }
+
+    /// Returns the edited scene and its document; `None` if there are no unsaved edits.
+    pub(crate) fn unsaved(&self) -> Option<&Version> {
+        Some(&self.present).filter(|present| present.scene != present.document.original)
     }
 
     /// Returns the body drawn in place of the simulation, whose search has found no equilibrium; `None` if the simulation
@@ -336,7 +341,7 @@ impl Session {
     /// are reported later as a [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
         let refused = |error: SimulationError| Sentence::from(&error);
-        let before = self.version();
+        let before = self.present.clone();
         let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
         match edit {
             Edit::Scene(label, scene) => {
@@ -379,20 +384,15 @@ impl Session {
         Ok(self.changed)
     }
 
-    /// Returns the session as the undo history stores it.
-    fn version(&self) -> Version {
-        Version { document: self.document.clone(), scene: self.scene.clone() }
-    }
-
     fn record(&mut self, before: Version, label: Option<&'static str>) {
-        if before != self.version() {
+        if before != self.present {
             self.undo.record(before, label);
         }
     }
 
     fn go_to(&mut self, step: Option<Version>) -> Result<(), SimulationError> {
         match step {
-            Some(step) if step.document.source == self.document.source => self.set_scene(step.scene),
+            Some(step) if step.document.source == self.present.document.source => self.set_scene(step.scene),
             Some(step) => self.replace(step),
             None => Ok(()),
         }
@@ -417,7 +417,7 @@ impl Session {
         if !has_mesh_of(&scene, &before) {
             self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
         }
-        self.scene = scene;
+        self.present.scene = scene;
         (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
         self.note_size();
         self.scene_changed(&before);
@@ -457,7 +457,7 @@ impl Session {
         if self.is_for_background(&scene) {
             scene.validate()?;
             self.request_scene(scene);
-            self.document = document;
+            self.present.document = document;
             self.check_file();
             self.background.from_rest = true;
             self.background.before.iter_mut().for_each(|before| before.is_another_document = true);
@@ -465,7 +465,7 @@ impl Session {
             return Ok(());
         }
         self.set_scene(scene)?;
-        self.document = document;
+        self.present.document = document;
         self.check_file();
         self.start_document();
         self.reset();
@@ -484,7 +484,7 @@ impl Session {
 
     /// Makes the current scene the unedited scene of a document; the undo history is cleared.
     pub(crate) fn rebase(&mut self, source: Source) {
-        self.document = Document::new(source, self.scene.clone());
+        self.present.document = Document::new(source, self.present.scene.clone());
         self.undo = UndoHistory::default();
         self.is_slow = false;
     }
@@ -494,12 +494,12 @@ impl Session {
     /// # Errors
     /// Reason for which the scene was not saved; the file is unchanged.
     pub(crate) fn save(&mut self, path: &Path) -> Result<(), Sentence> {
-        let saved = self.document.save(&self.scene, path)?;
-        let before = std::mem::replace(&mut self.document, saved);
+        let saved = self.present.document.save(&self.present.scene, path)?;
+        let before = std::mem::replace(&mut self.present.document, saved);
         let in_background = self.background.before.iter_mut().map(|before| &mut before.version);
         let earlier = in_background.chain(self.undo.adjacent_versions(&before.source));
         for version in earlier.filter(|version| version.document.source == before.source) {
-            version.document.clone_from(&self.document);
+            version.document.clone_from(&self.present.document);
         }
         self.is_outdated = false;
         Ok(())
@@ -507,7 +507,7 @@ impl Session {
 
     /// Checks whether the scene's file has changed on disk.
     pub(crate) fn check_file(&mut self) {
-        self.is_outdated = self.document.has_changed();
+        self.is_outdated = self.present.document.has_changed();
     }
 
     /// Returns `true` if the scene's file has changed on disk since it was read or saved.
@@ -517,15 +517,15 @@ impl Session {
 
     /// Keeps the scene although its file has changed on disk, and stops reporting that change.
     pub(crate) fn ignore_file_change(&mut self) {
-        self.document.ignore_change();
+        self.present.document.ignore_change();
         self.is_outdated = false;
     }
 
     /// Returns the scene with load number `load` as in its document; `None` if the document has no load of the same
     /// kind with this number.
     pub(crate) fn with_original_load(&self, load: usize) -> Option<Scene> {
-        let original = self.document.original.loads.get(load)?;
-        let mut scene = self.scene.clone();
+        let original = self.present.document.original.loads.get(load)?;
+        let mut scene = self.present.scene.clone();
         let present = scene.loads.get_mut(load)?;
         if std::mem::discriminant(original) != std::mem::discriminant(present) {
             return None;
@@ -663,11 +663,11 @@ impl Session {
         }
         if self.is_motion() {
             shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
-            return self.facts.frequency.wait(&self.scene);
+            return self.facts.frequency.wait(&self.present.scene);
         }
         self.certify();
         let shown = self.with_rho(shown);
-        self.facts.request_at_rest(&self.scene, shown, true);
+        self.facts.request_at_rest(&self.present.scene, shown, true);
     }
 
     /// Solves the scene from rest and certifies the result, or computes ρ at the equilibrium that the warped iteration does
@@ -679,7 +679,7 @@ impl Session {
         }
         self.certify();
         if self.lacks_rho() {
-            self.facts.rho.wait(&self.scene);
+            self.facts.rho.wait(&self.present.scene);
         }
     }
 
@@ -739,7 +739,7 @@ impl Session {
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
         if self.is_motion() {
             let facts = &mut self.facts;
-            let frequency = !is_pressed && facts.frequency.request(&self.scene);
+            let frequency = !is_pressed && facts.frequency.request(&self.present.scene);
             return shown.limits_of.is_some_and(|scene| facts.limits.request(scene)) || frequency;
         }
         if self.iterates() || self.is_working() {
@@ -753,7 +753,7 @@ impl Session {
             return follows || certifies;
         }
         let shown = self.with_rho(shown);
-        self.facts.request_at_rest(&self.scene, shown, false) || follows || certifies
+        self.facts.request_at_rest(&self.present.scene, shown, false) || follows || certifies
     }
 
     /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
@@ -766,7 +766,7 @@ impl Session {
             return self.live.poll();
         }
         let linear = self.model.linear.as_ref().and_then(first_probe);
-        self.live.request(&self.scene, first_probe(simulation).filter(|_| is_found), linear)
+        self.live.request(&self.present.scene, first_probe(simulation).filter(|_| is_found), linear)
     }
 
     /// Returns `true` while the reference that follows the load is being computed.
@@ -785,9 +785,10 @@ impl Session {
         }
         let timed = self.timed.take().map(|(timed, _)| timed);
         let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.model.simulation.system()));
-        let timed = timed.or_else(|| Simulation::with_system(&self.scene, self.model.simulation.system().clone()).ok());
+        let timed =
+            timed.or_else(|| Simulation::with_system(&self.present.scene, self.model.simulation.system().clone()).ok());
         let Some(mut timed) = timed.filter(|_| !IS_PAGE) else { return };
-        if timed.change_scene(&self.scene).is_ok() {
+        if timed.change_scene(&self.present.scene).is_ok() {
             timed.reset();
             timed.solve();
             let solve = SolveFromRest::of(&timed);
@@ -806,17 +807,17 @@ impl Session {
 
     /// Requests the reference solution, in any state of the body; returns `true` while it is pending.
     pub(crate) fn request_reference(&mut self) -> bool {
-        self.facts.reference.request(&self.scene)
+        self.facts.reference.request(&self.present.scene)
     }
 
     /// Computes the reference solution, and waits for it.
     pub(crate) fn wait_for_reference(&mut self) {
-        self.facts.reference.wait(&self.scene);
+        self.facts.reference.wait(&self.present.scene);
     }
 
     /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
     pub(crate) fn lacks_rho(&self) -> bool {
-        let is_warped = self.scene.solver.method == MethodKind::Warped && !self.is_motion();
+        let is_warped = self.present.scene.solver.method == MethodKind::Warped && !self.is_motion();
         is_warped && self.has_ended() && *self.model.simulation.status() != Status::Converged
     }
 
@@ -895,7 +896,7 @@ impl Session {
 
     /// Adds the same motion under another integrator, or removes it.
     pub(crate) fn toggle_companion(&mut self, integrator: IntegratorKind) {
-        if self.is_motion() && integrator != self.scene.dynamics.integrator {
+        if self.is_motion() && integrator != self.present.scene.dynamics.integrator {
             self.playback.toggle(integrator, &self.model.simulation);
         }
     }

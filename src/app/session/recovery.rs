@@ -38,7 +38,7 @@ struct Copy {
 ///
 /// # Errors
 /// Error of the operating system; the previous content is unchanged.
-fn write(document: &Document, scene: &Scene, file: &Path) -> io::Result<()> {
+fn write(Unsaved { document, scene }: &Unsaved, file: &Path) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
     // On a page there are no absolute paths.
     let absolute = document.path().and_then(|_| std::path::absolute(name).ok());
@@ -111,8 +111,8 @@ impl RecoveryCopies {
     ///
     /// # Errors
     /// Error of the operating system.
-    pub(crate) fn keep(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<Option<Instant>> {
-        if self.written.as_ref().map(|written| (&written.document, &written.scene)) != edits {
+    pub(crate) fn keep(&mut self, edits: Option<&Unsaved>) -> io::Result<Option<Instant>> {
+        if self.written.as_ref() != edits {
             let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());
             if due.is_some() && edits.is_some() {
                 return Ok(due);
@@ -120,11 +120,11 @@ impl RecoveryCopies {
             // After a failure the next attempt waits.
             self.last = Some(Instant::now() + AFTER_FAILURE);
             match edits {
-                Some((document, scene)) => write(document, scene, &self.place.file)?,
+                Some(edits) => write(edits, &self.place.file)?,
                 None => settings::remove(&self.place.file)?,
             }
             self.last = Some(Instant::now());
-            self.written = edits.map(|(document, scene)| Unsaved { document: document.clone(), scene: scene.clone() });
+            self.written = edits.cloned();
         }
         Ok(None)
     }
@@ -133,7 +133,7 @@ impl RecoveryCopies {
     ///
     /// # Errors
     /// Error of the operating system.
-    pub(crate) fn keep_at_once(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<()> {
+    pub(crate) fn keep_at_once(&mut self, edits: Option<&Unsaved>) -> io::Result<()> {
         self.last = None;
         self.keep(edits).map(drop)
     }
@@ -142,7 +142,7 @@ impl RecoveryCopies {
     ///
     /// # Errors
     /// Error of the operating system; the copy is still there.
-    pub(crate) fn discard_left(&mut self, edits: Option<(&Document, &Scene)>) -> io::Result<()> {
+    pub(crate) fn discard_left(&mut self, edits: Option<&Unsaved>) -> io::Result<()> {
         self.keep_at_once(edits)?;
         self.left.take().map_or(Ok(()), |left| settings::remove(&left.file))
     }
@@ -152,12 +152,6 @@ impl RecoveryCopies {
 mod tests {
     use super::*;
     use crate::scene::{self, LoadId};
-
-    impl Unsaved {
-        fn parts(&self) -> Option<(&Document, &Scene)> {
-            Some((&self.document, &self.scene))
-        }
-    }
 
     fn edits(name: &str, force: f64) -> Unsaved {
         let source = Source { name: name.into(), assignments: Vec::new() };
@@ -173,17 +167,17 @@ mod tests {
         let folder = folder.path().join("unsaved");
         let (mut crashed, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None);
-        assert_eq!(crashed.keep(edits("article", -3.0).parts()).unwrap(), None);
+        assert_eq!(crashed.keep(Some(&edits("article", -3.0))).unwrap(), None);
         let (mut other, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None, "the first window is still open");
-        other.keep(edits("cantilever", -2.0).parts()).unwrap();
+        other.keep(Some(&edits("cantilever", -2.0))).unwrap();
         other.keep(None).unwrap();
         drop((crashed, other));
         let (mut next, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, Some(edits("article", -3.0)));
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, None, "another window offers it");
-        next.discard_left(edits("article", -3.0).parts()).unwrap();
+        next.discard_left(Some(&edits("article", -3.0))).unwrap();
         next.keep(None).unwrap();
         drop(next);
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
@@ -194,8 +188,8 @@ mod tests {
     fn a_copy_is_not_written_at_every_frame_and_one_that_cannot_be_read_stays() {
         let folder = tempfile::tempdir().unwrap();
         let (mut window, _) = RecoveryCopies::open(folder.path()).unwrap();
-        window.keep(edits("article", -3.0).parts()).unwrap();
-        assert!(window.keep(edits("article", -4.0).parts()).unwrap().is_some());
+        window.keep(Some(&edits("article", -3.0))).unwrap();
+        assert!(window.keep(Some(&edits("article", -4.0))).unwrap().is_some());
         let file = window.place.file.clone();
         assert_eq!(Unsaved::read(&file).unwrap(), edits("article", -3.0));
         drop(window);

@@ -335,7 +335,7 @@ fn restored_edits_know_what_their_file_contained() {
     crashed.apply(with_force(&crashed, -200.0)).unwrap();
     for is_changed in [false, true] {
         let (mut recovery, _) = recovery::RecoveryCopies::open(&copies).unwrap();
-        recovery.keep(Some((crashed.document(), crashed.scene()))).unwrap();
+        recovery.keep(crashed.unsaved()).unwrap();
         drop(recovery);
         if is_changed {
             fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
@@ -362,7 +362,7 @@ fn a_full_disk_leaves_file_and_copy_as_they_were() {
     };
     let copy = |session: &Session, folder: &Path| {
         let (mut recovery, left) = recovery::RecoveryCopies::open(&folder.join("unsaved")).unwrap();
-        (recovery.keep_at_once(Some((session.document(), session.scene()))), left)
+        (recovery.keep_at_once(session.unsaved()), left)
     };
     if let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) {
         let mut session = edited(&folder, -300.0);

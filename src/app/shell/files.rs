@@ -158,9 +158,8 @@ impl Lab {
     }
 
     /// Returns the edited scene and its document; `None` if there are no unsaved edits.
-    pub(crate) fn unsaved(&self) -> Option<(&Document, &Scene)> {
-        let desk = self.own_desk()?;
-        desk.session.is_edited().then(|| (desk.session.document(), desk.session.scene()))
+    pub(crate) fn unsaved(&self) -> Option<&Unsaved> {
+        self.own_desk()?.session.unsaved()
     }
 
     /// Offers to restore the edits left by a crashed window.
@@ -194,7 +193,7 @@ impl Lab {
     /// another one is opened, and in Learn the user's scene is kept.
     pub(super) fn depart(&mut self, ctx: &Context, departure: Action) {
         let closes = departure == Action::Close;
-        let is_lost = |(document, _): (&Document, _)| closes || document.source.built_in().is_none();
+        let is_lost = |edits: &Unsaved| closes || edits.document.source.built_in().is_none();
         let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
         if !loses {
             return self.go(ctx, departure);
