@@ -3,7 +3,6 @@
 use crate::app::language::Language;
 use crate::app::prelude::*;
 use crate::app::session::Session;
-use crate::app::widgets::load_scale::OpeningLoads;
 use crate::study::PathSummary;
 
 /// State of the model and of its results that the toolbar, the panel and the status bar show.
@@ -11,10 +10,6 @@ use crate::study::PathSummary;
 pub(crate) struct Readout<'a> {
     pub session: &'a Session,
     pub scene: &'a Scene,
-    /// Scene as last opened or saved.
-    pub original: &'a Scene,
-    /// Loads that the scene was opened with.
-    pub opening: OpeningLoads,
     pub simulation: &'a Simulation,
     /// Drawn body: the last equilibrium, or the body at rest, in place of a search that has found no equilibrium.
     pub shown: &'a Simulation,

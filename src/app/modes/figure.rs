@@ -77,8 +77,9 @@ pub(crate) fn plot(ui: &mut Ui, id: &str, figure: &Figure) {
             for (is_present, radius, step) in [(false, 3.8, 0.7), (true, 7.0, 1.4)] {
                 let mut own = places(Some(is_present));
                 own.retain(is_inside);
-                let (shape, filled) = marker_shape(series.mark);
-                let points = Points::new(series.name.clone(), own).color(color).shape(shape).filled(filled);
+                let shape = if series.mark == Mark::Cross { MarkerShape::Cross } else { MarkerShape::Circle };
+                let points = Points::new(series.name.clone(), own).color(color).shape(shape);
+                let points = points.filled(series.mark != Mark::Ring);
                 // Marks at the same position get different sizes, so that all are visible.
                 plot.points(points.radius((radius - step * smaller as f32).max(2.4)));
             }
@@ -100,14 +101,6 @@ fn color(palette: &Palette, ink: Ink) -> Color32 {
         Ink::Method(method) => palette.method(method),
         Ink::Unstable => palette.error,
         Ink::BeamTheory | Ink::Scene => palette.text,
-    }
-}
-
-fn marker_shape(mark: Mark) -> (MarkerShape, bool) {
-    match mark {
-        Mark::Ring => (MarkerShape::Circle, false),
-        Mark::Cross => (MarkerShape::Cross, true),
-        _ => (MarkerShape::Circle, true),
     }
 }
 

@@ -87,7 +87,7 @@ impl CellsThatFollow {
 
 pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
     const SPAN: f64 = 10.0;
-    let Some(original) = &panel.input.original.beam else { return };
+    let Some(original) = &panel.input.session.document().original.beam else { return };
     const LENGTH: &str =
         "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.";
     const HEIGHT: &str =

@@ -40,16 +40,16 @@ pub(super) fn summary(scene: &Scene) -> String {
 
 /// Shows the magnitude and the direction of the force; nothing if the scene has none.
 pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, scene) = (panel.input, panel.scene);
+    let (input, scene, document) = (panel.input, panel.scene, panel.input.session.document());
     let mut all = forces(scene).map(|(i, _, force)| (i, force));
     let first = all.next();
     let Some((chosen, force)) = all.find(|(i, _)| Some(*i) == panel.state.force).or(first) else { return };
     choose(ui, panel, chosen);
     let (magnitude, direction) = polar_form(force);
-    let as_opened = forces(input.original).find(|(i, ..)| *i == chosen);
+    let as_opened = forces(&document.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(panel.state.force_direction());
-    let [usual, largest] = force_range(input.opening, &scene.material, input.simulation.system());
+    let [usual, largest] = force_range(document.opened, &scene.material, input.simulation.system());
     // A negative force can be typed for one in the opposite direction.
     let limit = const { keys::range("load.force") };
     let field = NumberField::new("Force", Limit { min: -limit.max, ..limit }, 0.0..=largest)
@@ -78,10 +78,10 @@ fn set_force(panel: &mut Panel<'_>, label: &'static str, load: usize, (magnitude
 
 /// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
 pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, scene) = (panel.input, panel.scene);
+    let (input, scene, document) = (panel.input, panel.scene, panel.input.session.document());
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(panel.state.gravity_direction).unwrap_or(DOWN);
-    let original = polar_form(gravity_of(input.original).unwrap_or_default()).0;
+    let original = polar_form(gravity_of(&document.original).unwrap_or_default()).0;
     let field = NumberField::new("Gravity", const { keys::range("load.acceleration") }, 0.0..=1000.0)
         .around(if original > 0.0 { original } else { EARTH })
         .tip("Gravitational acceleration, m/s²; 9.81 on Earth, 0 for none.");
@@ -93,11 +93,11 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
             None => scene.loads.push(Load::gravity(vector(new, direction))),
         });
     }
-    let [usual, largest] = moment_range(input.opening, &scene.material, input.simulation.system());
+    let [usual, largest] = moment_range(document.opened, &scene.material, input.simulation.system());
     let field = NumberField::new("Moment", const { keys::range("load.moment") }, -largest..=largest)
         .around(usual)
         .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");
-    let [current, original] = [scene, input.original].map(|scene| moment_of(scene).unwrap_or(0.0));
+    let [current, original] = [scene, &document.original].map(|scene| moment_of(scene).unwrap_or(0.0));
     let Some(new) = panel.number(ui, &field, current, Some(original)) else { return };
     let own = scene.loads.iter().position(Load::is_moment);
     let edge = edges::edge_for_moment(scene, input.simulation.system());

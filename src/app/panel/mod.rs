@@ -178,7 +178,7 @@ impl Panel<'_> {
         set: impl FnOnce(&mut Scene, f64),
     ) {
         let Some(value) = get(self.scene) else { return };
-        if let Some(new) = self.number(ui, field, value, get(self.input.original)) {
+        if let Some(new) = self.number(ui, field, value, get(&self.input.session.document().original)) {
             self.edit(field.label, |scene| set(scene, new));
         }
     }
@@ -235,7 +235,7 @@ fn solver(ui: &mut Ui, panel: &mut Panel<'_>) {
     panel.picker(ui, "Method", (method.id, method.about), methods, |scene, method| scene.solver.method = method);
     let elements = scene.elements().map(|element| (element, element.id(), element.entry().about));
     panel.picker(ui, "Element", (element.id, element.about), elements, Scene::set_element);
-    if [scene, panel.input.original].iter().any(|scene| scene.solver.accept_after > 0) {
+    if [scene, &panel.input.session.document().original].iter().any(|scene| scene.solver.accept_after > 0) {
         panel.rows(ui, [ACCEPT_AFTER]);
     }
 }

@@ -10,8 +10,8 @@ pub(crate) struct Document {
     pub source: Source,
     /// Scene as last opened or saved.
     pub original: Scene,
-    /// Scene as last opened: saving does not change the scales of arrows and sliders, which follow from its loads.
-    pub opened: Arc<Scene>,
+    /// Loads of the scene as last opened: saving does not change the scales of arrows and sliders, which follow from them.
+    pub opened: OpeningLoads,
     /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
     has_file: bool,
     /// Folder that the path of the scene's mesh file is relative to: that of the file which was opened. Saving elsewhere
@@ -19,6 +19,34 @@ pub(crate) struct Document {
     mesh_folder: Option<PathBuf>,
     /// Content of the file when it was last read or written; `None` if there was none.
     text: Option<Arc<str>>,
+}
+
+/// Largest loads of a scene as it was opened. The arrows of these loads have the opening length.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct OpeningLoads {
+    /// Largest force, N; `None` if the scene has none.
+    pub force: Option<f64>,
+    /// Largest moment, N m; `None` if the scene has none.
+    pub moment: Option<f64>,
+}
+
+impl OpeningLoads {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let largest = |sizes: &mut dyn Iterator<Item = f64>| {
+            let largest = sizes.fold(0.0, f64::max);
+            (largest > 0.0 && largest.is_finite()).then_some(largest)
+        };
+        Self {
+            force: largest(&mut scene.loads.iter().filter_map(|load| match load {
+                Load::Force { force: [x, y], .. } => Some(x.hypot(*y)),
+                _ => None,
+            })),
+            moment: largest(&mut scene.loads.iter().filter_map(|load| match load {
+                Load::Moment { moment, .. } => Some(moment.abs()),
+                _ => None,
+            })),
+        }
+    }
 }
 
 /// Opens the built-in scene with this name.
@@ -44,7 +72,7 @@ impl Document {
     pub(crate) fn with_text(source: Source, original: Scene, text: Option<Arc<str>>) -> Self {
         let has_file = source.built_in().is_none() && !source.is_stream();
         let mesh_folder = folder(&source.name).filter(|_| has_file);
-        Self { source, opened: Arc::new(original.clone()), original, has_file, mesh_folder, text }
+        Self { source, opened: OpeningLoads::of(&original), original, has_file, mesh_folder, text }
     }
 
     /// Returns the current content of the file; `None` if it cannot be read.
@@ -125,7 +153,7 @@ impl Document {
         files::save(path, toml.as_bytes()).map_err(|reason| not_written(path, &reason))?;
         let source = Source { name: path.to_owned(), assignments: Vec::new() };
         let saved = Self::with_text(source, scene.clone(), Some(toml.into()));
-        Ok(Self { opened: self.opened.clone(), mesh_folder: self.mesh_folder.clone(), ..saved })
+        Ok(Self { opened: self.opened, mesh_folder: self.mesh_folder.clone(), ..saved })
     }
 }
 

@@ -92,18 +92,12 @@ pub(crate) struct ShownFacts<'a> {
 /// Results of the current scene; each is `None` until it has been computed.
 #[derive(Debug, Default)]
 pub(crate) struct Facts {
-    /// Reference solution that errors are measured against.
     pub reference: Keyed<ReferenceFact>,
     pub curve: Keyed<CurveFact>,
-    /// End of the load path from rest, and the jumps on it.
     pub path: Keyed<PathFact>,
-    /// Limits of every method and element.
     pub limits: Keyed<LimitsFact>,
-    /// Spectral radius ρ of the warped iteration at the equilibrium.
     pub rho: Keyed<RhoFact>,
-    /// Time and result of a solve from rest.
     pub time: Keyed<TimeFact>,
-    /// Lowest natural frequency, Hz.
     pub frequency: Keyed<FrequencyFact>,
 }
 

@@ -14,8 +14,8 @@ use crate::simulation::{ProbeResult, probe_results};
 pub(crate) struct Run {
     /// Number of iterations after which a solve is stopped.
     most_iterations: Option<u32>,
-    /// Requested scene.
-    wanted: Option<Scene>,
+    /// Requested scene; `None` before the first [`Self::turn_to`].
+    pub wanted: Option<Scene>,
     /// Scene that the model has, is being solved for in the background, or was refused for.
     given: Option<Scene>,
     /// `true` if `given` is too large to be solved between two frames.
@@ -25,7 +25,8 @@ pub(crate) struct Run {
     from_rest: bool,
     /// `true` while a solve from rest only measures the cost; the equilibrium found before stays on display.
     measures: bool,
-    end: Option<PaneEnd>,
+    /// Result of the solve from rest; `None` until it has ended.
+    pub end: Option<PaneEnd>,
 }
 
 /// Result of a pane's solve from rest.
@@ -93,16 +94,6 @@ impl Run {
     /// Creates a run without a scene, whose solves are stopped after this number of iterations.
     pub(crate) fn new(most_iterations: Option<u32>) -> Self {
         Self { most_iterations, ..Self::default() }
-    }
-
-    /// Returns the requested scene; `None` before the first [`Self::turn_to`].
-    pub(crate) fn scene(&self) -> Option<&Scene> {
-        self.wanted.as_ref()
-    }
-
-    /// Returns the result of the solve from rest; `None` until it has ended.
-    pub(crate) fn end(&self) -> Option<&PaneEnd> {
-        self.end.as_ref()
     }
 
     /// Returns the model; `None` while it is set up or solved in the background.
@@ -395,13 +386,13 @@ mod tests {
         assert!(iterate(&mut run, &light) > 0, "one iteration per frame");
         while !run.waits() {
             run.advance(heavy.clone(), &[], frame(true));
-            assert!(run.end().is_none(), "the load is still held");
+            assert!(run.end.is_none(), "the load is still held");
         }
         let (iterations, probe) = independent(&heavy);
         let dragged = run.answer().unwrap();
         assert!(run.is_sound() && (dragged - probe.u).norm() < 1e-6 * probe.u.norm());
         iterate(&mut run, &heavy);
-        let end = run.end().unwrap();
+        let end = run.end.as_ref().unwrap();
         assert_eq!((end.iterations, &end.probes[0]), (iterations, &probe));
     }
 
@@ -414,7 +405,7 @@ mod tests {
         let last = scene(60.0);
         iterate(&mut run, &last);
         let (iterations, probe) = independent(&last);
-        let end = run.end().unwrap();
+        let end = run.end.as_ref().unwrap();
         assert!((end.probes[0].u - probe.u).norm() < 1e-6 * probe.u.norm());
         assert_eq!(end.iterations, iterations, "measured from rest");
     }
@@ -426,11 +417,11 @@ mod tests {
         assert!(most > 2, "the limit would not be reached");
         let mut run = Run::new(Some(2));
         iterate(&mut run, &scene);
-        assert_eq!(run.end().map(|end| (&end.status, end.iterations)), Some((&Status::Running, 2)));
+        assert_eq!(run.end.as_ref().map(|end| (&end.status, end.iterations)), Some((&Status::Running, 2)));
         run.restart(None);
-        assert!(run.end().is_none());
+        assert!(run.end.is_none());
         iterate(&mut run, &scene);
-        assert_eq!(run.end().map(|end| end.iterations), Some(most));
+        assert_eq!(run.end.as_ref().map(|end| end.iterations), Some(most));
     }
 
     #[test]
@@ -440,9 +431,9 @@ mod tests {
         free.supports.clear();
         let mut run = Run::new(None);
         iterate(&mut run, &free);
-        assert!(run.refused().is_some() && run.end().is_none());
+        assert!(run.refused().is_some() && run.end.is_none());
         iterate(&mut run, &good);
-        assert!(run.end().is_some_and(|end| end.status.is_success()));
+        assert!(run.end.as_ref().is_some_and(|end| end.status.is_success()));
     }
 
     fn simulation(run: &Run) -> &Simulation {

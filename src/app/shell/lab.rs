@@ -280,8 +280,6 @@ impl Lab {
                 .map(|path| path.to(session.simulation().displacement())),
             value_range: viewport.body.value_range(),
             scene: session.scene(),
-            original: &session.document().original,
-            opening: OpeningLoads::of(&session.document().opened),
             simulation: session.simulation(),
             shown: session.drawn(),
             ended: match view.mode {

@@ -12,7 +12,7 @@ use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{shortcuts, status_bar, toolbar};
-use crate::app::viewport::{menu, overlay, time_line};
+use crate::app::viewport::{menu, time_line};
 use crate::app::widgets::palette;
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
@@ -125,7 +125,10 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let errors = diagnosis::errors(&self.readout());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(Margin::symmetric(12, 0));
-        let top = Panel::top("toolbar").exact_size(toolbar::height(&self.desk.view)).resizable(false).frame(bar(ui));
+        let top = Panel::top("toolbar")
+            .exact_size(toolbar::HEIGHTS[usize::from(self.desk.view.narrow)])
+            .resizable(false)
+            .frame(bar(ui));
         let mut gallery = std::mem::take(&mut self.gallery);
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
         self.gallery = gallery;
@@ -282,9 +285,9 @@ impl Lab {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
         if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
-            let taken = (overlay::scale_bar_width(&self.desk.viewport.camera.shown), overlay::has_legend(rect.size()));
-            let now = self.simulation().state().time();
-            time_line::show(ui, rect, taken, (&self.desk.session.playback, now), actions);
+            let Desk { session, viewport, .. } = &self.desk;
+            let now = session.simulation().state().time();
+            time_line::show(ui, rect, &viewport.camera.shown, (&session.playback, now), actions);
         }
         if let Some(lesson) = &mut self.lesson {
             let Desk { session, viewport, .. } = &self.desk;

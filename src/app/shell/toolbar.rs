@@ -7,12 +7,7 @@ use crate::app::view_options::MODES;
 use crate::app::widgets::buttons::{Icon, at_right, icon_button};
 
 /// Height of the toolbar in one row, and in the two rows of a narrow window, points.
-const HEIGHTS: [f32; 2] = [36.0, 68.0];
-
-/// Returns the height of the toolbar, points.
-pub(crate) fn height(view: &ViewOptions) -> f32 {
-    HEIGHTS[usize::from(view.narrow)]
-}
+pub(crate) const HEIGHTS: [f32; 2] = [36.0, 68.0];
 
 /// Shows the bar. In a narrow window the modes and the tools of the window have a row of their own, and buttons no words.
 pub(crate) fn show(

@@ -3,32 +3,20 @@
 use egui::{CursorIcon, EventFilter};
 
 use crate::app::interface::*;
-use crate::app::viewport::overlay::LEGEND_WIDTH;
+use crate::app::viewport::overlay::{LEGEND_WIDTH, has_legend, scale_bar_width};
 
-/// Shortest line, points.
+/// Shortest line, points; a view that has no room for it has none.
 const SHORTEST: f32 = 80.0;
 /// Distance above and below the line within which it reacts to the pointer, points.
 const REACH: f32 = 10.0;
 
-/// Returns the area of the line in a view: between the scale bar and the colour bar, if that is at the bottom. `None`
-/// if the view is too narrow.
-fn place(view: Rect, scale_bar: f32, has_legend: bool) -> Option<Rect> {
-    let left = view.left() + scale_bar + 24.0;
-    let right = view.right() - if has_legend { LEGEND_WIDTH } else { 18.0 };
-    let line = Rect::from_min_max(pos2(left, view.bottom() - 20.0), pos2(right, view.bottom() - 20.0));
-    (line.width() >= SHORTEST).then_some(line)
-}
-
 /// Shows the line of a motion with a recorded past; `now` is the displayed simulated time, s.
-pub(crate) fn show(
-    ui: &Ui,
-    view: Rect,
-    (scale_bar, has_legend): (f32, bool),
-    (playback, now): (&Playback, f64),
-    actions: &mut Vec<Action>,
-) {
-    let Some(line) = place(view, scale_bar, has_legend) else { return };
-    let Some([first, last]) = playback.span() else { return };
+pub(crate) fn show(ui: &Ui, view: Rect, camera: &Camera, (playback, now): (&Playback, f64), actions: &mut Vec<Action>) {
+    // Between the scale bar and the colour bar, if that is at the bottom.
+    let left = view.left() + scale_bar_width(camera) + 24.0;
+    let right = view.right() - if has_legend(view.size()) { LEGEND_WIDTH } else { 18.0 };
+    let line = Rect::from_min_max(pos2(left, view.bottom() - 20.0), pos2(right, view.bottom() - 20.0));
+    let Some([first, last]) = playback.span().filter(|_| line.width() >= SHORTEST) else { return };
     let last = last.max(now);
     let id = egui::Id::unique("time line");
     let response = ui.interact(line.expand2(vec2(8.0, REACH)), id, Sense::click_and_drag());

@@ -61,11 +61,6 @@ impl<'a> Content<'a> {
         self.card?.reach.filter(|reach| has_mesh_of(reach.scene(), self.simulation().scene()))
     }
 
-    /// Returns the drawn body.
-    fn drawn(&self) -> &'a Simulation {
-        self.session.drawn()
-    }
-
     /// Returns the reference solution of the scene if it is known; one that follows a load may be of the load before.
     fn reference(&self) -> Option<&'a Reference> {
         let session = self.session;
@@ -197,7 +192,7 @@ impl BodyView {
 
     /// Updates the drawn mesh to the current state.
     pub(crate) fn update(&mut self, visuals: &Visuals, content: &Content<'_>) {
-        let simulation = content.drawn();
+        let simulation = content.session.drawn();
         // A colour range that changed with every frame would hide the motion.
         let played = self.swept.is_some().then_some(content.session.playback.played);
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
@@ -327,7 +322,7 @@ impl BodyView {
             positions: &self.body.nodes,
             time: simulation.state().time(),
             direction: content.direction,
-            opening: OpeningLoads::of(&content.session.document().opened),
+            opening: content.session.document().opened,
         }
     }
 
@@ -530,7 +525,7 @@ impl BodyView {
     ) {
         let session = content.session;
         let simulation = session.simulation();
-        let (shown, fallback) = (content.drawn(), session.fallback());
+        let (shown, fallback) = (content.session.drawn(), session.fallback());
         let moves_support = simulation.problem().supports().move_the_body();
         let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {

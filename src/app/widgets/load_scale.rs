@@ -1,36 +1,6 @@
 //! Scale between a load and the length of its arrow or the position on its slider: proportional around the opening
 //! value, which is the value in the scene as opened, and logarithmic far beyond it.
 
-use crate::scene::{Load, Scene};
-
-/// Largest loads of a scene as it was opened. The arrows of these loads have the opening length.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct OpeningLoads {
-    /// Largest force, N; `None` if the scene has none.
-    pub force: Option<f64>,
-    /// Largest moment, N m; `None` if the scene has none.
-    pub moment: Option<f64>,
-}
-
-impl OpeningLoads {
-    pub(crate) fn of(scene: &Scene) -> Self {
-        let largest = |sizes: &mut dyn Iterator<Item = f64>| {
-            let largest = sizes.fold(0.0, f64::max);
-            (largest > 0.0 && largest.is_finite()).then_some(largest)
-        };
-        Self {
-            force: largest(&mut scene.loads.iter().filter_map(|load| match load {
-                Load::Force { force: [x, y], .. } => Some(x.hypot(*y)),
-                _ => None,
-            })),
-            moment: largest(&mut scene.loads.iter().filter_map(|load| match load {
-                Load::Moment { moment, .. } => Some(moment.abs()),
-                _ => None,
-            })),
-        }
-    }
-}
-
 /// Monotone, continuous map from the magnitude of a load to a length, in points, radians or fractions of a slider.
 ///
 /// Let x be the load divided by its opening value. The map is a parabola from the stub length at x = 0 to the opening

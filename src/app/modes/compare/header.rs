@@ -80,12 +80,12 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let palette = Palette::new(ui.visuals());
     let setting = pane.setting.of(input.scene);
     let (run, iterations) = (&pane.run, count(pane.run.iterations(), "iteration"));
-    let failure = run.end().and_then(|end| end.status.failure_sentence());
+    let failure = run.end.as_ref().and_then(|end| end.status.failure_sentence());
     let (bad, text) = if let Some(reason) = run.refused() {
         (true, sentence(&said(reason)))
     } else if let Some(reason) = failure {
         (true, fill!("Does not converge: %{reason}.", reason = said(&reason)))
-    } else if let Some(end) = run.end() {
+    } else if let Some(end) = &run.end {
         let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
         let inverted = if end.is_inside_out { format!(", {}", tr("inverted elements")) } else { String::new() };
         // Images without bars omit the time, which differs from run to run.
@@ -128,7 +128,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     };
     let whole = lay_out(&text);
     // A narrow pane has the reason in the tooltip only.
-    let is_cut = whole.elided && run.end().is_some() && bad;
+    let is_cut = whole.elided && run.end.is_some() && bad;
     let galley = if is_cut { lay_out(tr("Does not converge")) } else { whole };
     let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
     painter.galley(at.min, galley, ink);
@@ -265,15 +265,10 @@ pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()
 }
 
-/// Returns the number of panes in the first row in a view of this width, points.
-fn first_row(panes: usize, width: f32) -> usize {
-    let one_row = panes <= 2 || panes == 3 && (width - 2.0 * GAP) / 3.0 >= NARROWEST;
-    if one_row { panes } else { panes.div_ceil(2) }
-}
-
 /// Returns the areas of `panes` panes in equal columns, side by side or in two rows.
 fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
-    let columns = first_row(panes, rect.width()).max(1);
+    let is_one_row = panes <= 2 || panes == 3 && (rect.width() - 2.0 * GAP) / 3.0 >= NARROWEST;
+    let columns = if is_one_row { panes } else { panes.div_ceil(2) }.max(1);
     let part = |length: f32, count: usize| ((length - GAP * (count - 1) as f32) / count as f32).floor().max(0.0);
     let size = vec2(part(rect.width(), columns), part(rect.height(), panes.div_ceil(columns).max(1)));
     let place = |i: usize| vec2((i % columns) as f32, (i / columns) as f32) * (size + Vec2::splat(GAP));

@@ -69,13 +69,13 @@ impl Pane {
     /// Returns the scene with these settings, after the pane was first shown.
     #[must_use]
     pub fn scene(&self) -> Option<&Scene> {
-        self.run.scene()
+        self.run.wanted.as_ref()
     }
 
     /// Returns the result of the solve from rest; `None` until it has ended.
     #[must_use]
     pub fn end(&self) -> Option<&PaneEnd> {
-        self.run.end()
+        self.run.end.as_ref()
     }
 
     /// Returns the computing time of the solve from rest, or of a motion's frame at 60 Hz, s; `None` until it has been
@@ -228,7 +228,7 @@ impl Pane {
         input: &CompareInput<'_>,
     ) -> Option<ForceArrows<'a>> {
         let (system, positions) = (self.system.as_ref()?, &self.body_mesh.nodes);
-        let opening = OpeningLoads::of(&input.session.document().opened);
+        let opening = input.session.document().opened;
         Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening })
     }
 
@@ -245,7 +245,7 @@ impl Pane {
             self.error_percent = error(u);
             return;
         };
-        if let Some((scene, u)) = self.run.scene().cloned().zip(u) {
+        if let Some((scene, u)) = self.run.wanted.clone().zip(u) {
             self.recent.retain(|(earlier, _)| *earlier != scene);
             self.recent.push_front((scene, u));
             self.recent.truncate(MOST);
@@ -271,8 +271,8 @@ impl Pane {
         let condition = self.condition();
         let in_place = self.in_place().map(Simulation::scene);
         // The scene whose state diverges, if an equilibrium is displayed in its place.
-        let wanted = self.run.scene().filter(|_| in_place.is_some());
-        let scene = in_place.or(self.run.scene());
+        let wanted = self.run.wanted.as_ref().filter(|_| in_place.is_some());
+        let scene = in_place.or(self.run.wanted.as_ref());
         let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
         let projection = Projection { camera: controller.shown, rect: place };
         let forces = wanted.or(scene).and_then(|scene| self.forces(scene, time, input));

@@ -85,21 +85,7 @@ impl PaneSetting {
         own.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
         own
     }
-}
 
-impl From<Setting> for PaneSetting {
-    fn from(setting: Setting) -> Self {
-        Self {
-            method: Some(setting.method),
-            element: Some(setting.element),
-            cells: setting.cells,
-            iterations: Some(setting.iterations),
-            integrator: None,
-        }
-    }
-}
-
-impl PaneSetting {
     /// Returns the name of the settings in the window.
     pub(super) fn text(&self) -> String {
         self.named(tr, |n| language::count(n, "iteration"))
@@ -114,6 +100,18 @@ impl PaneSetting {
         let parts: Vec<_> =
             [method, element, cells, self.iterations.map(count), integrator].into_iter().flatten().collect();
         if parts.is_empty() { tr("the scene").to_owned() } else { parts.join(" ") }
+    }
+}
+
+impl From<Setting> for PaneSetting {
+    fn from(setting: Setting) -> Self {
+        Self {
+            method: Some(setting.method),
+            element: Some(setting.element),
+            cells: setting.cells,
+            iterations: Some(setting.iterations),
+            integrator: None,
+        }
     }
 }
 

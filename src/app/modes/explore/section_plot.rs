@@ -45,6 +45,27 @@ impl Cuts {
     fn is_of(&self, simulation: &Simulation) -> bool {
         self.of.0 == *simulation.state() && self.of.1 == *simulation.scene()
     }
+
+    fn offered(&self) -> Vec<SectionFigure> {
+        let along = if self.along.is_empty() { 0 } else { COMPONENTS.len() };
+        let stresses = (0..self.own.len()).flat_map(|i| [0, 1].map(|component| SectionFigure::Stress(i, component)));
+        stresses.chain((0..along).map(SectionFigure::Along)).collect()
+    }
+
+    fn figure(&self, shown: SectionFigure) -> Result<Figure, SectionError> {
+        let scene = &self.of.1;
+        match shown {
+            SectionFigure::Stress(i, component) => {
+                let section = self.own.get(i).ok_or(SectionError::Missed)?.as_ref().map_err(|error| *error)?;
+                let figures = section_chart::stress(section, scene, &self.contexts, &|name| said(name));
+                figures.into_iter().nth(component).ok_or(SectionError::Missed)
+            }
+            SectionFigure::Along(i) => {
+                let figures = section_chart::forces(&self.along, scene, &self.contexts, &|name| said(name));
+                figures.into_iter().nth(i).ok_or(SectionError::NoAxis)
+            }
+        }
+    }
 }
 
 /// Figure of the sections.
@@ -187,29 +208,6 @@ impl SectionFigure {
             Self::Along(i) => {
                 let symbol = COMPONENTS.get(i).map_or("", |component| component.symbol);
                 (symbol.to_owned(), "Along the beam, in sections normal to its axis; the slope of M is \u{2212}V")
-            }
-        }
-    }
-}
-
-impl Cuts {
-    fn offered(&self) -> Vec<SectionFigure> {
-        let along = if self.along.is_empty() { 0 } else { COMPONENTS.len() };
-        let stresses = (0..self.own.len()).flat_map(|i| [0, 1].map(|component| SectionFigure::Stress(i, component)));
-        stresses.chain((0..along).map(SectionFigure::Along)).collect()
-    }
-
-    fn figure(&self, shown: SectionFigure) -> Result<Figure, SectionError> {
-        let scene = &self.of.1;
-        match shown {
-            SectionFigure::Stress(i, component) => {
-                let section = self.own.get(i).ok_or(SectionError::Missed)?.as_ref().map_err(|error| *error)?;
-                let figures = section_chart::stress(section, scene, &self.contexts, &|name| said(name));
-                figures.into_iter().nth(component).ok_or(SectionError::Missed)
-            }
-            SectionFigure::Along(i) => {
-                let figures = section_chart::forces(&self.along, scene, &self.contexts, &|name| said(name));
-                figures.into_iter().nth(i).ok_or(SectionError::NoAxis)
             }
         }
     }

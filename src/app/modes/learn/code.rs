@@ -176,21 +176,3 @@ fn row(ui: &mut Ui, number: usize, line: &Line, numbers: Option<&str>) -> Rect {
     response.on_hover_text(SOURCES[number]);
     rect
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_visit_the_numbered_lines_in_a_cycle() {
-        let mut line = 0;
-        let mut stops = vec![line];
-        for ended in [false, false, false, false, false, false, false, false, true] {
-            line = after(line, ended);
-            stops.push(line);
-        }
-        assert_eq!(stops, [0, 1, 4, 5, 6, 7, 8, 9, 4, 5]);
-        assert_eq!(after(UNTIL, true), AT_REST);
-        assert!(stops.iter().all(|&line| LINES[line].numbers.is_some()));
-    }
-}
