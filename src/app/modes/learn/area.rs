@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.session.linear());
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
         let text = fill!(
-            "largest element: \u{3b8} = %{angle} rad, drawn as atan \u{3b8} = %{drawn}\u{b0}; \u{3b8}\u{b2} = %{growth}",
+            "largest element: θ = %{angle} rad, drawn as atan θ = %{drawn}°; θ² = %{growth}",
             angle = number(three_digits(angle)),
             drawn = number(three_digits(angle.atan().to_degrees())),
             growth = percent(100.0 * angle * angle)
@@ -40,10 +40,9 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
 }
 
 /// Sources of the mode: the article, and the paper that it explains.
-const SOURCES: &str = "The article: \u{201c}\u{5b9e}\u{65f6}\u{7269}\u{7406}\u{6a21}\u{62df}\u{4e4b} Warped Stiffness \
-                       \u{65b9}\u{6cd5}\u{201d} (the warped stiffness method in real-time physical simulation), study \
-                       notes in Chinese in the style of Zhihu, without the author\u{2019}s name. The method: Matthias \
-                       M\u{fc}ller and Markus Gross, \u{201c}Interactive Virtual Materials\u{201d}, Graphics Interface \
+const SOURCES: &str = "The article: “实时物理模拟之 Warped Stiffness 方法” (the warped stiffness method in real-time physical \
+                       simulation), study notes in Chinese in the style of Zhihu, without the author’s name. The \
+                       method: Matthias Müller and Markus Gross, “Interactive Virtual Materials”, Graphics Interface \
                        2004.";
 
 /// Shows the slider for the magnitude of the first force, which keeps its direction.
@@ -94,5 +93,5 @@ fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: C
         painter.rect_filled(bar.with_max_x(bar.left() + part * bar.width()), 2.0, color);
     }
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}: {text}")));
-    response.on_hover_text(tr("Change of the body\u{2019}s area, compared with rest"));
+    response.on_hover_text(tr("Change of the body’s area, compared with rest"));
 }

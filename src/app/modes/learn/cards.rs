@@ -91,12 +91,12 @@ impl Setup {
 pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Linear theory makes the area grow",
-        text: "Linear theory replaces a rotation by its tangent: a part that rotates by an angle \u{3b8} moves along \
-                a straight line instead of an arc, and grows. Its area growth is \u{3b8}\u{b2} (\u{3b8} in radians), \
-                whatever the material. The dashed line is the reference solution, which rotates without growing.",
-        formula: &["K u = f", "`det` ( I + \u{3b8} J ) = 1 + \u{3b8}^{2}"],
-        symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: identity \
-                  matrix. J: rotation by 90\u{b0}. det: determinant, the factor by which an area grows.",
+        text: "Linear theory replaces a rotation by its tangent: a part that rotates by an angle θ moves along a \
+               straight line instead of an arc, and grows. Its area growth is θ² (θ in radians), whatever the \
+               material. The dashed line is the reference solution, which rotates without growing.",
+        formula: &["K u = f", "`det` ( I + θ J ) = 1 + θ^{2}"],
+        symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: \
+                  identity matrix. J: rotation by 90°. det: determinant, the factor by which an area grows.",
         task: "Drag the tip force and watch the area.",
         setup: Setup {
             method: MethodKind::Linear,
@@ -109,12 +109,12 @@ pub(crate) const CARDS: &[Card] = &[
     },
     Card {
         title: "Every triangle rotates",
-        text: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into a \
-                rotation R and a stretch S, in exactly one way for a triangle that is not inverted; in the plane there is a \
-                closed formula. The two arrows in each triangle are the axes of its frame, the columns of R.",
+        text: "The shape of a triangle at rest and its shape now define a matrix F. Polar decomposition splits F into \
+               a rotation R and a stretch S, in exactly one way for a triangle that is not inverted; in the plane \
+               there is a closed formula. The two arrows in each triangle are the axes of its frame, the columns of R.",
         formula: &["F = R S", "R^{T} R = I", "S = S^{T}"],
-        symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix with positive eigenvalues. T: transpose. All are \
-                  2\u{d7}2.",
+        symbols: "F: deformation gradient. R: rotation matrix. S: stretch, a symmetric matrix with positive \
+                  eigenvalues. T: transpose. All are 2×2.",
         task: "Click a triangle to see its numbers.",
         setup: Setup { field: Field::RotationAngle, ..SETUP },
         content: CardDisplay::Frames,
@@ -122,10 +122,10 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Rotate back",
         text: "Here each triangle is rotated back by the transpose of its own R and laid onto its shape at rest. The \
-                difference between the two is the strain \u{3b5}, and the stiffness K acts on that alone. The strain does \
-                not depend on the rotation.",
-        formula: &["R^{T} F = S = I + \u{3b5}"],
-        symbols: "\u{3b5}: strain, a symmetric 2\u{d7}2 matrix (Biot strain).",
+               difference between the two is the strain ε, and the stiffness K acts on that alone. The strain does not \
+               depend on the rotation.",
+        formula: &["R^{T} F = S = I + ε"],
+        symbols: "ε: strain, a symmetric 2×2 matrix (Biot strain).",
         task: "Move the slider between the bent beam and the triangles rotated back.",
         setup: Setup { field: Field::LargestStrain, rest: false, ..SETUP },
         content: CardDisplay::Exploded,
@@ -133,12 +133,12 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Rotate the stiffness instead",
         text: "K is computed once, at rest. Rotated by R it acts on the bent beam, and the rest shape moves to the \
-                right-hand side. Each triangle adds nine 2\u{d7}2 blocks, at the rows and columns of its three nodes. The \
-                four unknowns of the two clamped nodes drop out: 24 \u{2212} 4 = 20.",
+               right-hand side. Each triangle adds nine 2×2 blocks, at the rows and columns of its three nodes. The \
+               four unknowns of the two clamped nodes drop out: 24 \u{2212} 4 = 20.",
         formula: &["R K R^{T} x = f + R K X"],
-        symbols: "x, X: positions of the nodes now and at rest (m); u = x \u{2212} X. K with index e: stiffness matrix of \
-                  one triangle (element). R here: 6\u{d7}6, with the triangle\u{2019}s rotation in three blocks on its \
-                  diagonal. \u{3a3}: sum over all triangles.",
+        symbols: "x, X: positions of the nodes now and at rest (m); u = x \u{2212} X. K with index e: stiffness matrix \
+                  of one triangle (element). R here: 6×6, with the triangle’s rotation in three blocks on its \
+                  diagonal. Σ: sum over all triangles.",
         task: "Click triangles, and point at entries for their values.",
         setup: Setup { field: Field::RotationAngle, ..SETUP },
         content: CardDisplay::Matrices,
@@ -146,36 +146,36 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "The method in ten lines",
         text: "This is the whole warped stiffness method. One pass through lines 3 to 10 is an iteration. The program \
-                runs the whole iteration when you reach line 8; the numbers next to a line describe the beam as it is \
-                drawn.",
-        formula: &["A = \u{3a3} R K_{e} R^{T}", "b = \u{3a3} R K_{e} X"],
-        symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f with \
-                  index int: internal forces, of all triangles; with index e: of one. r: residual, the share of the \
-                  forces that is out of balance; \u{3a3} | f | adds the absolute values of each component at every node.",
-        task: "Press \u{201c}Next line\u{201d} (N) and follow the numbers.",
+               runs the whole iteration when you reach line 8; the numbers next to a line describe the beam as it is \
+               drawn.",
+        formula: &["A = Σ R K_{e} R^{T}", "b = Σ R K_{e} X"],
+        symbols: "A: stiffness matrix of the rotated triangles (N/m). b: forces that stand for the rest shape (N). f \
+                  with index int: internal forces, of all triangles; with index e: of one. r: residual, the share of \
+                  the forces that is out of balance; Σ | f | adds the absolute values of each component at every node.",
+        task: "Press “Next line” (N) and follow the numbers.",
         setup: Setup { field: Field::RotationAngle, waits: true, ..SETUP },
         content: CardDisplay::Code,
     },
     Card {
         title: "Iterate",
-        text: "R depends on the positions, and the positions depend on R. So solve with the current R, compute the \
-                new R, and solve again: a fixed-point iteration. Near the equilibrium each iteration multiplies the \
-                residual by \u{3c1}. Elsewhere each frame iterates to equilibrium; a step is one iteration.",
-        formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | \u{2248} \u{3c1} | r_{k} |"],
-        symbols: "k: number of the iteration. r: residual. \u{3c1}: convergence factor (spectral radius); below 1 the \
+        text: "R depends on the positions, and the positions depend on R. So solve with the current R, compute the new \
+               R, and solve again: a fixed-point iteration. Near the equilibrium each iteration multiplies the \
+               residual by ρ. Elsewhere each frame iterates to equilibrium; a step is one iteration.",
+        formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | ≈ ρ | r_{k} |"],
+        symbols: "k: number of the iteration. r: residual. ρ: convergence factor (spectral radius); below 1 the \
                   iteration converges from a start that is near enough.",
-        task: "Press \u{201c}Step once\u{201d} (N) again and again: after a few steps the points fall along the line.",
+        task: "Press “Step once” (N) again and again: after a few steps the points fall along the line.",
         setup: Setup { waits: true, ..SETUP },
         content: CardDisplay::Steps,
     },
     Card {
-        title: "Beyond \u{3c1} = 1 it does not converge",
+        title: "Beyond ρ = 1 it does not converge",
         text: "Under twice the force, a change of R changes the forces by more than A accounts for: the spectral \
-                radius \u{3c1} is above 1. Even next to the equilibrium each iteration leads away from it. Newton\u{2019}s method adds the missing \
-                part G: how the forces change as R rotates. An iteration costs about the same.",
-        formula: &["\u{3c1} = | \u{3bb} |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) \u{394}x = f \u{2212} f_{`int`}"],
-        symbols: "\u{3bb}: eigenvalues; the largest counts. G: geometric stiffness (N/m). \u{394}x: change of the \
-                  positions (m). Far from the equilibrium the residual leaves the line and levels off.",
+               radius ρ is above 1. Even next to the equilibrium each iteration leads away from it. Newton’s method \
+               adds the missing part G: how the forces change as R rotates. An iteration costs about the same.",
+        formula: &["ρ = | λ |_{`max`} ( A^{\u{2212}1} G )", "( A + G ) Δx = f \u{2212} f_{`int`}"],
+        symbols: "λ: eigenvalues; the largest counts. G: geometric stiffness (N/m). Δx: change of the positions (m). \
+                  Far from the equilibrium the residual leaves the line and levels off.",
         task: "Switch to newton, and back.",
         setup: Setup { force: FAR, ..SETUP },
         content: CardDisplay::Methods,
@@ -183,8 +183,8 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "Shear locking",
         text: "The forces balance, and still the beam is far from the reference (dashed). A three-node triangle has \
-                the same strain everywhere, so it bends only with extra stretch and shear, which make it too stiff. \
-                Another element on the same five cells cures this.",
+               the same strain everywhere, so it bends only with extra stretch and shear, which make it too stiff. \
+               Another element on the same five cells cures this.",
         formula: &["`error` = | u \u{2212} u_{`reference`} | / | u_{`reference`} |"],
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
         task: "Try t6 and q4.",
@@ -194,11 +194,11 @@ pub(crate) const CARDS: &[Card] = &[
     Card {
         title: "The trade-off",
         text: "Element, mesh and method each cost time and leave an error, and which choice is cheapest depends on \
-                your machine. Measure has the errors and times of all of them for your own scene. It shows their Pareto front: the \
-                settings that no other one beats in both time and error.",
-        formula: &["`error` \u{2264} `mesh` + `iteration` + `theory`"],
+               your machine. Measure has the errors and times of all of them for your own scene. It shows their Pareto \
+               front: the settings that no other one beats in both time and error.",
+        formula: &["`error` ≤ `mesh` + `iteration` + `theory`"],
         symbols: "mesh: error of the finite cells. iteration: error of stopping early. theory: error of linear theory.",
-        task: "Open Measure, and press \u{201c}Measure on this machine\u{201d}.",
+        task: "Open Measure, and press “Measure on this machine”.",
         setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
         content: CardDisplay::ToMeasure,
     },

@@ -24,7 +24,7 @@ const LINES: [Line; 10] = [
     Line { indent: 2, code: "R, S = `polar decomposition of` F", numbers: Some(rotation) },
     Line { indent: 2, code: "`add` R K_{e} R^{T} `to` A `and` R K_{e} X `to` b", numbers: Some(matrix) },
     Line { indent: 1, code: "`solve` A x = f + b `for` x `(faer)`", numbers: Some(displacement) },
-    Line { indent: 1, code: "r = | f \u{2212} f_{`int`} | / \u{3a3} | f_{e} |", numbers: Some(residual) },
+    Line { indent: 1, code: "r = | f \u{2212} f_{`int`} | / Σ | f_{e} |", numbers: Some(residual) },
     Line { indent: 0, code: "`until` r `is within the tolerance`", numbers: Some(verdict) },
 ];
 
@@ -62,7 +62,7 @@ pub(super) fn after(line: usize, ended: bool) -> usize {
 }
 
 fn stiffness(simulation: &Simulation, _: usize) -> String {
-    fill!("%{n} matrices, 6 \u{d7} 6", n = simulation.system().mesh().element_count())
+    fill!("%{n} matrices, 6 × 6", n = simulation.system().mesh().element_count())
 }
 
 fn gradient(simulation: &Simulation, picked: usize) -> String {
@@ -79,7 +79,7 @@ fn rotation(simulation: &Simulation, _: usize) -> String {
 
 fn matrix(simulation: &Simulation, _: usize) -> String {
     let n = simulation.system().dofs();
-    fill!("A: %{n} \u{d7} %{n} (clamped nodes removed)", n)
+    fill!("A: %{n} × %{n} (clamped nodes removed)", n)
 }
 
 fn displacement(simulation: &Simulation, _: usize) -> String {

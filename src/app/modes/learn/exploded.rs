@@ -66,7 +66,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     ui.label(fill!("Triangle %{n}: rotated by %{angle},", n = learn.picked, angle));
     let s = triangle.stretch;
     ui.label(fill!(
-        "strain \u{3b5}: along %{along}, across %{across}, shear \u{3b3} %{shear}",
+        "strain ε: along %{along}, across %{across}, shear γ %{shear}",
         along = signed_percent(s.m11 - 1.0),
         across = signed_percent(s.m22 - 1.0),
         shear = signed_percent(2.0 * s.m12),

@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn slanted_letters_do_not_touch_superscripts() {
         let lead = |markup: &str, section: usize| set(markup, Color32::WHITE).sections[section].leading_space;
-        assert!(lead("\u{3b8}^{2}", 1) >= 2.0 && lead("R^{T}", 1) >= 2.0);
+        assert!(lead("θ^{2}", 1) >= 2.0 && lead("R^{T}", 1) >= 2.0);
         assert_eq!((lead("x_{k}", 1), lead("`const`^{2}", 1)), (0.0, 0.0));
     }
 }

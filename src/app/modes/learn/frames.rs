@@ -69,9 +69,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
         let r = triangle.rotation.matrix();
-        for (name, before, matrix) in
-            [("F", "", &triangle.gradient), ("R", "=", &r), ("S", "\u{b7}", &triangle.stretch)]
-        {
+        for (name, before, matrix) in [("F", "", &triangle.gradient), ("R", "=", &r), ("S", "·", &triangle.stretch)] {
             show_matrix(ui, (name, before), matrix, &palette);
         }
     });
@@ -82,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
 
 /// Formats a rotation angle with its sign.
 pub(super) fn angle_text(rotation: Rotation) -> String {
-    format!("{:.1}\u{b0}", rotation.angle().to_degrees()).replace('-', "\u{2212}")
+    format!("{:.1}°", rotation.angle().to_degrees()).replace('-', "\u{2212}")
 }
 
 /// Shows a 2 × 2 matrix in brackets, after an operator, with its name below.

@@ -57,7 +57,7 @@ fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangl
     let simulation = shown.simulation;
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
-    ui.label(formula::set("\u{3a3} R K_{e} R^{T}", palette.text));
+    ui.label(formula::set("Σ R K_{e} R^{T}", palette.text));
     let matrix = (all <= MAX_UNKNOWNS).then(|| assembled(simulation)).flatten();
     let Some(matrix) = matrix else {
         ui.label(tr("Too many unknowns to draw."));

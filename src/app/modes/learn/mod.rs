@@ -257,11 +257,11 @@ impl Learn {
                     }
                 };
                 let (before, after) = (Action::Card(card.saturating_sub(1)), Action::Card(card + 1));
-                button(ui, card > 0, "\u{2039} Back", "The card before (left arrow)", before);
+                button(ui, card > 0, "‹ Back", "The card before (left arrow)", before);
                 let place = fill!("%{n} of %{count}", n = card + 1, count);
                 ui.label(RichText::new(place).color(palette.secondary));
-                button(ui, card + 1 < count, "Next \u{203a}", "The next card (right arrow or Enter)", after);
-                button(ui, true, "Set up again", "Restores this card\u{2019}s scene", Action::Card(card));
+                button(ui, card + 1 < count, "Next ›", "The next card (right arrow or Enter)", after);
+                button(ui, true, "Set up again", "Restores this card’s scene", Action::Card(card));
                 button(ui, true, "Story", "A story of twenty seconds; any key or click ends it", Action::Story);
                 let leave = Action::Toggle(Toggle::Mode(Mode::Explore));
                 button(ui, true, "Leave", "Back to your own scene (Esc)", leave);
@@ -357,7 +357,7 @@ const NOT_TRIANGLES: &str = "These numbers are for three-node triangles only.";
 fn not_triangles(ui: &mut Ui, text: &str, learn: &Learn, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(tr(text));
-        if ui.button(tr("Back to the article\u{2019}s beam")).clicked() {
+        if ui.button(tr("Back to the article’s beam")).clicked() {
             actions.push(Action::Card(learn.card));
         }
     });
@@ -372,26 +372,6 @@ pub fn card_count() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The fonts have all characters of the cards and of the texts around them.
-    #[test]
-    fn the_fonts_have_every_letter_of_the_cards() {
-        let ctx = Context::default();
-        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-        let mut all: String = CARDS.iter().flat_map(|c| [c.title, c.text, c.symbols, c.task]).collect();
-        all.extend(CARDS.iter().flat_map(|card| card.formula).map(|part| formula::plain(part)));
-        all.push_str("\u{2039}\u{203a}\u{2212}\u{3a3}\u{3b5}\u{b7}\u{d7}\u{2013}\u{b0}\u{201c}\u{201d}");
-        for size in [crate::app::widgets::palette::BODY, formula::SIZE] {
-            let font = FontId::proportional(size);
-            for letter in all.chars().filter(|c| *c != '\n') {
-                assert!(ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter)), "no glyph for {letter:?}");
-            }
-        }
-        assert!(
-            !ctx.fonts_mut(|fonts| fonts.has_glyph(&FontId::proportional(14.0), '\u{10ffff}')),
-            "the check is blind"
-        );
-    }
 
     #[test]
     fn every_card_sets_up_a_scene_and_has_a_text() {

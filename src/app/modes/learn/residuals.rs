@@ -11,7 +11,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>)
         let ended = *shown.simulation.status() != Status::Running;
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
         if let Some(ratio) = last_ratio(shown.session.residuals()) {
-            let text = fill!("last step: residual \u{d7} %{ratio}", ratio = rho_number(ratio));
+            let text = fill!("last step: residual × %{ratio}", ratio = rho_number(ratio));
             ui.add(Label::new(text).extend());
         }
     });
@@ -89,7 +89,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     inside.line(points, Stroke::new(1.6, color));
     let small = FontId::proportional(SMALL);
     if let Some(rho) = rho {
-        let text = fill!("\u{3c1} = %{rho}: the line's slope", rho = rho_number(rho));
+        let text = fill!("ρ = %{rho}: the line's slope", rho = rho_number(rho));
         painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, text, small, palette.exact);
     }
     let iterations = count(residuals.len() as u64, "iteration");
@@ -107,7 +107,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
     if is_warped && shown.session.facts().rho.is_pending(shown.scene) {
-        ui.label(RichText::new(tr("Computing \u{3c1}.")).small().weak());
+        ui.label(RichText::new(tr("Computing ρ.")).small().weak());
     }
 }
 
