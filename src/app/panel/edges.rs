@@ -8,7 +8,7 @@ use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::viewport::arrow::force_range;
 use crate::app::viewport::menu::{
-    acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand, with_probe,
+    self, acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand,
 };
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::widgets::number_field::read;
@@ -332,5 +332,5 @@ fn add_probe(scene: &mut Scene, system: &System) {
         _ => None,
     });
     let at = places.last().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
-    *scene = with_probe(scene, system, at);
+    menu::add_probe(scene, system, at);
 }

@@ -4,7 +4,7 @@ use crate::app::diagnosis::state_text;
 use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::panel::supports::TURNS;
-use crate::app::viewport::menu::with_middle_section;
+use crate::app::viewport::menu::add_middle_section;
 use crate::study::section_chart;
 
 /// Shows the chosen section: its forces, its place and direction, and buttons that show its stress and remove it.
@@ -62,8 +62,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             panel.edit("Sections", |scene| _ = scene.sections.remove(chosen));
         }
         if ui.button(tr("Add a section")).clicked() {
-            let added = with_middle_section(scene, input.simulation.system());
-            panel.actions.push(Action::Edit("Sections", Box::new(added)));
+            panel.edit("Sections", |scene| add_middle_section(scene, input.simulation.system()));
         }
     });
 }

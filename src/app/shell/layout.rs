@@ -12,7 +12,7 @@ use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{shortcuts, status_bar, toolbar};
-use crate::app::viewport::{menu, time_line};
+use crate::app::viewport::time_line;
 use crate::app::widgets::palette;
 
 /// In a window narrower than this, points, the panel lies over the body and can be closed.
@@ -257,8 +257,7 @@ impl Lab {
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
         let rect = viewport.rect;
-        let chosen = viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content));
-        actions.extend(chosen.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
+        actions.extend(viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content)));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction);
         let (viewport, content) = self.viewport_and_content();
@@ -304,8 +303,7 @@ impl Lab {
             lesson.learn.paint(&painter, &view);
         }
         let (viewport, content) = self.viewport_and_content();
-        let kept = viewport.show_values(ui, &painter, &content);
-        actions.extend(kept.map(|scene| Action::Edit(menu::EDIT, Box::new(scene))));
+        actions.extend(viewport.show_values(ui, &painter, &content));
         self.paint_story(ui, &painter, rect);
         if self.desk.view.bars {
             self.show_work(ui, rect, actions);

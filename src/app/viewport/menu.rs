@@ -9,26 +9,24 @@ use crate::mesh::{axis_angle, bent, straightened};
 use crate::scene::Probe;
 use crate::section;
 
-/// Entry of the menu: its text, and the scene that it leads to.
-type MenuEntry = (String, Scene);
+/// Entry of the menu: its text, and its edit.
+type MenuEntry = (String, Action);
 
-/// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the scene that
-/// was chosen. Objects within `near`, m, can be removed; new loads have the usual magnitude of a scene with the loads
-/// `present`.
+/// Shows the menu of a point with rest position `at`, m, after a click with the secondary button; returns the edit that
+/// was chosen. Objects within `near`, m, can be removed; new loads have the usual magnitude of the scene's loads.
 pub(crate) fn show(
     response: &Response,
     (scene, system): (&Scene, &System),
     (at, near): (Vector2<f64>, f64),
-    present: OpeningLoads,
-) -> Option<Scene> {
+) -> Option<Action> {
     let mut chosen = None;
     response.context_menu(|ui: &mut Ui| {
         let edge = nearest_edge_for_moment(system, at);
-        let added = additions(scene, system, (at, near), edge, present);
+        let added = additions(scene, system, (at, near), edge);
         let entries = added.into_iter().chain(removals(scene, system.mesh(), (at, near), edge));
-        for (text, edited) in entries {
+        for (text, edit) in entries {
             if ui.button(text).clicked() {
-                chosen = Some(edited);
+                chosen = Some(edit);
                 ui.close();
             }
         }
@@ -36,10 +34,8 @@ pub(crate) fn show(
     chosen
 }
 
-fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Scene {
-    let mut scene = scene.clone();
-    edit(&mut scene);
-    scene
+fn edited(scene: &Scene, edit: impl FnOnce(&mut Scene)) -> Action {
+    Action::edit(EDIT, scene, edit)
 }
 
 /// Returns `true` if a force that is put at a place by hand acts at a point without a node.
@@ -121,14 +117,8 @@ pub(crate) fn support_by_hand(system: &System, place: Place, fix: &[Axis]) -> Su
 }
 
 /// Returns the entries that add an object at a rounded point, or a moment on an edge. A node within `near`, m, is held itself.
-fn additions(
-    scene: &Scene,
-    system: &System,
-    (at, near): (Vector2<f64>, f64),
-    edge: Option<&str>,
-    present: OpeningLoads,
-) -> Vec<MenuEntry> {
-    let mesh = system.mesh();
+fn additions(scene: &Scene, system: &System, (at, near): (Vector2<f64>, f64), edge: Option<&str>) -> Vec<MenuEntry> {
+    let (mesh, present) = (system.mesh(), OpeningLoads::of(scene));
     let node = mesh.node(mesh.nearest_node(at));
     let held = if (node - at).norm() <= near { node } else { at };
     let support = support_by_hand(system, held.into(), &[Axis::X, Axis::Y]);
@@ -138,10 +128,10 @@ fn additions(
     let mut entries = [
         ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
         ("Hold this point", edited(scene, |scene| scene.supports.push(support))),
-        ("Add a probe here", with_probe(scene, system, at)),
+        ("Add a probe here", edited(scene, |scene| add_probe(scene, system, at))),
         ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, at)))),
     ]
-    .map(|(text, scene)| (tr(text).to_owned(), scene))
+    .map(|(text, edit)| (tr(text).to_owned(), edit))
     .to_vec();
     // A second support of a point changes nothing.
     if scene.supports.iter().any(|support| support.place == held && support.fix.len() == 2) {
@@ -155,11 +145,10 @@ fn additions(
     entries
 }
 
-pub(crate) fn with_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> Scene {
+pub(crate) fn add_probe(scene: &mut Scene, system: &System, at: Vector2<f64>) {
     let is_free = |name: &String| scene.probes.iter().all(|probe| probe.name != *name);
     let name = (1..).map(|n| format!("p{n}")).find(is_free).unwrap_or_default();
-    let probe = Probe { name, place: Place::At(rounded(system, at).into()) };
-    edited(scene, |scene| scene.probes.push(probe))
+    scene.probes.push(Probe { name, place: Place::At(rounded(system, at).into()) });
 }
 
 pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> bool {
@@ -167,12 +156,12 @@ pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> boo
     scene.probes.iter().any(|probe| probe.place == place)
 }
 
-/// Returns the scene with a section through the middle of the body.
-pub(crate) fn with_middle_section(scene: &Scene, system: &System) -> Scene {
+/// Adds a section through the middle of the body.
+pub(crate) fn add_middle_section(scene: &mut Scene, system: &System) {
     let (low, high) = system.mesh().bounds();
     let node = || system.mesh().node(system.mesh().nearest_node(0.5 * (low + high)));
     let middle = system.beam().map_or_else(node, |beam| bent(beam, 0.5, 0.0));
-    edited(scene, |scene| scene.sections.push(normal_section(system, rounded(system, middle))))
+    scene.sections.push(normal_section(system, rounded(system, middle)));
 }
 
 /// Returns the section through a point that is normal to the axis of the beam; in a body without axis it is vertical or

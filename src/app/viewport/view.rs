@@ -277,15 +277,16 @@ impl BodyView {
         })
     }
 
-    /// Returns the scene after the base of an object was dropped at another place.
-    pub(crate) fn drop_base(&self, interaction: &Interaction, content: &Content<'_>) -> Option<Scene> {
+    /// Returns the edit by a base that was dropped at another place.
+    pub(crate) fn drop_base(&self, interaction: &Interaction, content: &Content<'_>) -> Option<Action> {
         let (object, at) = interaction.dropped?;
-        self.bases(content)?.moved(object, at).filter(|moved| moved != content.session.scene())
+        let moved = self.bases(content)?.moved(object, at).filter(|moved| moved != content.session.scene());
+        moved.map(|moved| Action::Edit(menu::EDIT, Box::new(moved)))
     }
 
-    /// Shows the menu of the material point that was clicked with the secondary button; returns the scene that was
+    /// Shows the menu of the material point that was clicked with the secondary button; returns the edit that was
     /// chosen.
-    pub(crate) fn show_menu(&mut self, response: &Response, content: &Content<'_>) -> Option<Scene> {
+    pub(crate) fn show_menu(&mut self, response: &Response, content: &Content<'_>) -> Option<Action> {
         /// Distance within which the menu removes an object, points.
         const NEAR: f64 = 14.0;
         if content.card.is_some() || content.is_apart() || content.session.is_in_background() {
@@ -309,8 +310,7 @@ impl BodyView {
             self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
-        let present = OpeningLoads::of(scene);
-        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale), present)
+        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale))
     }
 
     /// Returns the loads of the last frame's arrows.
@@ -346,8 +346,8 @@ impl BodyView {
         (content.options.field, self.body.field.at(content.mesh(), point))
     }
 
-    /// Shows the values at the pointer and at the pinned point; returns the scene with a probe that is to be kept.
-    pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) -> Option<Scene> {
+    /// Shows the values at the pointer and at the pinned point; returns the edit that keeps a probe.
+    pub(crate) fn show_values(&mut self, ui: &Ui, painter: &Painter, content: &Content<'_>) -> Option<Action> {
         if content.is_apart() {
             return None;
         }
@@ -383,7 +383,9 @@ impl BodyView {
         let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };
         match probe::show_card(ui, painter, card, &pinned, &mut self.card_choice)? {
             CardRequest::Close => self.probe = None,
-            CardRequest::Keep => return Some(menu::with_probe(scene, system, state.rest)),
+            CardRequest::Keep => {
+                return Some(Action::edit(menu::EDIT, scene, |scene| menu::add_probe(scene, system, state.rest)));
+            }
         }
         None
     }

@@ -3,7 +3,7 @@
 use crate::app::interface::*;
 use crate::app::modes::figure;
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::app::viewport::menu::with_middle_section;
+use crate::app::viewport::menu::add_middle_section;
 use crate::format::Context;
 use crate::section::{Section, SectionError};
 use crate::simulation::Equilibrium;
@@ -180,8 +180,8 @@ impl SectionPlot {
                 if has_none {
                     let tip = "Adds a section through the middle of the body; the context menu of the body adds one at a point";
                     if ui.button(tr("Add a section")).on_hover_text(tr(tip)).clicked() {
-                        let scene = with_middle_section(scene, simulation.system());
-                        actions.push(Action::Edit("Sections", Box::new(scene)));
+                        let add = |scene: &mut Scene| add_middle_section(scene, simulation.system());
+                        actions.push(Action::edit("Sections", scene, add));
                     }
                 }
                 if let Some(Ok(drawn)) = &drawn {
