@@ -18,7 +18,7 @@ pub(crate) struct Document {
     /// does not change the path in the scene.
     mesh_folder: Option<PathBuf>,
     /// Content of the file when it was last read or written; `None` if there was none.
-    text: Option<Arc<str>>,
+    pub text: Option<Arc<str>>,
 }
 
 /// Largest loads of a scene as it was opened. The arrows of these loads have the opening length.
@@ -88,11 +88,6 @@ impl Document {
             scene.clone(),
             Some("".into()),
         )
-    }
-
-    /// Returns the content of the file when it was last read or written.
-    pub(crate) fn text(&self) -> Option<&str> {
-        self.text.as_deref()
     }
 
     /// Opens a scene.

@@ -48,7 +48,7 @@ fn write(Unsaved { document, scene }: &Unsaved, file: &Path) -> io::Result<()> {
         assignments: assignments.clone(),
         original: document.relocated(&document.original, &name).to_toml().map_err(io::Error::other)?,
         scene: document.relocated(scene, &name).to_toml().map_err(io::Error::other)?,
-        file: document.text().map(str::to_owned),
+        file: document.text.as_deref().map(str::to_owned),
     };
     settings::write(file, &toml::to_string(&copy).map_err(io::Error::other)?)
 }

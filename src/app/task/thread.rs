@@ -147,12 +147,11 @@ impl<P, T> Reporter<P, T> {
     pub(crate) fn report(&self, progress: P) -> ControlFlow<()> {
         // If the task was dropped, there is no receiver.
         let is_received = (self.send)(Update::Progress(progress));
-        if is_received && !self.is_cancelled() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    }
-
-    /// Returns `true` if the thread is to end with the result that it has.
-    pub(crate) fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
+        if is_received && !self.is_cancelled.load(Ordering::Relaxed) {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     }
 }
 

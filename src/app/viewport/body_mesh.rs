@@ -34,11 +34,7 @@ pub(crate) struct BodyMesh {
     recent: Recent,
     /// Equations of the body that the components belong to; `None` if they must be computed again.
     system: Option<Arc<System>>,
-    line_color: [u8; 4],
-    background: [u8; 3],
-    surround: [u8; 3],
-    absent_color: [u8; 3],
-    map: ColorMap,
+    pub palette: Palette,
 }
 
 /// Largest magnitude of a field in the last seconds of a motion, collected in two consecutive time windows.
@@ -139,18 +135,6 @@ impl BodyMesh {
         self.system = None;
     }
 
-    /// Sets the colours of the theme and the colour map of the field.
-    pub(crate) fn color(&mut self, visuals: &Visuals, field: Field) {
-        let palette = Palette::new(visuals);
-        let opaque = |color: Color32| [color.r(), color.g(), color.b()];
-        self.background = opaque(palette.canvas);
-        // Background colour of the panels. They do not fill their own areas, because filling is slow without a GPU.
-        self.surround = opaque(palette.panel);
-        self.absent_color = opaque(palette.absent);
-        self.line_color = palette.wire;
-        self.map = palette.map(field);
-    }
-
     /// Returns the range of the field's values in the current state.
     pub(crate) fn value_range(&self) -> [f64; 2] {
         self.field.field.range(self.largest)
@@ -163,6 +147,7 @@ impl BodyMesh {
 
     /// Returns the input of the body's render pass.
     pub(crate) fn frame<'a>(&'a self, geometry: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
+        let opaque = |color: Color32| [color.r(), color.g(), color.b()];
         Frame {
             stamp: self.stamp,
             positions: &self.points,
@@ -176,11 +161,12 @@ impl BodyMesh {
             lines: if wireframe { &geometry.lines } else { &[] },
             triangles_of_lines: &geometry.triangles_of_lines,
             pieces: geometry.pieces,
-            map: self.map,
-            line_color: self.line_color,
-            background: self.background,
-            surround: self.surround,
-            absent_color: self.absent_color,
+            map: self.palette.map(self.field.field),
+            line_color: self.palette.wire,
+            background: opaque(self.palette.canvas),
+            // The panels do not fill their own areas, because filling is slow without a GPU.
+            surround: opaque(self.palette.panel),
+            absent_color: opaque(self.palette.absent),
         }
     }
 }

@@ -202,7 +202,7 @@ impl BodyView {
         let is_of_drawn = content.session.live().is_none() && content.session.fallback().is_none();
         let shown = (content.options, content.reference().filter(|_| is_of_drawn));
         self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
-        self.body.color(visuals, content.options.field);
+        self.body.palette = Palette::new(visuals);
     }
 
     /// Returns the factor of the drawn displacement: 1 under a card of Learn and while the body is grabbed.

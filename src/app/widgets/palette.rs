@@ -102,6 +102,12 @@ const LIGHT: Palette = Palette {
     wire: [255, 255, 255, 110],
 };
 
+impl Default for Palette {
+    fn default() -> Self {
+        DARK
+    }
+}
+
 impl Palette {
     /// Returns the palette that matches `visuals`.
     pub(crate) fn new(visuals: &Visuals) -> Self {

@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, panes: &[Pane], number: usize, input: &CompareIn
     let (mut setting, mut is_closed) = (pane.setting, false);
     ui.horizontal(|ui| {
         let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
-        ui.painter().rect_filled(bar, 3.0, pane.color(scene, &palette));
+        ui.painter().rect_filled(bar, 3.0, palette.solution(&pane.setting.apply(scene)));
         let close = panes.len() > *PANES.start() && input.view.bars;
         let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
         // Widths of the pickers as fractions of the row, and the largest width, points.

@@ -125,14 +125,6 @@ impl Pane {
         Some(&self.run.model()?.simulation)
     }
 
-    /// Returns the colour of the pane's method or integrator.
-    pub(super) fn color(&self, scene: &Scene, palette: &Palette) -> Color32 {
-        match scene.analysis {
-            Analysis::Static => palette.method(self.setting.method.unwrap_or(scene.solver.method)),
-            Analysis::Dynamic => palette.integrator(self.setting.integrator.unwrap_or(scene.dynamics.integrator)),
-        }
-    }
-
     pub(super) fn condition(&self) -> Condition {
         if self.run.is_outdated() {
             Condition::Outdated
@@ -205,7 +197,7 @@ impl Pane {
             (self.system, self.geometry) = (Some(simulation.system().clone()), geometry.clone());
             self.range = Some(mesh.range);
         }
-        mesh.color(visuals, view.field);
+        mesh.palette = Palette::new(visuals);
         self.body_mesh = mesh;
     }
 
