@@ -3,7 +3,7 @@
 use crate::app::interface::*;
 
 /// Lowest and highest corner of a box, m.
-type Box2 = [Vector2<f64>; 2];
+pub(crate) type Box2 = [Vector2<f64>; 2];
 
 /// Time constant of the camera animation, s.
 const EASE: f64 = 0.11;
@@ -11,6 +11,11 @@ const EASE: f64 = 0.11;
 const THERE: f64 = 0.3;
 /// Smallest and largest magnification relative to the one that fits the body at rest.
 const ZOOM: [f64; 2] = [0.02, 2e4];
+
+/// Returns the smallest box that contains a box and a point.
+pub(crate) fn grow([low, high]: Box2, point: &Vector2<f64>) -> Box2 {
+    [low.inf(point), high.sup(point)]
+}
 
 /// Camera of a view, and the target of its animation.
 #[derive(Clone, Debug)]

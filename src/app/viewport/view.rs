@@ -6,7 +6,7 @@ use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_mesh::BodyMesh;
-use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::camera_controller::{Box2, CameraController, grow};
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
@@ -112,7 +112,7 @@ pub(crate) struct BodyView {
     /// Largest displacement of a motion so far, m.
     largest_displacement: f64,
     /// Bounding box of all states of a body in motion so far, m.
-    swept: Option<[Vector2<f64>; 2]>,
+    swept: Option<Box2>,
     crossing: Crossing,
 }
 
@@ -404,25 +404,14 @@ impl BodyView {
         let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
         let is_stepped = !is_motion && (session.is_slow || !session.is_running());
         if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
-            let (mut low, mut high) = content.mesh().bounds();
             let before = if drags { Some(self.camera.whole) } else { self.swept.filter(|_| is_motion) };
-            if let Some([before_low, before_high]) = before {
-                (low, high) = (low.inf(&before_low), high.sup(&before_high));
-            }
-            let mut include = |points: &mut dyn Iterator<Item = Vector2<f64>>| {
-                for p in points {
-                    (low, high) = (low.inf(&p), high.sup(&p));
-                }
-            };
-            include(&mut self.body.points.iter().copied());
-            include(&mut self.exact(content).iter().flatten().copied());
-            if let Some(reach) = content.reach() {
-                include(&mut self.drawn_positions(reach));
-            }
-            self.swept = Some([low, high]).filter(|_| is_motion);
-            self.camera.set_whole([low, high]);
-            let least = least_margins(size);
-            self.margins = self.with_room_for_arrows(content, least, [low, high], size);
+            let exact = self.exact(content);
+            let points = before.iter().flatten().chain(&self.body.points).chain(exact.iter().flatten()).copied();
+            let points = points.chain(content.reach().into_iter().flat_map(|reach| self.drawn_positions(reach)));
+            let whole = points.fold(content.mesh().bounds().into(), |whole, point| grow(whole, &point));
+            self.swept = Some(whole).filter(|_| is_motion);
+            self.camera.set_whole(whole);
+            self.margins = self.with_room_for_arrows(content, least_margins(size), whole, size);
         }
         let [low, high] = self.camera.whole;
         let mut fitted = self.fitted(content, low, high, size);
@@ -438,7 +427,7 @@ impl BodyView {
     /// Returns `true` if the drawn body is at most `times` as large as at rest; a diverging iterate may be larger.
     fn is_of_usual_size(&self, content: &Content<'_>, times: f64) -> bool {
         let (low, high) = content.mesh().bounds();
-        let [from, to] = self.body.points.iter().fold([low, high], |[from, to], p| [from.inf(p), to.sup(p)]);
+        let [from, to] = self.body.points.iter().fold([low, high], grow);
         (to - from).norm() < times * (high - low).norm()
     }
 
@@ -484,7 +473,7 @@ impl BodyView {
         &self,
         content: &Content<'_>,
         least: Margins,
-        [low, high]: [Vector2<f64>; 2],
+        [low, high]: Box2,
         view: [f64; 2],
     ) -> Margins {
         /// Space beyond a tip for the label of its force, points.

@@ -255,11 +255,6 @@ pub(super) fn common_size(places: impl Iterator<Item = Rect>) -> Option<[f64; 2]
     sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
 }
 
-/// Returns the smallest box that contains a box and a point.
-pub(super) fn grow([low, high]: [Vector2<f64>; 2], point: &Vector2<f64>) -> [Vector2<f64>; 2] {
-    [low.inf(point), high.sup(point)]
-}
-
 /// Returns the smallest range that contains all colour ranges.
 pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()

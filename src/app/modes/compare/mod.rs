@@ -3,7 +3,7 @@
 
 use egui::Panel;
 
-use self::header::{Grid, grow};
+use self::header::Grid;
 use self::setting::PANES;
 use crate::app::interface::*;
 use crate::app::session::clock::RealTimeClock;
@@ -11,7 +11,7 @@ use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::QUIET_POLL;
-use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::camera_controller::{Box2, CameraController, grow};
 use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
@@ -74,7 +74,7 @@ pub(crate) struct Compare {
     /// Clock of the motions.
     pub clock: RealTimeClock,
     /// Bounding box of all states of the motions so far, m.
-    swept: Option<[Vector2<f64>; 2]>,
+    swept: Option<Box2>,
     /// Number of panes whose motions have not stopped early.
     sound: usize,
     /// Playing time, s: longer than the simulated time in slow motion.
@@ -437,7 +437,7 @@ impl Compare {
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
         let Some(size) = header::common_size(self.panes.iter().filter_map(|pane| pane.place)) else { return };
-        let rest: [Vector2<f64>; 2] = input.session.simulation().mesh().bounds().into();
+        let rest: Box2 = input.session.simulation().mesh().bounds().into();
         let (whole, margins) = match self.in_motion {
             true => (self.sweep(rest), Margins { sides: 40.0, top: 40.0, bottom: 44.0 }),
             false => (self.bounds(rest, input, exact), self.margins(input, size)),
@@ -459,12 +459,7 @@ impl Compare {
     }
 
     /// Returns the bounding box of the results and of the outline `exact` of the reference solution, m.
-    fn bounds(
-        &self,
-        rest: [Vector2<f64>; 2],
-        input: &CompareInput<'_>,
-        exact: &[Vec<Vector2<f64>>],
-    ) -> [Vector2<f64>; 2] {
+    fn bounds(&self, rest: Box2, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) -> Box2 {
         /// Largest size of the box with the solution of linear theory, which may be so large that the other bodies would be
         /// shown too small, relative to the box without it.
         const LARGEST: f64 = 1.5;
@@ -473,7 +468,7 @@ impl Compare {
             self.panes.iter().filter(|pane| pane.run.is_sound()).partition(|pane| is_linear(pane));
         let bounds = exact.iter().flatten().fold(rest, grow);
         let bounds = others.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
-        let size_of = |[low, high]: [Vector2<f64>; 2]| (high - low).norm();
+        let size_of = |[low, high]: Box2| (high - low).norm();
         let with = linear.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
         let has_reference = input.reference.is_some() && input.view.exact;
         let is_known = !others.is_empty() || has_reference;
@@ -481,7 +476,7 @@ impl Compare {
     }
 
     /// Extends the bounding box of all states of the motions so far, m, by the present ones, and returns it.
-    fn sweep(&mut self, rest: [Vector2<f64>; 2]) -> [Vector2<f64>; 2] {
+    fn sweep(&mut self, rest: Box2) -> Box2 {
         /// Distance up to which the camera follows points, in sizes of the body.
         const LARGEST_REACH: f64 = 3.0;
         // The states of a motion that is about to explode would hide the others.
