@@ -76,7 +76,7 @@ impl Document {
     }
 
     /// Returns the current content of the file; `None` if it cannot be read.
-    fn read(&self) -> Option<Arc<str>> {
+    pub(crate) fn read(&self) -> Option<Arc<str>> {
         let bytes = std::fs::read(self.path()?).ok()?;
         Some(String::from_utf8_lossy(&bytes).into())
     }
@@ -110,11 +110,6 @@ impl Document {
     /// Returns `true` if the file has been changed on disk since it was read or saved here.
     pub(crate) fn has_changed(&self) -> bool {
         self.read().is_some_and(|now| Some(now) != self.text)
-    }
-
-    /// Records the current change of the file as known, so that it is not reported again.
-    pub(crate) fn ignore_change(&mut self) {
-        self.text = self.read();
     }
 
     /// Returns the scene as a file at `path` has it: the relative path of a mesh file becomes absolute if that file is in

@@ -517,7 +517,7 @@ impl Session {
 
     /// Keeps the scene although its file has changed on disk, and stops reporting that change.
     pub(crate) fn ignore_file_change(&mut self) {
-        self.present.document.ignore_change();
+        self.present.document.text = self.present.document.read();
         self.is_outdated = false;
     }
 
@@ -647,11 +647,6 @@ impl Session {
         self.is_from_rest = true;
     }
 
-    /// Adds to the results that are shown those that the state needs: ρ where it has none of its own.
-    fn with_rho<'a>(&self, shown: ShownFacts<'a>) -> ShownFacts<'a> {
-        ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown }
-    }
-
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
     pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
         self.poll();
@@ -666,7 +661,7 @@ impl Session {
             return self.facts.frequency.wait(&self.present.scene);
         }
         self.certify();
-        let shown = self.with_rho(shown);
+        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
         self.facts.request_at_rest(&self.present.scene, shown, true);
     }
 
@@ -752,7 +747,7 @@ impl Session {
             self.time_in_frame();
             return follows || certifies;
         }
-        let shown = self.with_rho(shown);
+        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
         self.facts.request_at_rest(&self.present.scene, shown, false) || follows || certifies
     }
 
@@ -805,14 +800,10 @@ impl Session {
         }
     }
 
-    /// Requests the reference solution, in any state of the body; returns `true` while it is pending.
-    pub(crate) fn request_reference(&mut self) -> bool {
-        self.facts.reference.request(&self.present.scene)
-    }
-
-    /// Computes the reference solution, and waits for it.
-    pub(crate) fn wait_for_reference(&mut self) {
-        self.facts.reference.wait(&self.present.scene);
+    /// Requests the reference solution, in any state of the body, or computes it and `waits`; returns `true` while it is
+    /// pending.
+    pub(crate) fn obtain_reference(&mut self, waits: bool) -> bool {
+        self.facts.reference.obtain(&self.present.scene, waits)
     }
 
     /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.

@@ -108,7 +108,7 @@ impl Lab {
     fn request_facts(&mut self, ctx: &Context) {
         // Results of a load that changes with every frame would be late.
         if let Some(story) = &self.story {
-            if story.compares && self.desk.session.request_reference() {
+            if story.compares && self.desk.session.obtain_reference(false) {
                 ctx.request_repaint_after(POLL);
             }
             return;
@@ -205,7 +205,7 @@ impl Lab {
         self.desk.viewport.rect = rect;
         // The reference solution does not depend on the iteration of the panel's own setting.
         let is_wanted = !self.desk.session.is_motion() && !ui.input(|i| i.pointer.any_down());
-        if is_wanted && !self.desk.compare.goes_on() && self.desk.session.request_reference() {
+        if is_wanted && !self.desk.compare.goes_on() && self.desk.session.obtain_reference(false) {
             ui.ctx().request_repaint_after(POLL);
         }
         let (compare, input) = self.compared();

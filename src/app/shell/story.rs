@@ -149,7 +149,7 @@ impl Lab {
     /// Waits for the reference solution, if the body is compared with it.
     pub(crate) fn finish_story_frame(&mut self) {
         if self.story.as_ref().is_some_and(|story| story.compares) {
-            self.desk.session.wait_for_reference();
+            self.desk.session.obtain_reference(true);
         }
     }
 

@@ -151,11 +151,6 @@ pub(crate) fn add_probe(scene: &mut Scene, system: &System, at: Vector2<f64>) {
     scene.probes.push(Probe { name, place: Place::At(rounded(system, at).into()) });
 }
 
-pub(crate) fn has_probe(scene: &Scene, system: &System, at: Vector2<f64>) -> bool {
-    let place = Place::At(rounded(system, at).into());
-    scene.probes.iter().any(|probe| probe.place == place)
-}
-
 /// Adds a section through the middle of the body.
 pub(crate) fn add_middle_section(scene: &mut Scene, system: &System) {
     let (low, high) = system.mesh().bounds();

@@ -364,8 +364,9 @@ impl BodyView {
         let state = shown.point_state(point, content.options.point_values())?;
         let at = self.in_view(content, point)?;
         let (scene, system) = (content.session.scene(), content.simulation().system());
+        let place = Place::At(menu::rounded(system, state.rest).into());
         // An edit of a large body would solve it again.
-        let is_kept = content.session.is_in_background() || menu::has_probe(scene, system, state.rest);
+        let is_kept = content.session.is_in_background() || scene.probes.iter().any(|probe| probe.place == place);
         // Another point begins with the values that fit.
         if self.card.is_none_or(|card| card.point != point) {
             self.card_choice.shows_all = false;

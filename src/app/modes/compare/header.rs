@@ -249,17 +249,6 @@ impl Grid {
     }
 }
 
-/// Returns the width and height, points, that all of these areas have in common.
-pub(super) fn common_size(places: impl Iterator<Item = Rect>) -> Option<[f64; 2]> {
-    let sizes = places.map(|place| [place.width(), place.height()].map(f64::from));
-    sizes.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])])
-}
-
-/// Returns the smallest range that contains all colour ranges.
-pub(super) fn common_range(ranges: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]).unwrap_or_default()
-}
-
 /// Returns the areas of `panes` panes in equal columns, side by side or in two rows.
 fn cells(rect: Rect, panes: usize) -> Vec<Rect> {
     let is_one_row = panes <= 2 || panes == 3 && (rect.width() - 2.0 * GAP) / 3.0 >= NARROWEST;

@@ -184,7 +184,7 @@ impl Compare {
             pane.run.solve_to_end(pane.setting.apply(session.scene()), &equations);
             equations.extend(pane.equations());
             if times {
-                pane.wait_for_time();
+                pane.obtain_time(true);
             }
         }
     }
@@ -236,7 +236,7 @@ impl Compare {
 
     /// Requests the computing times, one pane after the other; returns `true` while one is pending.
     fn request_times(&mut self, ctx: &Context) -> bool {
-        let is_pending = self.panes.iter_mut().any(Pane::request_time);
+        let is_pending = self.panes.iter_mut().any(|pane| pane.obtain_time(false));
         if is_pending {
             ctx.request_repaint_after(QUIET_POLL);
         }
@@ -339,7 +339,9 @@ impl Compare {
         }
         // Motions that have exploded do not count.
         let counted = self.panes.iter().filter(|pane| !self.in_motion || pane.run.is_sound());
-        let range = input.view.fixed_range.unwrap_or(header::common_range(counted.filter_map(|pane| pane.range)));
+        let ranges = counted.filter_map(|pane| pane.range);
+        let common = ranges.reduce(|[low, high], own| [low.min(own[0]), high.max(own[1])]);
+        let range = input.view.fixed_range.or(common).unwrap_or_default();
         let whole = ui.available_rect_before_wrap();
         let probes = if self.in_motion { 0 } else { header::shown_probes(input.scene, input.view) };
         let grid = Grid::new(whole, self.panes.len(), probes);
@@ -436,7 +438,8 @@ impl Compare {
 
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
-        let Some(size) = header::common_size(self.panes.iter().filter_map(|pane| pane.place)) else { return };
+        let sizes = self.panes.iter().filter_map(|pane| Some(pane.place?.size()));
+        let Some(size) = sizes.reduce(Vec2::min).map(|size| [size.x, size.y].map(f64::from)) else { return };
         let rest: Box2 = input.session.simulation().mesh().bounds().into();
         let (whole, margins) = match self.in_motion {
             true => (self.sweep(rest), Margins { sides: 40.0, top: 40.0, bottom: 44.0 }),

@@ -102,14 +102,9 @@ impl Pane {
         of_panel.or_else(|| self.seconds())
     }
 
-    /// Requests the computing time; returns `true` while it is pending.
-    pub(super) fn request_time(&mut self) -> bool {
-        self.timed_scene().is_some_and(|scene| self.cost.request(&scene))
-    }
-
-    /// Measures the time of the solve from rest, and waits for it.
-    pub(super) fn wait_for_time(&mut self) {
-        self.timed_scene().iter().for_each(|scene| self.cost.wait(scene));
+    /// Requests the computing time, or measures it and `waits`; returns `true` while it is pending.
+    pub(super) fn obtain_time(&mut self, waits: bool) -> bool {
+        self.timed_scene().is_some_and(|scene| self.cost.obtain(&scene, waits))
     }
 
     /// Returns the values of the displayed field at both ends of the colour map, as of the last

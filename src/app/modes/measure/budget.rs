@@ -99,11 +99,14 @@ impl Budget {
         let budget = BudgetView {
             scene,
             study,
-            choices: study.map(choices).unwrap_or_default(),
+            choices: study.into_iter().flat_map(|study| &study.measurements).filter(|m| m.error.is_some()).collect(),
             demand: *demand,
             best: study.and_then(|study| fastest(study, &meeting)),
-            nearest: study.filter(|_| meeting.is_empty()).map(|study| nearest(study, *demand)).unwrap_or_default(),
-            meeting,
+            is_met: !meeting.is_empty(),
+            listed: match study {
+                Some(study) if meeting.is_empty() => nearest(study, *demand),
+                _ => meeting,
+            },
             current: fact.is_of(scene),
             progress: fact.progress().filter(|_| measured.is_some()),
             error: fact.failure(scene),
@@ -134,12 +137,12 @@ struct BudgetView<'a> {
     /// Settings whose error was measured.
     choices: Vec<&'a Measurement>,
     demand: Demand,
-    /// Settings that meet the demand, fastest first.
-    meeting: Vec<&'a Measurement>,
+    /// Settings that meet the demand, fastest first, or if none does, those of [`nearest`].
+    listed: Vec<&'a Measurement>,
+    /// `true` if a setting meets the demand.
+    is_met: bool,
     /// Fastest of them whose iteration converges when it runs on.
     best: Option<&'a Measurement>,
-    /// Settings listed if none meets the demand: see [`nearest`].
-    nearest: Vec<&'a Measurement>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
     /// Fraction done and current measurement, while a study is in progress.
@@ -164,11 +167,6 @@ impl BudgetView<'_> {
     fn apply(&self, m: &Measurement) -> Action {
         Action::Apply(Box::new(m.apply(self.scene)))
     }
-}
-
-/// Returns every setting whose error was measured.
-fn choices(study: &Study) -> Vec<&Measurement> {
-    study.measurements.iter().filter(|m| m.error.is_some()).collect()
 }
 
 /// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
@@ -292,7 +290,6 @@ fn settings(
             *limit = field.show(ui, messages, limit.unwrap_or_default(), None).or(*limit);
         }
     });
-    let meeting = &budget.meeting;
     ui.horizontal(|ui| {
         let apply = ui.add_enabled(budget.best.is_some() && budget.current, Button::new(tr("Apply the fastest")));
         let apply = apply
@@ -313,13 +310,13 @@ fn settings(
             }
             // The row of Measure says that nothing has been measured.
             None if measured == 0 => String::new(),
-            None if meeting.is_empty() => {
+            None if !budget.is_met => {
                 fill!("None of %{measured} settings meets both; nearest:", measured)
             }
-            None if meeting.iter().any(|m| budget.study.is_some_and(|study| !study.converges(m))) => {
-                fill!("%{n} of %{measured} settings meet both; *: does not converge", n = meeting.len(), measured)
+            None if budget.listed.iter().any(|m| budget.study.is_some_and(|study| !study.converges(m))) => {
+                fill!("%{n} of %{measured} settings meet both; *: does not converge", n = budget.listed.len(), measured)
             }
-            None => fill!("%{n} of %{measured} settings meet both", n = meeting.len(), measured),
+            None => fill!("%{n} of %{measured} settings meet both", n = budget.listed.len(), measured),
         };
         ui.add(egui::Label::new(count).truncate());
     });
@@ -328,7 +325,7 @@ fn settings(
 /// Shows the settings that meet the demand, fastest first, or those nearest to it, in a list;
 /// a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
-    let listed = if budget.meeting.is_empty() { &budget.nearest } else { &budget.meeting };
+    let listed = &budget.listed;
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]);
     let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
@@ -536,7 +533,7 @@ mod tests {
     fn a_setting_is_measured_again() {
         let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
         let measured = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(())).unwrap();
-        let all = choices(&measured);
+        let all: Vec<&Measurement> = measured.measurements.iter().filter(|m| m.error.is_some()).collect();
         let applied = all.iter().find(|m| !m.is_applied_to(&scene)).unwrap().apply(&scene);
         let mut other = scene.clone();
         other.beam.as_mut().unwrap().cells = [17, 3];
