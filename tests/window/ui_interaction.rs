@@ -565,6 +565,9 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     // No other program has changed the file, so that no reload is offered. Then one does.
     own.name = "Theirs".to_owned();
     for is_changed in [false, true] {
+        // A file with the same content has not changed, whatever its time.
+        let later = std::fs::metadata(&other).unwrap().modified().unwrap() + std::time::Duration::from_secs(2);
+        std::fs::File::options().write(true).open(&other).unwrap().set_modified(later).unwrap();
         if is_changed {
             std::fs::write(&other, own.to_toml().unwrap()).unwrap();
         }

@@ -152,51 +152,6 @@ fn a_model_that_is_refused_in_the_background_is_reported() {
     assert_eq!(*session.scene(), first);
 }
 
-#[test]
-fn a_scene_is_saved_and_read_again_when_its_file_has_changed() {
-    let folder = tempfile::tempdir().unwrap();
-    let path: PathBuf = folder.path().join("scene.toml");
-    let mut session = session(cantilever(-100.0));
-    session.apply(with_force(&session, -200.0)).unwrap();
-    session.save(&path).unwrap();
-    assert!(!session.is_edited() && session.document().path() == Some(path.as_path()));
-    let later = fs::metadata(&path).unwrap().modified().unwrap() + std::time::Duration::from_secs(2);
-    fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
-    session.check_file();
-    assert!(!session.is_outdated(), "the content is the same");
-    fs::write(&path, cantilever(-50.0).to_toml().unwrap()).unwrap();
-    session.check_file();
-    assert!(session.is_outdated());
-    let changed = session.apply(Edit::Open(source(path))).unwrap();
-    assert!(changed.document && !session.is_outdated() && *session.scene() == session.document().original);
-    assert!(session.scene().loads == cantilever(-50.0).loads && session.can_undo());
-}
-
-#[test]
-fn a_motion_steps_with_the_clock_and_is_grabbed_and_released() {
-    let scene = Scene::beam(2.0, 0.5).clamp("left").probe("tip", "right").gravity([0.0, -9.81]);
-    let mut session = session(scene.moving(IntegratorKind::ImplicitEuler, 0.01));
-    session.advance(0.0);
-    (1..=20).for_each(|frame| _ = session.advance(f64::from(frame) / 60.0));
-    let time = session.simulation().state().time();
-    assert!(time > 0.1 && tip(&session) < 0.0, "{time} s");
-    let point = session.simulation().system().mesh().locate(Vector2::new(2.0, 0.25)).unwrap();
-    let target = Vector2::new(2.0, 1.5);
-    session.grab(Grab { start: Some(point), target: Some(target), release: false });
-    assert!(session.simulation().mouse_spring().is_some());
-    let before = tip(&session);
-    (0..40).for_each(|_| session.iterate());
-    assert!(tip(&session) > before, "the pull lifts the tip");
-    assert_eq!(session.simulation().mouse_spring().map(|(spring, _)| spring.target()), Some(target));
-    session.grab(Grab { release: true, ..Grab::default() });
-    assert!(session.simulation().mouse_spring().is_none());
-    session.show_moment(0.05);
-    let shown = session.simulation().state().time();
-    assert!(!session.is_running() && (shown - 0.05).abs() < 0.02, "{shown} s");
-    session.reset();
-    assert_eq!(session.simulation().state().time(), 0.0);
-}
-
 /// A motion that has exploded starts again with other settings: its body would still be many times its size.
 #[test]
 fn an_exploded_motion_starts_again_with_other_settings() {

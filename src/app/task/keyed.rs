@@ -280,12 +280,8 @@ mod tests {
     use std::thread;
 
     use super::*;
-    use crate::model::SolverSettings;
+    use crate::app::session::facts::without_solver;
     use crate::scene::{open, registry};
-
-    fn without_solver(scene: &Scene) -> Scene {
-        Scene { solver: SolverSettings::default(), ..scene.clone() }
-    }
 
     facts! {
         Length by without_solver = "length": f64, |scene, _, _| match &scene.beam {
