@@ -1,6 +1,5 @@
 //! Files of frames: animated GIF or PNG, or a folder of images.
 
-use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufWriter, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
@@ -181,40 +180,25 @@ impl Gif {
     fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), gif::EncodingError> {
         let Self { encoder, palette, before, now } = self;
         palette.indices(picture, now);
-        let width = picture.size[0] as usize;
-        let rect = changed(before, now, width);
-        let rows = now.chunks(width.max(1)).skip(rect.top).take(rect.height);
-        let pixels: Vec<u8> = rows.flat_map(|row| row.iter().skip(rect.left).take(rect.width)).copied().collect();
+        let whole = picture.size[0] as usize;
+        let [left, top, width, height] = changed(before, now, whole);
+        let rows = now.chunks(whole.max(1)).skip(top).take(height);
+        let buffer = rows.flat_map(|row| row.iter().skip(left).take(width)).copied().collect();
         // Cannot fail: frames are much smaller.
-        let small = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
-        encoder.write_frame(&gif::Frame {
-            delay: hundredths(seconds),
-            left: small(rect.left),
-            top: small(rect.top),
-            width: small(rect.width),
-            height: small(rect.height),
-            buffer: Cow::Owned(pixels),
-            ..gif::Frame::default()
-        })?;
+        let [left, top, width, height] = [left, top, width, height].map(|n| u16::try_from(n).unwrap_or(u16::MAX));
+        let delay = hundredths(seconds);
+        encoder.write_frame(&gif::Frame { delay, left, top, width, height, buffer, ..gif::Frame::default() })?;
         std::mem::swap(before, now);
         Ok(())
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Rect {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-}
-
-/// Returns the rectangle in which two frames of this width differ: the whole frame if there was none before, and one
-/// pixel if they are equal.
-fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
+/// Returns left, top, width and height of the rectangle in which two frames of this width differ: the whole frame if
+/// there was none before, and one pixel if they are equal.
+fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
     let width = width.max(1);
     if before.len() != now.len() {
-        return Rect { left: 0, top: 0, width, height: now.len() / width };
+        return [0, 0, width, now.len() / width];
     }
     let (mut left, mut right, mut top, mut bottom) = (width, 0, usize::MAX, 0);
     for (y, (a, b)) in before.chunks(width).zip(now.chunks(width)).enumerate() {
@@ -225,9 +209,9 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> Rect {
         }
     }
     if top == usize::MAX {
-        return Rect { left: 0, top: 0, width: 1, height: 1 };
+        return [0, 0, 1, 1];
     }
-    Rect { left, top, width: right - left + 1, height: bottom - top + 1 }
+    [left, top, right - left + 1, bottom - top + 1]
 }
 
 #[cfg(test)]
@@ -248,10 +232,10 @@ mod tests {
     fn the_changed_rectangle_is_the_smallest() {
         let before = vec![0; 20];
         let mut now = before.clone();
-        assert_eq!(changed(&before, &now, 5), Rect { left: 0, top: 0, width: 1, height: 1 });
-        assert_eq!(changed(&[], &now, 5), Rect { left: 0, top: 0, width: 5, height: 4 });
+        assert_eq!(changed(&before, &now, 5), [0, 0, 1, 1]);
+        assert_eq!(changed(&[], &now, 5), [0, 0, 5, 4]);
         (now[7], now[14]) = (1, 1);
-        assert_eq!(changed(&before, &now, 5), Rect { left: 2, top: 1, width: 3, height: 2 });
+        assert_eq!(changed(&before, &now, 5), [2, 1, 3, 2]);
     }
 
     #[test]
