@@ -206,15 +206,12 @@ impl Playback {
     }
 
     /// Adds the same motion under another integrator, starting from the current state, or removes it.
-    pub(crate) fn toggle(&mut self, kind: IntegratorKind, simulation: &Simulation) {
+    pub(crate) fn toggle(&mut self, integrator: IntegratorKind, simulation: &Simulation) {
         let before = self.companions.len();
-        self.companions.retain(|c| c.integrator != kind);
-        if self.companions.len() == before {
-            self.add(kind, simulation);
+        self.companions.retain(|c| c.integrator != integrator);
+        if self.companions.len() < before {
+            return;
         }
-    }
-
-    fn add(&mut self, integrator: IntegratorKind, simulation: &Simulation) {
         let scene = with(simulation.scene(), integrator);
         // The companion shares the body's equations.
         let Ok(mut companion) = Simulation::with_system(&scene, simulation.system().clone()) else { return };

@@ -12,15 +12,6 @@ pub(crate) enum Purpose {
     Save,
 }
 
-/// Answer of the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// Cancelled.
-    Cancel,
-    /// The chosen file.
-    File(PathBuf),
-}
-
 /// State of the dialog.
 #[derive(Debug)]
 pub(crate) struct FileDialog {
@@ -77,7 +68,7 @@ impl FileDialog {
     }
 
     /// Accepts the typed path: enters a folder, or returns a file as the answer.
-    fn accept(&mut self) -> Option<Answer> {
+    fn accept(&mut self) -> Option<PathBuf> {
         let typed = self.text.trim();
         if typed.is_empty() {
             self.refuse(tr("expected the name of a scene file").to_owned());
@@ -101,11 +92,11 @@ impl FileDialog {
             self.replaced = Some(path);
             return None;
         }
-        Some(Answer::File(path))
+        Some(path)
     }
 
-    /// Shows the dialog; returns the answer when there is one.
-    pub(crate) fn show(&mut self, ctx: &Context, recent: &[PathBuf]) -> Option<Answer> {
+    /// Shows the dialog; returns the answer when there is one: the chosen file, or `None` if the user cancels.
+    pub(crate) fn show(&mut self, ctx: &Context, recent: &[PathBuf]) -> Option<Option<PathBuf>> {
         let (title, verb) = match self.purpose {
             Purpose::Open => ("Open a scene", "Open"),
             Purpose::Save => ("Save the scene", if self.replaced.is_some() { "Replace" } else { "Save" }),
@@ -163,20 +154,20 @@ impl FileDialog {
             ui.add_space(8.0);
             ui.horizontal(|ui| {
                 if ui.button(tr(verb)).clicked() || entered_key {
-                    answer = self.accept();
+                    answer = self.accept().map(Some);
                 }
                 if ui.button(tr("Cancel")).clicked() {
-                    answer = Some(Answer::Cancel);
+                    answer = Some(None);
                 }
             });
         });
         match chosen {
             Some(folder) if folder.is_dir() => self.enter(folder),
-            Some(path) if self.purpose == Purpose::Open => answer = Some(Answer::File(path)),
+            Some(path) if self.purpose == Purpose::Open => answer = Some(Some(path)),
             _ => {}
         }
         if modal.should_close() && answer.is_none() {
-            answer = Some(Answer::Cancel);
+            answer = Some(None);
         }
         answer
     }

@@ -6,7 +6,7 @@ use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
-use crate::app::shell::file_dialog::{Answer, FileDialog, Purpose};
+use crate::app::shell::file_dialog::{FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question, Request};
 
 impl Lab {
@@ -89,14 +89,14 @@ impl Lab {
             return;
         };
         let done = match answer {
-            Answer::Cancel => {
+            None => {
                 self.question = Question::None;
                 Ok(())
             }
-            Answer::File(path) if dialog.purpose == Purpose::Open => {
+            Some(path) if dialog.purpose == Purpose::Open => {
                 self.try_open(Source { name: path, assignments: Vec::new() })
             }
-            Answer::File(path) => self.save(ctx, &path),
+            Some(path) => self.save(ctx, &path),
         };
         match done {
             Ok(()) => ctx.request_repaint(),

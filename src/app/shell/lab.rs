@@ -2,9 +2,9 @@
 
 use crate::app::interface::*;
 use crate::app::modes::compare::Compare;
-use crate::app::modes::explore::section_plot::SectionPlot;
 use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::measure::{Measure, limits};
+use crate::app::modes::section_plot::SectionPlot;
 use crate::app::panel::PanelState;
 use crate::app::session::Notice;
 use crate::app::session::document::{Document, built_in};

@@ -81,9 +81,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if overlay.legends.is_some() {
         scale_bar(painter, rect, &overlay.camera, &palette);
     }
-    if let Some((spring, force)) = overlay.mouse_spring {
-        pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay, spring, force);
-    }
+    pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay);
     if let Some((note, color)) = overlay.note {
         let (below, beside) = if overlay.legends.is_some() { (46.0, 48.0) } else { (8.0, 24.0) };
         labels.add(rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP, note, color, rect.width() - beside);
@@ -304,16 +302,11 @@ fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pal
 }
 
 /// Paints the mouse spring from the body to the pointer, with its force.
-fn pull(
-    labels: &mut Labels<'_>,
-    projection: &Projection,
-    overlay: &Overlay<'_>,
-    spring: &MouseSpring,
-    force: Vector2<f64>,
-) {
+fn pull(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
     /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
+    let Some((spring, force)) = overlay.mouse_spring else { return };
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let mesh = overlay.body.system.mesh();
     let weights = mesh.weights(spring.point()).unwrap_or_default();

@@ -46,10 +46,12 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
     (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
+/// Decimal exponent at the top of the vertical axis.
+const HIGHEST: f64 = 1.0;
+
 fn plot(ui: &mut Ui, shown: &Readout<'_>) {
-    /// Smallest number of iterations on the horizontal axis, and decimal exponent at the top of the vertical axis.
+    /// Smallest number of iterations on the horizontal axis.
     const MIN_ITERATIONS: usize = 12;
-    const HIGHEST: f64 = 1.0;
     const LEFT: f32 = 40.0;
     const BELOW: f32 = 20.0;
     let palette = Palette::new(ui.visuals());
@@ -69,7 +71,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
         pos2(x, rect.top() + rect.height() * ((HIGHEST - exponent) / (HIGHEST - bottom)) as f32)
     };
     let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
-    axes(&painter, rect, &palette, (bottom, HIGHEST), most, &place);
+    axes(&painter, rect, &palette, bottom, most, &place);
     let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
     let dashed = |ends: [Pos2; 2], stroke| inside.extend(Shape::dashed_line(&ends, stroke, 6.0, 4.0));
     dashed([place(0.0, asked), place(most, asked)], Stroke::new(1.0, palette.secondary));
@@ -111,24 +113,17 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     }
 }
 
-fn axes(
-    painter: &Painter,
-    rect: Rect,
-    palette: &Palette,
-    (bottom, top): (f64, f64),
-    most: f64,
-    place: &dyn Fn(f64, f64) -> Pos2,
-) {
+fn axes(painter: &Painter, rect: Rect, palette: &Palette, bottom: f64, most: f64, place: &dyn Fn(f64, f64) -> Pos2) {
     let font = FontId::proportional(SMALL);
     let grid = Stroke::new(1.0, palette.line);
-    for exponent in ((bottom.ceil() as i32)..=(top.floor() as i32)).rev().filter(|e| e % 2 == 0) {
+    for exponent in ((bottom.ceil() as i32)..=(HIGHEST.floor() as i32)).rev().filter(|e| e % 2 == 0) {
         let at = place(0.0, f64::from(exponent));
         painter.line_segment([at, pos2(rect.right(), at.y)], grid);
         let text = if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}").replace('-', "\u{2212}") };
         painter.text(at - vec2(5.0, 0.0), Align2::RIGHT_CENTER, text, font.clone(), palette.secondary);
     }
     for k in crate::format::ticks(0.0, most, 7) {
-        let at = pos2(place(k, top).x, rect.bottom());
+        let at = pos2(place(k, HIGHEST).x, rect.bottom());
         painter.line_segment([at, at + vec2(0.0, 3.0)], grid);
         painter.text(at + vec2(0.0, 3.0), Align2::CENTER_TOP, format!("{k}"), font.clone(), palette.secondary);
     }
