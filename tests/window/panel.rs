@@ -40,7 +40,8 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_does() {
 fn typed_values_take_effect_also_beyond_the_slider() {
     let mut ui = open("cantilever");
     for (fields, force) in [
-        (&[("Force", "0.5 kN")][..], [0.0, -500.0]),
+        (&[("Force", "3k")][..], [0.0, -3000.0]),
+        (&[("Force", "0.5 kN")], [0.0, -500.0]),
         (&[("Direction", "270")], [0.0, -500.0]),
         (&[("Direction", "0")], [500.0, 0.0]),
         (&[("Force", "0"), ("Direction", "90"), ("Force", "2e7")], [0.0, 2e7]),

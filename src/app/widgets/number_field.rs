@@ -315,29 +315,3 @@ fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     // A prefix without a unit belongs to the field's unit.
     units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn typed_numbers_take_units_and_prefixes() {
-        for (text, value) in
-            [("2.5", 2.5), ("1e4", 1e4), ("12 kN", 12e3), ("12kN", 12e3), ("7 N", 7.0), ("3k", 3e3), ("30 000", 3e4)]
-        {
-            assert_eq!(parse(text, "N"), Ok(value), "{text}");
-        }
-        assert_eq!((parse("3 mm", "m"), parse("7.8 g/cm³", "kg/m³")), (Ok(0.003), Ok(7800.0)));
-        assert_eq!((parse("2 m", "m"), parse("45 °", "°"), parse("45°", "°")), (Ok(2.0), Ok(45.0), Ok(45.0)));
-        for (text, unit, reason) in [
-            ("12 kN", "Pa", "is a force"),
-            ("1,500", "N", "in two ways"),
-            ("0,5", "N", "numbers look like"),
-            ("two", "N", "is not a number; expected"),
-        ] {
-            let error = parse(text, unit).unwrap_err();
-            assert!(error.to_string().contains(reason) && error.has_number == (text != "two"), "{error}");
-        }
-        assert!(parse("", "N").is_err());
-    }
-}
