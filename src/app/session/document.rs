@@ -83,11 +83,8 @@ impl Document {
 
     /// Returns the document of a scene that is not in a file yet.
     pub(crate) fn unnamed(scene: &Scene) -> Self {
-        Self::with_text(
-            Source { name: scene::STANDARD_INPUT.into(), assignments: Vec::new() },
-            scene.clone(),
-            Some("".into()),
-        )
+        let source = Source { name: scene::STANDARD_INPUT.into(), assignments: Vec::new() };
+        Self::with_text(source, scene.clone(), Some("".into()))
     }
 
     /// Opens a scene.

@@ -284,29 +284,24 @@ impl Compare {
         let method = (!self.in_motion && input.scene.solver.method == MethodKind::Warped).then_some(MethodKind::Newton);
         let of_element = |&kind: &ElementKind| PaneSetting { method, element: Some(kind), ..PaneSetting::default() };
         let first: Vec<PaneSetting> = settings(self.in_motion).into_iter().take(3).collect();
+        let (name, tip, tip_of_elements) = match self.in_motion {
+            true => (
+                tr("integrators").to_owned(),
+                "Three integrators on the panel's mesh",
+                "All elements that the mesh can have, with the panel's integrator",
+            ),
+            false => (
+                join(first.iter().filter_map(|setting| Some(tr(setting.method?.id()))).collect()),
+                "Three methods on the panel's mesh",
+                "All elements that the mesh can have, with the panel's method; newton in place of warped, which may diverge",
+            ),
+        };
         let mut presets = vec![
-            Preset {
-                name: match self.in_motion {
-                    true => tr("integrators").to_owned(),
-                    false => join(first.iter().filter_map(|setting| Some(tr(setting.method?.id()))).collect()),
-                },
-                settings: first,
-                tip: match self.in_motion {
-                    true => "Three integrators on the panel's mesh",
-                    false => "Three methods on the panel's mesh",
-                },
-                disabled: None,
-            },
+            Preset { name, settings: first, tip, disabled: None },
             Preset {
                 name: join(elements.iter().map(|element| element.id()).collect()),
                 settings: elements.iter().map(of_element).collect(),
-                tip: match self.in_motion {
-                    true => "All elements that the mesh can have, with the panel's integrator",
-                    false => {
-                        "All elements that the mesh can have, with the panel's method; newton in place of warped, which \
-                         may diverge"
-                    }
-                },
+                tip: tip_of_elements,
                 disabled: (elements.len() < 2).then_some("The mesh of this file can have one element only"),
             },
         ];
