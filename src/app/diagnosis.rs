@@ -12,7 +12,7 @@ use crate::exact_beam::error_percent;
 use crate::format::{self, engineering, number, three_digits, two_digits};
 use crate::scene::{Support, limits};
 use crate::stress::strain_warning;
-use crate::study::{Advice, Claim, FOLDS, MovedPoint, ProbeReference, moved_points};
+use crate::study::{Claim, FOLDS, MovedPoint, ProbeReference, moved_points};
 
 /// Definition of the energy drift, as shown in the user interface.
 pub(crate) const DRIFT_TIP: &str = "Energy added by the integrator (negative: lost), over the energy put in by the \
@@ -149,7 +149,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
     }
     let small = errors.own.filter(|&own| !is_large(own));
     let off = input.reference.filter(|_| small.is_some())?.beam_off_by_percent.filter(|&off| error_level(off) > 0)?;
-    Some(said(&Claim::BeamTheory { off_by_percent: off }))
+    Some(said(&Claim::beam_theory(off)))
 }
 
 /// Returns the reference's own error in words if it hides how large an error, percent, is.
@@ -389,13 +389,12 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     }
     let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
     // The status has the others.
-    let explains = |claim: &&Claim| {
-        use Claim::{Converged, Disturbance, Helps, Stable, Unstable};
-        match claim {
-            // An iterate that was accepted early is no equilibrium.
-            Disturbance { .. } => *simulation.status() == Status::Converged,
-            _ => matches!(claim, Converged { .. } | Stable | Unstable | Helps(Advice::Imperfection)),
-        }
+    let explains = |claim: &&Claim| match claim.id {
+        // An iterate that was accepted early is no equilibrium.
+        "disturbance" => *simulation.status() == Status::Converged,
+        // The remedy offers the method that helps where the iteration diverges.
+        "helps" => !matches!(simulation.status(), Status::Diverged(_)),
+        id => matches!(id, "converged" | "stable" | "unstable"),
     };
     lines.extend(claims.iter().filter(explains).map(|claim| sentence(&said(claim))));
     lines

@@ -65,7 +65,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         })),
         "mesh_error_percent": stress.mesh_error_percent,
         "mesh_error_of": "estimate: energy norm",
-        "claims": claims.iter().map(|claim| json!({ "claim": claim.id(), "text": claim.to_string() })).collect::<Value>(),
+        "claims": claims.iter().map(|claim| json!({ "claim": claim.id, "text": claim.to_string() })).collect::<Value>(),
         "warnings": warnings,
         "probes": probes,
         "sections": sections.iter().map(section).collect::<Value>(),

@@ -1,13 +1,13 @@
 //! Claims: the statements that results make, each with the numbers that prove it. Commands, reports and the window take
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
-use super::load_path::{CriticalLoad, Elsewhere, LoadPath, PathEnd, PathSummary};
-use super::ranking::{Demand, Tuning};
-use super::reference::{ProbeReference, Reference};
+use super::load_path::{LoadPath, PathSummary};
+use super::ranking::Tuning;
+use super::reference::Reference;
 use super::trade::{Measurement, Study};
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
-use crate::method::{Bifurcation, Drive, Jump};
+use crate::method::{Bifurcation, Drive};
 use crate::scene::{MethodKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status, probe_results};
@@ -27,259 +27,32 @@ use crate::simulation::{Simulation, Status, probe_results};
 /// let certificate = column.certify();
 /// let path = warpbeam::study::LoadPath::to_result(&column, &|_| std::ops::ControlFlow::Continue(()));
 /// let claims = Claim::of_result(&column, certificate.fixed_point_rho, path.as_ref(), None);
-/// let ids: Vec<&str> = claims.iter().map(Claim::id).collect();
+/// let ids: Vec<&str> = claims.iter().map(|claim| claim.id).collect();
 /// assert_eq!(ids[..4], ["converged", "buckles", "unstable", "helps"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Claim {
-    /// The forces balance, under `auto` so well that the error is within `solver.max_error_percent`.
-    Converged {
-        /// Relative residual.
-        residual: f64,
-        /// Relative residual that the scene asks for.
-        tolerance: f64,
-        /// Bound of the residual's rounding error, if the solve ended within it above the tolerance.
-        floor: Option<f64>,
-    },
-    /// The search ended without an equilibrium.
-    Failed(Status),
-    /// The result is the equilibrium under a part of the load.
-    Part {
-        /// Load factor.
-        factor: f64,
-        /// Quantities that the load factor refers to.
-        drive: Drive,
-    },
-    /// The exact tangent is positive definite.
-    Stable,
-    /// The exact tangent is not positive definite.
-    Unstable,
-    /// Disturbances of the equilibrium shrink or grow under the iteration of `warped`.
-    Disturbance {
-        /// Spectral radius.
-        rho: f64,
-        /// `true` if `warped` converged to the equilibrium.
-        has_converged: bool,
-    },
-    /// The path from rest jumps.
-    Jumps(Jump),
-    /// The path from rest loses or regains stability where another path crosses it.
-    Buckles(Bifurcation),
-    /// The path from rest loses its stability above the load.
-    Critical(CriticalLoad),
-    /// The path from rest leads to another equilibrium.
-    Elsewhere(Elsewhere),
-    /// The path from rest was not followed to the full load.
-    Ends(PathEnd),
-    /// The reaction of a moving support has its first largest value: the limit load of a force in place of the motion.
-    LimitLoad {
-        /// Motion of the support: m, or rad if it only rotates.
-        motion: f64,
-        /// Its reaction along the motion: N, or N m.
-        reaction: f64,
-        /// `true` if the support only rotates.
-        rotates: bool,
-    },
-    /// The displacement of a probe differs from the reference solution.
-    Error {
-        /// Name of the probe.
-        probe: String,
-        /// Distance, percent of the reference's displacement.
-        percent: f64,
-        /// Reference solution, with the bound of its own error.
-        reference: ProbeReference,
-    },
-    /// The exact beam differs from the fine solution that is the reference.
-    BeamTheory {
-        /// Distance, percent.
-        off_by_percent: f64,
-    },
-    /// The load and the state at which the error of linear theory reaches a given percentage.
-    LinearTheory(Departure),
-    /// The exact beam buckles at this load factor.
-    BeamBuckles(f64),
-    /// The exact beam could not be followed beyond this load factor.
-    BeamEnds(f64),
-    /// A setting is the fastest of those measured with an error of at most a limit.
-    Best {
-        /// Limit of the error, the reference's own included, percent.
-        percent: f64,
-        /// Computing time: `0.0161 ms`.
-        time: String,
-        /// Setting.
-        setting: Sentence,
-    },
-    /// No measured setting has an error of at most this limit, percent.
-    NotReached(f64),
-    /// The reference's own error is too large to tell which settings have an error of at most a limit.
-    NotKnown {
-        /// Limit, percent.
-        percent: f64,
-        /// Bound of the reference's own error, percent.
-        own_percent: f64,
-    },
-    /// Ranks of settings are undecided, because their errors differ by less than the reference's own error, percent.
-    Undecided(f64),
-    /// A number of measured settings, possibly none, meets a demand.
-    Suffices {
-        /// Limits of error and time that the user asked for.
-        demand: Demand,
-        /// Number of settings that meet it.
-        meeting: usize,
-        /// Number of measured settings that converge.
-        measured: usize,
-        /// Reason why the chosen setting is chosen: `the fastest`.
-        chosen: &'static str,
-        /// Number of settings as accurate as the chosen one, as far as the reference's own error tells.
-        as_accurate: usize,
-    },
-    /// An edit of the scene leads to a result where this one is none, or is unstable.
-    Helps(Advice),
-}
-
-/// Edit of a scene that leads to a stable equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Advice {
-    /// `solver.method = "newton"` instead of a method that diverges.
-    Newton,
-    /// A small force across a body that has buckled without an imperfection.
-    Imperfection,
+pub struct Claim {
+    /// Kind in JSON, such as `buckles`.
+    pub id: &'static str,
+    /// Numbers that prove it, such as the load factor at which the body buckles.
+    pub numbers: Vec<f64>,
+    /// Statement in words.
+    pub text: Sentence,
 }
 
 displayed!(Claim);
 
 impl From<&Claim> for Sentence {
     fn from(claim: &Claim) -> Self {
-        match claim {
-            Claim::Converged { tolerance, floor: Some(floor), .. } => sentence!(
-                "the forces balance to machine precision: %{rounding}",
-                rounding = floor_text(*floor, *tolerance)
-            ),
-            Claim::Converged { residual, tolerance, floor: None } if residual > tolerance => sentence!(
-                "the solve ends within solver.max_error_percent: the relative residual is %{residual}, above the \
-                 tolerance of %{asked}",
-                residual = number(two_digits(*residual)),
-                asked = number(*tolerance)
-            ),
-            Claim::Converged { residual, tolerance, floor: None } => sentence!(
-                "the forces balance: the relative residual is %{residual}, the tolerance is %{asked}",
-                residual = number(two_digits(*residual)),
-                asked = number(*tolerance)
-            ),
-            Claim::Failed(status) => status.failure_sentence().unwrap_or_default(),
-            Claim::Part { factor, drive } => {
-                let part = engineering(100.0 * factor, "%");
-                format!("the numbers below are those of the equilibrium at {part} of {drive}").into()
-            }
-            Claim::Stable => {
-                "stable: after a small push the body returns (the exact tangent stiffness is positive definite)".into()
-            }
-            Claim::Unstable => "unstable: after a small push the body moves away (the exact tangent stiffness is not \
-                                positive definite)"
-                .into(),
-            Claim::Disturbance { rho, has_converged: true } if *rho > 1.0 => sentence!(
-                "%{disturbance}; it converged because nothing disturbs it, as in a bar loaded along its axis",
-                disturbance = rho_text(*rho)
-            ),
-            Claim::Disturbance { rho, .. } => rho_text(*rho),
-            Claim::Jumps(jump) => jump.into(),
-            Claim::Buckles(bifurcation) => bifurcation.into(),
-            Claim::Critical(critical) => critical.into(),
-            Claim::Elsewhere(elsewhere) => elsewhere.into(),
-            Claim::Ends(end) => end.to_string().into(),
-            Claim::LimitLoad { motion, reaction, rotates } => {
-                let [motion, reaction] = driven_texts([*motion, *reaction], *rotates);
-                let force = if *rotates { "moment" } else { "force" };
-                format!("{motion}, {reaction}: the limit load, where a {force} in place of the motion would jump")
-                    .into()
-            }
-            Claim::Error { probe, percent, reference } => {
-                format!("error of {probe} {percent:.3} %, against {reference}").into()
-            }
-            Claim::BeamTheory { off_by_percent } => {
-                sentence!("beam theory differs by %{off}", off = percent(*off_by_percent))
-            }
-            Claim::LinearTheory(Departure { percent, at }) => format!(
-                "linear theory differs by {percent} % at {} of the load: tip rotation {}, largest strain {}",
-                engineering(three_digits(100.0 * at.factor), "%"),
-                engineering(three_digits(at.rotation.to_degrees().abs()), "°"),
-                engineering(three_digits(100.0 * at.strain), "%")
-            )
-            .into(),
-            Claim::BeamBuckles(factor) => {
-                let part = engineering(100.0 * factor, "%");
-                format!("the exact beam buckles at {part} of the load: beyond it, its path is unstable").into()
-            }
-            Claim::BeamEnds(factor) => {
-                let part = engineering(three_digits(100.0 * factor), "%");
-                format!("the exact beam could not be followed beyond {part} of the load").into()
-            }
-            Claim::Best { percent, time, setting } => format!("an error of {percent} % costs {time}, {setting}").into(),
-            Claim::NotReached(percent) => {
-                format!("an error of {percent} % is not reached by a measured setting").into()
-            }
-            Claim::NotKnown { percent, own_percent } => {
-                format!("an error of {percent} %: not known, the reference's own error may be {own_percent:.2} %")
-                    .into()
-            }
-            Claim::Undecided(own) => format!(
-                "rank undecided: a faster setting may be as accurate, because their errors differ by less than the \
-                 reference's own error, {}",
-                percent(*own)
-            )
-            .into(),
-            Claim::Suffices { demand, meeting, measured, chosen, as_accurate } => {
-                let undecided = match as_accurate {
-                    0 | 1 => String::new(),
-                    n => format!(", undecided between {n} whose errors differ by less than the reference's own"),
-                };
-                match meeting {
-                    0 => format!("none of {measured} settings measured here meets {demand}; {chosen}{undecided}"),
-                    _ => format!("{meeting} of {measured} settings measured here meet {demand}; {chosen}{undecided}"),
-                }
-                .into()
-            }
-            Claim::Helps(Advice::Newton) => {
-                "the last state of a diverging iteration has no meaning; solve with method newton".into()
-            }
-            Claim::Helps(Advice::Imperfection) => {
-                "a small force across the body, as an imperfection, leads to a stable equilibrium".into()
-            }
-        }
+        claim.text.clone()
     }
 }
 
 impl Claim {
-    /// Returns the kind of the claim in JSON.
-    pub fn id(&self) -> &'static str {
-        match self {
-            Self::Converged { .. } => "converged",
-            Self::Failed(_) => "failed",
-            Self::Part { .. } => "part",
-            Self::Stable => "stable",
-            Self::Unstable => "unstable",
-            Self::Disturbance { .. } => "disturbance",
-            Self::Jumps(_) => "jumps",
-            Self::Buckles(_) => "buckles",
-            Self::Critical(_) => "critical",
-            Self::Elsewhere(_) => "elsewhere",
-            Self::Ends(_) => "ends",
-            Self::LimitLoad { .. } => "limit_load",
-            Self::Error { .. } => "error",
-            Self::BeamTheory { .. } => "beam_theory",
-            Self::LinearTheory(_) => "linear_theory",
-            Self::BeamBuckles(_) => "beam_buckles",
-            Self::BeamEnds(_) => "beam_ends",
-            Self::Best { .. } => "best",
-            Self::NotReached(_) => "not_reached",
-            Self::NotKnown { .. } => "not_known",
-            Self::Undecided(_) => "undecided",
-            Self::Suffices { .. } => "suffices",
-            Self::Helps(_) => "helps",
-        }
+    fn new(id: &'static str, numbers: &[f64], text: impl Into<Sentence>) -> Self {
+        Self { id, numbers: numbers.to_vec(), text: text.into() }
     }
 
     /// Returns the claims of the result of a simulation at rest; none of a motion. `rho` is the spectral radius of the
@@ -293,20 +66,27 @@ impl Claim {
     ) -> Vec<Self> {
         let Some(search) = simulation.equilibrium() else { return Vec::new() };
         let (status, solver) = (simulation.status(), &simulation.scene().solver);
+        let failed = || Self::new("failed", &[], status.failure_sentence().unwrap_or_default());
         let mut claims = Vec::new();
         match status {
             Status::Converged => {
-                let (residual, floor) = (simulation.residual(), search.residual_floor());
-                claims.push(Self::Converged { residual, tolerance: solver.tolerance, floor });
+                claims.push(Self::converged(simulation.residual(), solver.tolerance, search.residual_floor()));
             }
             Status::NotConverged(_) => {
-                claims.push(Self::Failed(status.clone()));
-                let (factor, drive) = (search.load_factor(), Drive::of(simulation.problem()));
-                claims.extend((factor < 1.0).then_some(Self::Part { factor, drive }));
+                claims.push(failed());
+                let factor = search.load_factor();
+                if factor < 1.0 {
+                    let (part, drive) = (engineering(100.0 * factor, "%"), Drive::of(simulation.problem()));
+                    let text = format!("the numbers below are those of the equilibrium at {part} of {drive}");
+                    claims.push(Self::new("part", &[factor], text));
+                }
             }
             Status::Diverged(_) => {
-                let help = (solver.method != MethodKind::Newton).then_some(Self::Helps(Advice::Newton));
-                claims.extend(std::iter::once(Self::Failed(status.clone())).chain(help));
+                claims.push(failed());
+                if solver.method != MethodKind::Newton {
+                    let text = "the last state of a diverging iteration has no meaning; solve with method newton";
+                    claims.push(Self::new("helps", &[], text));
+                }
                 return claims;
             }
             _ => {}
@@ -315,65 +95,146 @@ impl Claim {
             claims.extend(path.claims());
         }
         let stable = search.certificate().and_then(|certificate| certificate.stable);
-        claims.extend(stable.filter(|_| *status == Status::Converged).map(|stable| match stable {
-            true => Self::Stable,
-            false => Self::Unstable,
-        }));
+        if let Some(stable) = stable.filter(|_| *status == Status::Converged) {
+            let text = match stable {
+                true => {
+                    "stable: after a small push the body returns (the exact tangent stiffness is positive definite)"
+                }
+                false => {
+                    "unstable: after a small push the body moves away (the exact tangent stiffness is not positive \
+                     definite)"
+                }
+            };
+            claims.push(Self::new(if stable { "stable" } else { "unstable" }, &[], text));
+        }
         let has_buckled = path.is_some_and(|path| path.buckling.is_some() && path.elsewhere.is_none());
         if has_buckled && stable == Some(false) {
-            claims.push(Self::Helps(Advice::Imperfection));
+            let text = "a small force across the body, as an imperfection, leads to a stable equilibrium";
+            claims.push(Self::new("helps", &[], text));
         }
-        claims.extend(rho.map(|rho| Self::disturbance(rho, solver.method, status)));
+        claims.extend(rho.map(|rho| {
+            let converged = solver.method == MethodKind::Warped && *status == Status::Converged;
+            let text = match rho_text(rho) {
+                disturbance if converged && rho > 1.0 => sentence!(
+                    "%{disturbance}; it converged because nothing disturbs it, as in a bar loaded along its axis",
+                    disturbance
+                ),
+                disturbance => disturbance,
+            };
+            Self::new("disturbance", &[rho], text)
+        }));
         if let Some(reference) = reference {
             let probes = probe_results(simulation.problem(), simulation.state());
             claims.extend(probes.iter().zip(reference.probes()).filter_map(|(probe, known)| {
-                let reference = (*known)?;
-                let percent = reference.error_percent(probe)?;
-                Some(Self::Error { probe: probe.name.clone(), percent, reference })
+                let percent = known.as_ref()?.error_percent(probe)?;
+                let text = format!("error of {} {percent:.3} %, against {}", probe.name, known.as_ref()?);
+                Some(Self::new("error", &[percent], text))
             }));
-            claims.extend(reference.beam_off_by_percent.map(|off_by_percent| Self::BeamTheory { off_by_percent }));
+            claims.extend(reference.beam_off_by_percent.map(Self::beam_theory));
         }
         claims
     }
 
-    /// Returns the claim about disturbances of an equilibrium that a method has led to.
-    pub(crate) fn disturbance(rho: f64, method: MethodKind, status: &Status) -> Self {
-        Self::Disturbance { rho, has_converged: method == MethodKind::Warped && *status == Status::Converged }
+    /// Returns the claim that the forces balance, under `auto` so well that the error is within
+    /// `solver.max_error_percent`. `floor` is the bound of the residual's rounding error, if the solve ended within it above
+    /// the tolerance.
+    fn converged(residual: f64, tolerance: f64, floor: Option<f64>) -> Self {
+        let [shown, asked] = [number(two_digits(residual)), number(tolerance)];
+        let text = match floor {
+            Some(floor) => sentence!(
+                "the forces balance to machine precision: %{rounding}",
+                rounding = floor_text(floor, tolerance)
+            ),
+            None if residual > tolerance => sentence!(
+                "the solve ends within solver.max_error_percent: the relative residual is %{residual}, above the \
+                 tolerance of %{asked}",
+                residual = shown,
+                asked
+            ),
+            None => sentence!(
+                "the forces balance: the relative residual is %{residual}, the tolerance is %{asked}",
+                residual = shown,
+                asked
+            ),
+        };
+        Self::new("converged", &[residual, tolerance], text)
     }
 
-    /// Returns the claims of a load path in its order: the largest reaction of its moving support, bifurcations, the jump,
-    /// and its end.
+    /// Returns the claim that the exact beam differs from the fine solution that is the reference.
+    pub(crate) fn beam_theory(off_by_percent: f64) -> Self {
+        let text = sentence!("beam theory differs by %{off}", off = percent(off_by_percent));
+        Self::new("beam_theory", &[off_by_percent], text)
+    }
+
+    /// Returns the claim that the path from rest loses or regains stability where another path crosses it.
+    fn buckles(bifurcation: &Bifurcation) -> Self {
+        Self::new("buckles", &[bifurcation.factor], bifurcation)
+    }
+
+    /// Returns the claims of a load path in its order: the largest reaction of its moving support, which is the limit load
+    /// of a force in place of the motion, bifurcations, the jump, and its end.
     pub fn of_path(scene: &Scene, path: &LoadPath) -> Vec<Self> {
         let limit = path.limit_under_force().and_then(|state| {
-            let ([motion, reaction], rotates) = (path.driven_pair(scene, state)?, path.rotates(scene));
-            Some((state.factor, Self::LimitLoad { motion, reaction, rotates }))
+            let (pair, rotates) = (path.driven_pair(scene, state)?, path.rotates(scene));
+            let ([motion, reaction], force) = (driven_texts(pair, rotates), if rotates { "moment" } else { "force" });
+            let text =
+                format!("{motion}, {reaction}: the limit load, where a {force} in place of the motion would jump");
+            Some((state.factor, Self::new("limit_load", &pair, text)))
         });
-        let bifurcations =
-            path.bifurcations.iter().map(|bifurcation| (bifurcation.factor, Self::Buckles(*bifurcation)));
-        let jump = path.jump.map(|jump| (jump.factor, Self::Jumps(jump)));
+        let bifurcations = path.bifurcations.iter().map(|bifurcation| (bifurcation.factor, Self::buckles(bifurcation)));
+        let jump = path.jump.map(|jump| (jump.factor, Self::new("jumps", &[jump.factor], &jump)));
         let mut events: Vec<(f64, Self)> = limit.into_iter().chain(bifurcations).chain(jump).collect();
         events.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        events.into_iter().map(|(_, claim)| claim).chain(path.end.map(Self::Ends)).collect()
+        let end = path.end.map(|end| Self::new("ends", &[end.factor], end.to_string()));
+        events.into_iter().map(|(_, claim)| claim).chain(end).collect()
     }
 
     /// Returns the claims of a load–deflection curve: where linear theory fails, and where the exact beam ends.
     pub fn of_curve(curve: &LoadCurve) -> Vec<Self> {
+        let departure = |Departure { percent, at }: &Departure| {
+            let text = format!(
+                "linear theory differs by {percent} % at {} of the load: tip rotation {}, largest strain {}",
+                engineering(three_digits(100.0 * at.factor), "%"),
+                engineering(three_digits(at.rotation.to_degrees().abs()), "°"),
+                engineering(three_digits(100.0 * at.strain), "%")
+            );
+            Self::new("linear_theory", &[*percent, at.factor], text)
+        };
         let last = curve.samples.last().map(|sample| sample.factor).filter(|factor| *factor < 1.0);
-        let end = curve.buckles_at.map(Self::BeamBuckles).or_else(|| last.map(Self::BeamEnds));
-        curve.departures.iter().copied().map(Self::LinearTheory).chain(end).collect()
+        let end = match (curve.buckles_at, last) {
+            (Some(factor), _) => {
+                let part = engineering(100.0 * factor, "%");
+                let text = format!("the exact beam buckles at {part} of the load: beyond it, its path is unstable");
+                Some(Self::new("beam_buckles", &[factor], text))
+            }
+            (None, Some(factor)) => {
+                let part = engineering(three_digits(100.0 * factor), "%");
+                let text = format!("the exact beam could not be followed beyond {part} of the load");
+                Some(Self::new("beam_ends", &[factor], text))
+            }
+            (None, None) => None,
+        };
+        curve.departures.iter().map(departure).chain(end).collect()
     }
 
-    /// Returns the claim about the fastest setting of a study with an error of at most a limit, percent.
+    /// Returns the claim about the fastest setting of a study with an error of at most a limit, percent, the reference's own
+    /// included.
     pub fn of_study(study: &Study, percent: f64) -> Self {
-        let own_percent = study.own_error_percent;
-        if own_percent >= percent {
-            return Self::NotKnown { percent, own_percent };
+        let own = study.own_error_percent;
+        if own >= percent {
+            let text = format!("an error of {percent} %: not known, the reference's own error may be {own:.2} %");
+            return Self::new("not_known", &[percent, own], text);
         }
-        study.within(percent).first().map_or(Self::NotReached(percent), |m| Self::Best {
-            percent,
-            time: m.time_text(),
-            setting: (&m.setting).into(),
-        })
+        match study.within(percent).first() {
+            None => {
+                let text = format!("an error of {percent} % is not reached by a measured setting");
+                Self::new("not_reached", &[percent], text)
+            }
+            Some(m) => {
+                let text = format!("an error of {percent} % costs {}, {}", m.time_text(), m.setting);
+                Self::new("best", &[percent, m.milliseconds], text)
+            }
+        }
     }
 
     /// Returns the claim about the settings that meet a demand.
@@ -394,8 +255,16 @@ impl Claim {
             true => study.measurements.iter().filter(is_as_accurate).count(),
             false => 1,
         };
+        let undecided = match as_accurate {
+            0 | 1 => String::new(),
+            n => format!(", undecided between {n} whose errors differ by less than the reference's own"),
+        };
         let meeting = if *met { *meeting } else { 0 };
-        Self::Suffices { demand: *demand, meeting, measured: *measured, chosen: reason, as_accurate }
+        let text = match meeting {
+            0 => format!("none of {measured} settings measured here meets {demand}; {reason}{undecided}"),
+            _ => format!("{meeting} of {measured} settings measured here meet {demand}; {reason}{undecided}"),
+        };
+        Self::new("suffices", &[meeting as f64, *measured as f64], text)
     }
 }
 
@@ -403,10 +272,11 @@ impl PathSummary {
     /// Returns the claims that the path jumps, buckles, is about to, or ends elsewhere than the result.
     pub fn claims(&self) -> impl Iterator<Item = Claim> {
         // The claim of another equilibrium has the buckling of the path from rest.
-        let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(Claim::Buckles);
-        let jump = self.jump.map(Claim::Jumps);
-        let critical = self.critical.map(Claim::Critical);
-        jump.into_iter().chain(buckling).chain(critical).chain(self.elsewhere.map(Claim::Elsewhere))
+        let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(|buckling| Claim::buckles(&buckling));
+        let jump = self.jump.map(|jump| Claim::new("jumps", &[jump.factor], &jump));
+        let critical = self.critical.map(|critical| Claim::new("critical", &[critical.factor], &critical));
+        let elsewhere = self.elsewhere.map(|elsewhere| Claim::new("elsewhere", &[elsewhere.distance], &elsewhere));
+        jump.into_iter().chain(buckling).chain(critical).chain(elsewhere)
     }
 }
 

@@ -28,7 +28,7 @@ mod trade;
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use claim::driven_texts;
-pub use claim::{Advice, Claim, floor_text, rho_text};
+pub use claim::{Claim, floor_text, rho_text};
 pub use colors::color;
 pub use fine::{Effort, moved_points};
 #[cfg(feature = "app")]

@@ -8,7 +8,7 @@ use super::ranking::Tuning;
 use super::setting::{Setting, Stepping, mesh_text, step_text};
 use super::trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
 use crate::dynamics::INTEGRATORS;
-use crate::format::{count, number};
+use crate::format::{count, number, percent};
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 
@@ -115,7 +115,12 @@ impl Study {
             let _ = writeln!(text, "{}   {}{mark}", row(m, *error), m.setting);
         }
         if front.iter().any(|(.., undecided)| *undecided) {
-            let _ = writeln!(text, "{}", Claim::Undecided(self.own_error_percent));
+            let _ = writeln!(
+                text,
+                "rank undecided: a faster setting may be as accurate, because their errors differ by less than the \
+                 reference's own error, {}",
+                percent(self.own_error_percent)
+            );
         }
         text.push('\n');
     }
@@ -125,7 +130,7 @@ impl Study {
         for percent in [10.0, 1.0, 0.1] {
             let claim = Claim::of_study(self, percent);
             let _ = writeln!(text, "{claim}");
-            if !matches!(claim, Claim::NotKnown { .. }) {
+            if claim.id != "not_known" {
                 details(text, percent);
             }
         }
@@ -181,7 +186,7 @@ impl Study {
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         });
-        if let Claim::NotKnown { .. } = Claim::of_study(self, 1.0) {
+        if Claim::of_study(self, 1.0).id == "not_known" {
             text.push('\n');
             return;
         }

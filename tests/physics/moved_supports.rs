@@ -119,12 +119,8 @@ fn events_are_told_once_and_in_order() {
         let (scene, path) = path(name, &set);
         let claims = Claim::of_path(&scene, &path);
         let text: Vec<String> = claims.iter().map(ToString::to_string).collect();
-        let factors = claims.iter().filter_map(|claim| match claim {
-            Claim::Buckles(bifurcation) => Some(bifurcation.factor),
-            Claim::Jumps(jump) => Some(jump.factor),
-            _ => None,
-        });
-        let factors: Vec<f64> = factors.collect();
+        let events = claims.iter().filter(|claim| matches!(claim.id, "buckles" | "jumps"));
+        let factors: Vec<f64> = events.map(|claim| claim.numbers[0]).collect();
         assert!(!factors.is_empty() && factors.windows(2).all(|pair| pair[0] < pair[1]), "{name}: {text:?}");
         let words = text.concat();
         assert!(!words.contains("force control") && !words.contains("not followed"), "{name}: {text:?}");

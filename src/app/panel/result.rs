@@ -5,7 +5,7 @@ use crate::app::interface::*;
 use crate::app::language::signed_percent;
 use crate::app::panel::supports;
 use crate::app::session::clock::fraction;
-use crate::study::Claim;
+use crate::study::rho_text;
 
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -76,7 +76,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         let own = || search.certificate()?.fixed_point_rho;
         let rho = if is_fallback { own() } else { rho(input) };
         let text = rho.filter(|_| simulation.status().is_success()).map(|rho| {
-            let text = sentence(&said(&Claim::Disturbance { rho, has_converged: false }));
+            let text = sentence(&said(&rho_text(rho)));
             let load = load_text(input.shown.scene()).filter(|_| is_fallback);
             load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
         });
