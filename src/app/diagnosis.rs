@@ -257,7 +257,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
         path.claims().map(|claim| said(&claim)).for_each(&mut add);
     }
-    let is_critical = input.path.and_then(|path| path.critical).is_some_and(|critical| critical.factor <= 1.0);
+    let is_critical = input.path.and_then(|path| path.critical).is_some_and(|factor| factor <= 1.0);
     (text, inside_out || is_critical || runs_away(input) || stability(simulation) == Some(false))
 }
 
@@ -438,7 +438,8 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }
     // Loading from rest would lead to an unstable equilibrium if the path buckles.
-    let elsewhere = input.path.and_then(|path| path.elsewhere).filter(|elsewhere| elsewhere.buckling.is_none());
+    let plain = input.path.filter(|path| path.buckling.is_none());
+    let elsewhere = plain.and_then(|path| path.claims().find(|claim| claim.id == "elsewhere"));
     if let Some(elsewhere) = elsewhere {
         return restart(&said(&elsewhere), "Load from rest");
     }

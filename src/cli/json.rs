@@ -45,7 +45,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "jumped": followed.map(|path| path.jump.is_some()),
         "jumped_at": path.and_then(|path| path.jump).map(|jump| jump.factor),
         "buckles_at": path.and_then(|path| path.buckling).map(|buckling| buckling.factor),
-        "critical_at": path.and_then(|path| path.critical).map(|critical| critical.factor),
+        "critical_at": path.and_then(|path| path.critical),
         "iterations": solution.iterations,
         "load_steps": solution.load_steps,
         "load_fraction": (scene.analysis == Analysis::Static).then_some(solution.load_factor),

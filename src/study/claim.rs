@@ -269,13 +269,33 @@ impl Claim {
 }
 
 impl PathSummary {
-    /// Returns the claims that the path jumps, buckles, is about to, or ends elsewhere than the result.
+    /// Returns the claims that the path jumps, buckles, is about to, or ends at another equilibrium than the result.
     pub fn claims(&self) -> impl Iterator<Item = Claim> {
         // The claim of another equilibrium has the buckling of the path from rest.
         let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(|buckling| Claim::buckles(&buckling));
         let jump = self.jump.map(|jump| Claim::new("jumps", &[jump.factor], &jump));
-        let critical = self.critical.map(|critical| Claim::new("critical", &[critical.factor], &critical));
-        let elsewhere = self.elsewhere.map(|elsewhere| Claim::new("elsewhere", &[elsewhere.distance], &elsewhere));
+        let critical = self.critical.map(|factor| {
+            // Next to the load, four digits could say 100 %.
+            let percent = match factor > 1.0 && factor < 1.0005 {
+                true => sentence!("just beyond 100 %"),
+                false => engineering(100.0 * factor, "%").into(),
+            };
+            let text = sentence!("becomes unstable at %{percent} of %{drive}", percent, drive = &self.drive);
+            Claim::new("critical", &[factor], text)
+        });
+        let elsewhere = self.elsewhere.map(|farthest| {
+            let distance = engineering(farthest, "m");
+            let text = match &self.buckling {
+                None => sentence!("loading from rest leads to another equilibrium, %{distance} away", distance),
+                Some(Bifurcation { factor, drive, .. }) => sentence!(
+                    "not on the path from rest, which is unstable above %{percent} of %{drive} and ends %{distance} away",
+                    percent = engineering(100.0 * factor, "%"),
+                    drive,
+                    distance
+                ),
+            };
+            Claim::new("elsewhere", &[farthest], text)
+        });
         jump.into_iter().chain(buckling).chain(critical).chain(elsewhere)
     }
 }

@@ -14,7 +14,7 @@ use crate::method::{
 };
 use crate::progress::{Observer, Progress};
 use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
-use crate::sentence::{Sentence, displayed, sentence};
+use crate::sentence::sentence;
 use crate::simulation::{Deformation, Equilibrium, Simulation, Status, SupportReaction, supports_power};
 use crate::state::{State, largest, largest_distance};
 use crate::stress::LAW_HOLDS;
@@ -60,77 +60,32 @@ impl std::fmt::Display for PathEnd {
     }
 }
 
-/// Equilibrium at the end of the load path from rest, if it differs from the result.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Elsewhere {
-    /// Largest distance of a node from the result, m.
-    pub distance: f64,
-    /// First bifurcation at which the path loses its stability: the result may be the branch that a body takes there.
-    pub buckling: Option<Bifurcation>,
-}
-
-/// Load next to the full load at which the path from rest loses its stability.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[non_exhaustive]
-pub struct CriticalLoad {
-    /// Load factor; above 1 but under linear theory.
-    pub factor: f64,
-    /// Quantities that the load factor refers to.
-    pub drive: Drive,
-}
-
-impl From<&CriticalLoad> for Sentence {
-    fn from(critical: &CriticalLoad) -> Self {
-        // Next to the load, four digits could say 100 %.
-        let percent = if critical.factor > 1.0 && critical.factor < 1.0005 {
-            sentence!("just beyond 100 %")
-        } else {
-            engineering(100.0 * critical.factor, "%").into()
-        };
-        let drive = &critical.drive;
-        sentence!("becomes unstable at %{percent} of %{drive}", percent, drive)
-    }
-}
-
 /// Critical points of the load path from rest, and its end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct PathSummary {
     /// First jump on the path, if any.
     pub jump: Option<Jump>,
     /// First bifurcation at which the path loses its stability.
     pub buckling: Option<Bifurcation>,
-    /// Critical load next to the full load of a path that neither jumps nor buckles below. Linear theory does neither:
-    /// under it, this is the first critical load of the path, and may be below the full load.
-    pub critical: Option<CriticalLoad>,
+    /// Load factor next to the full load at which a path that neither jumps nor buckles below loses its stability. Linear
+    /// theory does neither: under it, this is the first critical load of the path, and may be below the full load.
+    pub critical: Option<f64>,
+    /// Quantities that the load factors refer to.
+    pub drive: Drive,
     /// Work of moving supports, J; `None` if the path was not followed to the full load.
     pub supports_work: Option<f64>,
-    /// End of the path, if it is not the result.
-    pub elsewhere: Option<Elsewhere>,
-}
-
-displayed!(Elsewhere, CriticalLoad);
-
-impl From<&Elsewhere> for Sentence {
-    fn from(elsewhere: &Elsewhere) -> Self {
-        let distance = engineering(elsewhere.distance, "m");
-        match &elsewhere.buckling {
-            None => sentence!("loading from rest leads to another equilibrium, %{distance} away", distance),
-            Some(Bifurcation { factor, drive, .. }) => sentence!(
-                "not on the path from rest, which is unstable above %{percent} of %{drive} and ends %{distance} away",
-                percent = engineering(100.0 * factor, "%"),
-                drive,
-                distance
-            ),
-        }
-    }
+    /// Largest distance of a node between the result and the end of the path, m; `None` if both are the same equilibrium.
+    /// If the path buckles, the result may be the branch that a body takes there.
+    pub elsewhere: Option<f64>,
 }
 
 impl PathSummary {
-    /// Returns the critical points up to a load factor.
-    fn of(jump: Option<Jump>, bifurcations: &[Bifurcation], most: f64) -> Self {
+    /// Returns the critical points of a problem's path up to a load factor.
+    fn of(problem: &Problem, jump: Option<Jump>, bifurcations: &[Bifurcation], most: f64) -> Self {
         let buckling = bifurcations.iter().find(|b| b.unstable_modes[0] == 0 && b.factor <= most).copied();
-        Self { jump: jump.filter(|jump| jump.factor <= most), buckling, ..Self::default() }
+        let (jump, drive) = (jump.filter(|jump| jump.factor <= most), Drive::of(problem));
+        Self { jump, buckling, critical: None, drive, supports_work: None, elsewhere: None }
     }
 
     /// Returns the load factor at which the path first jumps or buckles.
@@ -139,15 +94,14 @@ impl PathSummary {
         events.into_iter().flatten().reduce(f64::min)
     }
 
-    /// Returns the critical load next to the load of a simulation's scene: `None` if the path jumps or buckles below, or
-    /// cannot be followed to it.
-    fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<CriticalLoad> {
+    /// Returns the critical load factor next to the load of a simulation's scene: `None` if the path jumps or buckles below,
+    /// or cannot be followed to it.
+    fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<f64> {
         if self.first_event().is_some() {
             return None;
         }
         let factor = NEXT * LoadPath::end_of(simulation, NEXT, observe)?.summary.first_event()?;
-        (factor > 1.0 || simulation.is_linear())
-            .then(|| CriticalLoad { factor, drive: Drive::of(simulation.problem()) })
+        (factor > 1.0 || simulation.is_linear()).then_some(factor)
     }
 }
 
@@ -167,8 +121,7 @@ impl PathFromRest {
         if distance <= SAME * largest(end).max(largest(result)) {
             return self.summary;
         }
-        let elsewhere = Some(Elsewhere { distance, buckling: self.summary.buckling });
-        PathSummary { elsewhere, critical: None, supports_work: None, ..self.summary }
+        PathSummary { elsewhere: Some(distance), critical: None, supports_work: None, ..self.summary }
     }
 }
 
@@ -242,7 +195,7 @@ impl LoadPath {
         };
         let mut summary = match is_small && is_taken_for_path(simulation) {
             true => Self::followed(simulation, false, observe)?.to(simulation.displacement()),
-            false => PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY),
+            false => PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY),
         };
         if is_small && summary.elsewhere.is_none() {
             summary.critical = summary.critical_load(simulation, observe);
@@ -257,8 +210,9 @@ impl LoadPath {
             return None;
         }
         if simulation.is_linear() {
-            let critical = PathSummary::default().critical_load(simulation, observe);
-            return Some(PathFromRest { summary: PathSummary { critical, ..PathSummary::default() }, end: None });
+            let summary = PathSummary::of(simulation.problem(), None, &[], 1.0);
+            let critical = summary.critical_load(simulation, observe);
+            return Some(PathFromRest { summary: PathSummary { critical, ..summary }, end: None });
         }
         if simulation.problem().supports().move_the_body() {
             return Self::traced(simulation, observe);
@@ -272,10 +226,9 @@ impl LoadPath {
     /// `None` if the path cannot be followed to the full load, or is cancelled.
     fn traced(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
         let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
-        let within = |most: f64| PathSummary::of(path.jump, &path.bifurcations, most);
-        let (summary, drive) = (within(1.0), Drive::of(simulation.problem()));
+        let within = |most: f64| PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most);
+        let summary = within(1.0);
         let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
-        let critical = critical.map(|factor| CriticalLoad { factor, drive });
         let summary = PathSummary { critical, supports_work: Some(path.supports_work), ..summary };
         Some(PathFromRest { summary, end: Some(end?) })
     }
@@ -300,7 +253,7 @@ impl LoadPath {
             return Self::followed(&follower, false, observe);
         }
         let events = follower.equilibrium()?.path_events()?;
-        let summary = PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY);
+        let summary = PathSummary::of(follower.problem(), events.jump, &events.bifurcations, f64::INFINITY);
         Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
     }
 
@@ -319,7 +272,7 @@ impl LoadPath {
         let events = follower.take_events();
         let is_at_end = matches!(progress, PathProgress::Reached);
         let end = is_at_end.then(|| follower.last.state.displacement.to_vec());
-        let summary = PathSummary::of(events.jump, &events.bifurcations, f64::INFINITY);
+        let summary = PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY);
         (to_jump || is_at_end).then_some(PathFromRest { summary, end })
     }
 

@@ -34,9 +34,7 @@ pub use fine::{Effort, moved_points};
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{
-    CriticalLoad, Elsewhere, LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text,
-};
+pub use load_path::{LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Tuning};

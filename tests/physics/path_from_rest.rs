@@ -272,7 +272,7 @@ fn a_result_beside_the_path_is_told() {
     assert_eq!(*arch.solve(), Status::Converged);
     assert!(tip(&arch).y < -0.01, "{}", tip(&arch));
     let path = LoadPath::to_result(&arch, &go_on).unwrap();
-    assert!(path.elsewhere.is_some_and(|elsewhere| elsewhere.distance > 0.01), "{path:?}");
+    assert!(path.elsewhere.is_some_and(|distance| distance > 0.01), "{path:?}");
     assert_eq!(path.jump, None);
     // The reference is that of the path from rest.
     let reference = Reference::of(&lighter).unwrap().first().unwrap().displacement;

@@ -11,7 +11,7 @@ use crate::scene::{self, Scene, SceneError, Source, units};
 use crate::sentence::Sentence;
 use crate::simulation::Simulation;
 use crate::study::{
-    Drive, Elsewhere, Jump, LoadPath, Reference, Setting, floor_text, path_chart, rho_text, section_chart,
+    Drive, Jump, LoadPath, PathSummary, Reference, Setting, floor_text, path_chart, rho_text, section_chart,
 };
 
 fn open(id: &str) -> Scene {
@@ -47,7 +47,6 @@ fn the_sentences_of_the_library_are_translated() {
         both(&Jump { factor: 0.5, distance: None, is_on_path: false, drive: Drive::Loads }),
         both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: true, drive: Drive::Supports }),
         both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: false, drive: Drive::Both }),
-        both(&Elsewhere { distance: 0.1, buckling: None }),
         both(&crate::stress::strain_warning(0.5).unwrap()),
         both(&crate::stress::inversion_warning(3, 10).unwrap()),
         both(&range("load.force").check(-1.0).unwrap_err()),
@@ -67,6 +66,9 @@ fn the_sentences_of_the_library_are_translated() {
         let SceneError::Invalid { invalid, .. } = Scene::from_toml(toml).unwrap_err() else { unreachable!("{toml}") };
         texts.push(both(&invalid));
     }
+    let (critical, drive, elsewhere) = (Some(0.5), Drive::Loads, Some(0.1));
+    let path = PathSummary { jump: None, buckling: None, critical, drive, supports_work: None, elsewhere };
+    texts.extend(path.claims().map(|claim| both(&claim)));
     texts.push(both(&floor_text(3e-8, 1e-8)));
     texts.extend([0.5, 2.0, 1e4].map(|rho| both(&rho_text(rho))));
     texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| both(&units::parse(text, "N").unwrap_err().message)));
