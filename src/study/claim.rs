@@ -239,7 +239,7 @@ impl Claim {
 
     /// Returns the claim about the settings that meet a demand.
     pub fn of_tuning(tuning: &Tuning) -> Self {
-        let Tuning { chosen, demand, met, measured, meeting, study, .. } = tuning;
+        let Tuning { chosen, demand, met, study } = tuning;
         let reason = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
             (true, true, _) => "the fastest",
             (true, false, _) => "the most accurate",
@@ -259,12 +259,14 @@ impl Claim {
             0 | 1 => String::new(),
             n => format!(", undecided between {n} whose errors differ by less than the reference's own"),
         };
-        let meeting = if *met { *meeting } else { 0 };
+        let ended = study.measurements.iter().filter(|m| m.converged);
+        let meeting = ended.clone().filter(|m| *met && study.meets(m, *demand)).count();
+        let measured = ended.count();
         let text = match meeting {
             0 => format!("none of {measured} settings measured here meets {demand}; {reason}{undecided}"),
             _ => format!("{meeting} of {measured} settings measured here meet {demand}; {reason}{undecided}"),
         };
-        Self::new("suffices", &[meeting as f64, *measured as f64], text)
+        Self::new("suffices", &[meeting as f64, measured as f64], text)
     }
 }
 

@@ -115,10 +115,6 @@ pub struct Tuning {
     pub demand: Demand,
     /// `true` if the demand is met.
     pub met: bool,
-    /// Number of measured settings that converge.
-    pub measured: usize,
-    /// Number of these settings that meet the demand.
-    pub meeting: usize,
     /// All measurements; partial if the search was cancelled before all meshes were measured.
     pub study: Study,
 }
@@ -163,21 +159,18 @@ impl Tuning {
             }
             Ok(())
         })?;
-        let ended: Vec<&Measurement> = study.measurements.iter().filter(|m| m.converged).collect();
-        let meeting: Vec<&Measurement> = ended.iter().copied().filter(|m| study.meets(m, demand)).collect();
-        let in_time: Vec<&Measurement> = ended.iter().copied().filter(|m| demand.time_is_met(m)).collect();
-        let least = |of: &[&Measurement], value: fn(&Measurement) -> f64| {
-            of.iter().copied().min_by(|a, b| value(a).total_cmp(&value(b))).copied()
+        let least = |value: fn(&Measurement) -> f64, is_considered: &dyn Fn(&Measurement) -> bool| {
+            let considered = study.measurements.iter().filter(|m| m.converged && is_considered(m));
+            considered.min_by(|a, b| value(a).total_cmp(&value(b))).copied()
         };
-        let fastest = |of: &[&Measurement]| least(of, |m| m.milliseconds);
-        let closest = |of: &[&Measurement]| least(of, Measurement::error_percent);
-        let best = if demand.max_error_percent.is_some() { fastest(&meeting) } else { closest(&meeting) };
-        let chosen = best.or_else(|| closest(&in_time)).or_else(|| fastest(&ended)).ok_or(match study.is_partial {
+        let (time, error): (fn(&Measurement) -> f64, _) = (|m| m.milliseconds, Measurement::error_percent);
+        let best = least(if demand.max_error_percent.is_some() { time } else { error }, &|m| study.meets(m, demand));
+        let in_time = || least(error, &|m| demand.time_is_met(m));
+        let chosen = best.or_else(in_time).or_else(|| least(time, &|_| true)).ok_or(match study.is_partial {
             true => StudyError::Cancelled,
             false => StudyError::NoReference,
         })?;
-        let (measured, meeting) = (ended.len(), meeting.len());
-        Ok(Self { chosen, demand, met: best.is_some(), measured, meeting, study })
+        Ok(Self { chosen, demand, met: best.is_some(), study })
     }
 }
 
