@@ -45,4 +45,4 @@ pub(crate) use reference::{FOLDS, is_unstable};
 pub use reference::{MovedPoint, ProbeReference, Reference, ReferenceSource};
 pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
-pub use trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
+pub use trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};

@@ -6,7 +6,7 @@ use super::claim::Claim;
 use super::motion::{MotionReference, REAL_TIME};
 use super::ranking::Tuning;
 use super::setting::{Setting, Stepping, mesh_text, step_text};
-use super::trade::{Ending, ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
+use super::trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
 use crate::dynamics::INTEGRATORS;
 use crate::format::{count, number, percent};
 use crate::method::METHODS;
@@ -48,13 +48,13 @@ impl Study {
             },
         );
         let Setting { method, iterations, .. } = m.setting;
-        let MotionFigures { ending, drift_percent, counts, .. } = motion;
+        let MotionFigures { drift_percent, counts, .. } = motion;
         format!(
             "{},{},{:e},{iterations},{},{:.4},{errors},{drift_percent:e},{},{},{},{}",
             stepping.integrator.id(),
             method.id(),
             stepping.time_step,
-            ending.id(),
+            m.ending(),
             m.milliseconds,
             motion.energy(),
             counts.steps,
@@ -221,7 +221,7 @@ impl Study {
                 stepping.integrator.id(),
                 stepping.solves_text(iterations).to_string(),
                 step_text(stepping.time_step),
-                m.error.map_or_else(|| motion.ending.id().replace('_', " "), |e| format!("{:.4}", e.iteration)),
+                m.error.map_or_else(|| m.ending().replace('_', " "), |e| format!("{:.4}", e.iteration)),
                 motion.drift_percent,
                 motion.energy(),
                 m.milliseconds
@@ -262,11 +262,10 @@ impl Study {
 
     /// Adds the settings without an error, and the reason.
     fn add_unfinished(&self, text: &mut String) {
-        for (ending, label) in [
-            (Ending::Stopped, "stopped before the end"),
-            (Ending::CutShort, "stopped early: too many steps to the end"),
-        ] {
-            let those: Vec<_> = self.motions().filter(|(.., motion)| motion.ending == ending).collect();
+        for (ending, label) in
+            [("stopped", "stopped before the end"), ("cut_short", "stopped early: too many steps to the end")]
+        {
+            let those: Vec<_> = self.motions().filter(|(m, ..)| m.ending() == ending).collect();
             if !those.is_empty() {
                 let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
             }

@@ -104,34 +104,12 @@ pub struct Measurement {
     pub pareto: bool,
 }
 
-/// End of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Ending {
-    /// At the end of the studied time.
-    Finished,
-    /// Stopped early.
-    Stopped,
-    /// Too many steps: only the beginning was computed, to measure its time.
-    CutShort,
-}
-
-impl Ending {
-    /// Returns the identifier in tables.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Finished => "finished",
-            Self::Stopped => "stopped",
-            Self::CutShort => "cut_short",
-        }
-    }
-}
-
 /// Figures of a measured motion.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub struct MotionFigures {
-    /// End of the motion.
-    pub ending: Ending,
+    /// `true` if only the beginning was computed, to measure its time, because the motion has too many steps.
+    pub is_cut_short: bool,
     /// Root of the mean square over time of the distance from the reference, percent of the size of its path.
     pub rms_percent: f64,
     /// Energy added by the integrator, percent of the largest kinetic energy.
@@ -179,6 +157,15 @@ impl Measurement {
     #[must_use]
     pub fn error_percent(&self) -> f64 {
         self.error.map_or(f64::INFINITY, |error| error.bound())
+    }
+
+    /// Returns the identifier of a motion's end in tables.
+    pub(super) fn ending(&self) -> &'static str {
+        match self.motion {
+            _ if self.converged => "finished",
+            Some(MotionFigures { is_cut_short: true, .. }) => "cut_short",
+            _ => "stopped",
+        }
     }
 
     pub(super) fn time_text(&self) -> String {

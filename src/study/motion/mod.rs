@@ -14,7 +14,7 @@ use super::parallel;
 use super::progress::{Extent, StudyError, check};
 use super::setting::{Setting, mesh_text};
 use super::timing::median_time;
-use super::trade::{Ending, Measurement, Meshed, MotionFigures, Study, StudyReference};
+use super::trade::{Measurement, Meshed, MotionFigures, Study, StudyReference};
 use crate::assembly::Mass;
 use crate::dynamics::critical_step;
 use crate::progress::{Observer, Progress};
@@ -95,12 +95,8 @@ fn first_run(
     } else {
         (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
     };
-    let ending = match simulation.status() {
-        Status::Stopped(_) => Ending::Stopped,
-        _ if is_cut => Ending::CutShort,
-        _ => Ending::Finished,
-    };
-    let converged = ending == Ending::Finished;
+    let is_stopped = matches!(simulation.status(), Status::Stopped(_));
+    let (converged, is_cut_short) = (!is_stopped && !is_cut, !is_stopped && is_cut);
     let [_, rms_percent] = study.reference.distance(&path, None);
     let is_linear = setting.method.moves_linearly();
     let of_motion = simulation.motion().map(|motion| {
@@ -115,7 +111,7 @@ fn first_run(
         milliseconds: 0.0,
         error: converged.then(|| meshed.error(&path, is_linear, &study.reference)),
         time: Timings::default(),
-        motion: Some(MotionFigures { ending, rms_percent, drift_percent, drift_of_input_percent, counts }),
+        motion: Some(MotionFigures { is_cut_short, rms_percent, drift_percent, drift_of_input_percent, counts }),
         pareto: false,
     };
     Ok((measurement, steps))
