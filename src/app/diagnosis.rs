@@ -390,9 +390,8 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
     // The status has the others.
     let explains = |claim: &&Claim| match claim.id {
-        // An iterate that was accepted early is no equilibrium.
+        // An iterate that was accepted early is no equilibrium; the remedy offers the method that helps a diverging one.
         "disturbance" => *simulation.status() == Status::Converged,
-        // The remedy offers the method that helps where the iteration diverges.
         "helps" => !matches!(simulation.status(), Status::Diverged(_)),
         id => matches!(id, "converged" | "stable" | "unstable"),
     };
@@ -439,8 +438,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     }
     // Loading from rest would lead to an unstable equilibrium if the path buckles.
     let plain = input.path.filter(|path| path.buckling.is_none());
-    let elsewhere = plain.and_then(|path| path.claims().find(|claim| claim.id == "elsewhere"));
-    if let Some(elsewhere) = elsewhere {
+    if let Some(elsewhere) = plain.and_then(|path| path.claims().find(|claim| claim.id == "elsewhere")) {
         return restart(&said(&elsewhere), "Load from rest");
     }
     let own = errors.own.filter(|&error| is_large(error));

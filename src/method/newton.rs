@@ -355,7 +355,7 @@ impl Method for Newton {
                 let NewtonPhase::LoadSteps(steps) = &mut self.phase else { return Verdict::Converged(floor) };
                 if !is_partial {
                     steps.events = steps.path.limit.clone().map(|limit| {
-                        let jump = Some(Jump::from(&limit, Some(it.state), false, it.problem));
+                        let jump = Some(Jump::from(&limit, Some(it.state), false));
                         PathEvents { jump, ..steps.path.take_events() }
                     });
                     return Verdict::Converged(floor);

@@ -200,10 +200,11 @@ fn softest_mode(cholesky: &mut Factor, unknowns: usize, others: &[Vec<f64>]) -> 
 }
 
 /// Quantities that grow along a path from rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Drive {
     /// The loads.
+    #[default]
     Loads,
     /// The prescribed motion of supports.
     Supports,
@@ -245,8 +246,6 @@ pub struct Jump {
     pub distance: Option<f64>,
     /// `true` if the state beyond the jump is on the same path; `false` if a descent of the energy led to it.
     pub is_on_path: bool,
-    /// Quantities that the load factor refers to.
-    pub drive: Drive,
 }
 
 /// Critical point on the path, at which the exact tangent is singular and another path crosses this one.
@@ -255,60 +254,21 @@ pub struct Jump {
 pub struct Bifurcation {
     /// Load factor.
     pub factor: f64,
-    /// Quantities that the load factor refers to.
-    pub drive: Drive,
     /// Numbers of negative eigenvalues of the exact tangent below and beyond it: 0 where the path is stable.
     pub unstable_modes: [usize; 2],
 }
 
-displayed!(Jump, Bifurcation);
-
 impl Jump {
     /// Returns the jump from a limit point to a state, if one is known.
-    pub(super) fn from(
-        limit: &ContinuationPoint<State>,
-        to: Option<&State>,
-        is_on_path: bool,
-        problem: &Problem,
-    ) -> Self {
+    pub(super) fn from(limit: &ContinuationPoint<State>, to: Option<&State>, is_on_path: bool) -> Self {
         let distance = to.map(|to| largest_distance(&limit.state.displacement, &to.displacement));
-        Self { factor: limit.factor, distance, is_on_path, drive: Drive::of(problem) }
+        Self { factor: limit.factor, distance, is_on_path }
     }
 
     /// Returns `true` if the body does not come to rest where it has left its path.
     fn is_far(&self, problem: &Problem) -> bool {
         self.distance.is_some_and(|distance| distance > SAME_STATE * problem.system().size())
     }
-}
-
-impl From<&Jump> for Sentence {
-    fn from(jump: &Jump) -> Self {
-        let (percent, drive) = (percent(jump.factor), &jump.drive);
-        match jump.distance {
-            None => sentence!(
-                "limit point at %{percent} of %{drive}: no stable equilibrium was found beyond it",
-                percent,
-                drive
-            ),
-            Some(distance) if jump.is_on_path => sentence!(
-                "jumped: beyond the limit point at %{percent} of %{drive}, the next equilibrium is %{distance} away",
-                percent,
-                drive,
-                distance = engineering(distance, "m")
-            ),
-            Some(distance) => sentence!(
-                "jumped: beyond the limit point at %{percent} of %{drive}, the body comes to rest %{distance} away",
-                percent,
-                drive,
-                distance = engineering(distance, "m")
-            ),
-        }
-    }
-}
-
-/// Formats a load factor in percent, with four digits.
-fn percent(factor: f64) -> String {
-    engineering(100.0 * factor, "%")
 }
 
 impl Bifurcation {
@@ -319,22 +279,6 @@ impl Bifurcation {
             [0, _] => sentence!("buckles at %{percent}", percent),
             [_, 0] => sentence!("stable from %{percent}", percent),
             [_, modes] => sentence!("%{n} unstable modes from %{percent}", n = modes, percent),
-        }
-    }
-}
-
-impl From<&Bifurcation> for Sentence {
-    fn from(bifurcation: &Bifurcation) -> Self {
-        let (percent, drive) = (percent(bifurcation.factor), &bifurcation.drive);
-        match bifurcation.unstable_modes {
-            [0, _] => {
-                sentence!("buckles at %{percent} of %{drive}: beyond it, this path is unstable", percent, drive)
-            }
-            [_, 0] => sentence!("stable again above %{percent} of %{drive}", percent, drive),
-            [_, 1] => sentence!("1 mode is unstable above %{percent} of %{drive}", percent, drive),
-            [_, modes] => {
-                sentence!("%{n} modes are unstable above %{percent} of %{drive}", n = modes, percent, drive)
-            }
         }
     }
 }
@@ -486,8 +430,8 @@ impl PathFollower {
             Ok(Some((Critical::Bifurcation(modes), crossing))) => {
                 if !is_beyond {
                     // Smallest number above the load factor of the crossing.
-                    let (factor, drive) = (crossing.factor.next_up(), Drive::of(equations.problem));
-                    self.events.bifurcations.push(Bifurcation { factor, unstable_modes: modes, drive });
+                    let factor = crossing.factor.next_up();
+                    self.events.bifurcations.push(Bifurcation { factor, unstable_modes: modes });
                 }
                 let change = modes[1] as isize - modes[0] as isize;
                 self.unstable_modes = self.unstable_modes.saturating_add_signed(change);
@@ -538,8 +482,7 @@ impl PathFollower {
                 return PathProgress::Continue;
             }
             let landing = self.path.between(equations, &from, &to, limit.factor);
-            let jump =
-                landing.as_ref().map(|landing| Jump::from(&limit, Some(&landing.state), true, equations.problem));
+            let jump = landing.as_ref().map(|landing| Jump::from(&limit, Some(&landing.state), true));
             let Some((landing, jump)) = landing.zip(jump.filter(|jump| jump.is_far(equations.problem))) else {
                 // A path that returns to its limit point is a loop.
                 return self.start_descent();
@@ -600,7 +543,7 @@ impl PathFollower {
                 Descent::Lower => {}
                 Descent::Stable => {
                     let Some(mut next) = Self::start_at(equations, state, factor, self.end) else { break };
-                    let jump = Jump::from(&start, Some(&next.last.state), false, equations.problem);
+                    let jump = Jump::from(&start, Some(&next.last.state), false);
                     if jump.is_far(equations.problem) {
                         self.events.jump.get_or_insert(jump);
                     }
@@ -618,7 +561,7 @@ impl PathFollower {
                 Descent::Stuck => break,
             }
         }
-        self.events.jump.get_or_insert(Jump::from(&limit, None, false, equations.problem));
+        self.events.jump.get_or_insert(Jump::from(&limit, None, false));
         self.limit = Some(limit);
         PathProgress::Ended(PathEndReason::NoEquilibrium)
     }

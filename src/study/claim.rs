@@ -1,13 +1,13 @@
 //! Claims: the statements that results make, each with the numbers that prove it. Commands, reports and the window take
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
-use super::load_path::{LoadPath, PathSummary};
+use super::load_path::{LoadPath, PathEnd, PathSummary};
 use super::ranking::Tuning;
 use super::reference::Reference;
 use super::trade::{Measurement, Study};
 use super::{Departure, LoadCurve};
 use crate::format::{engineering, number, percent, three_digits, two_digits};
-use crate::method::{Bifurcation, Drive};
+use crate::method::{Bifurcation, Drive, Jump, PathEndReason};
 use crate::scene::{MethodKind, Scene};
 use crate::sentence::{Sentence, displayed, sentence};
 use crate::simulation::{Simulation, Status, probe_results};
@@ -76,7 +76,7 @@ impl Claim {
                 claims.push(failed());
                 let factor = search.load_factor();
                 if factor < 1.0 {
-                    let (part, drive) = (engineering(100.0 * factor, "%"), Drive::of(simulation.problem()));
+                    let (part, drive) = (load_percent(factor), Drive::of(simulation.problem()));
                     let text = format!("the numbers below are those of the equilibrium at {part} of {drive}");
                     claims.push(Self::new("part", &[factor], text));
                 }
@@ -166,9 +166,41 @@ impl Claim {
         Self::new("beam_theory", &[off_by_percent], text)
     }
 
+    /// Returns the claim that the path from rest jumps.
+    fn jumps(Jump { factor, distance, is_on_path }: Jump, drive: &Drive) -> Self {
+        let percent = load_percent(factor);
+        let text = match distance.map(|distance| engineering(distance, "m")) {
+            None => sentence!(
+                "limit point at %{percent} of %{drive}: no stable equilibrium was found beyond it",
+                percent,
+                drive
+            ),
+            Some(distance) if is_on_path => sentence!(
+                "jumped: beyond the limit point at %{percent} of %{drive}, the next equilibrium is %{distance} away",
+                percent,
+                drive,
+                distance
+            ),
+            Some(distance) => sentence!(
+                "jumped: beyond the limit point at %{percent} of %{drive}, the body comes to rest %{distance} away",
+                percent,
+                drive,
+                distance
+            ),
+        };
+        Self::new("jumps", &[factor], text)
+    }
+
     /// Returns the claim that the path from rest loses or regains stability where another path crosses it.
-    fn buckles(bifurcation: &Bifurcation) -> Self {
-        Self::new("buckles", &[bifurcation.factor], bifurcation)
+    fn buckles(Bifurcation { factor, unstable_modes }: Bifurcation, drive: &Drive) -> Self {
+        let percent = load_percent(factor);
+        let text = match unstable_modes {
+            [0, _] => sentence!("buckles at %{percent} of %{drive}: beyond it, this path is unstable", percent, drive),
+            [_, 0] => sentence!("stable again above %{percent} of %{drive}", percent, drive),
+            [_, 1] => sentence!("1 mode is unstable above %{percent} of %{drive}", percent, drive),
+            [_, n] => sentence!("%{n} modes are unstable above %{percent} of %{drive}", n, percent, drive),
+        };
+        Self::new("buckles", &[factor], text)
     }
 
     /// Returns the claims of a load path in its order: the largest reaction of its moving support, which is the limit load
@@ -181,11 +213,19 @@ impl Claim {
                 format!("{motion}, {reaction}: the limit load, where a {force} in place of the motion would jump");
             Some((state.factor, Self::new("limit_load", &pair, text)))
         });
-        let bifurcations = path.bifurcations.iter().map(|bifurcation| (bifurcation.factor, Self::buckles(bifurcation)));
-        let jump = path.jump.map(|jump| (jump.factor, Self::new("jumps", &[jump.factor], &jump)));
+        let drive = &path.drive;
+        let bifurcations = path.bifurcations.iter().map(|event| (event.factor, Self::buckles(*event, drive)));
+        let jump = path.jump.map(|jump| (jump.factor, Self::jumps(jump, drive)));
         let mut events: Vec<(f64, Self)> = limit.into_iter().chain(bifurcations).chain(jump).collect();
         events.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let end = path.end.map(|end| Self::new("ends", &[end.factor], end.to_string()));
+        let end = path.end.map(|PathEnd { factor, reason }| {
+            let reason = match reason {
+                PathEndReason::NoEquilibrium => "no stable equilibrium was found there".to_owned(),
+                PathEndReason::Solves(most) => format!("the path took {most} solves until there"),
+                PathEndReason::Interrupted => "interrupted".to_owned(),
+            };
+            Self::new("ends", &[factor], format!("not followed beyond {} of {drive}: {reason}", load_percent(factor)))
+        });
         events.into_iter().map(|(_, claim)| claim).chain(end).collect()
     }
 
@@ -203,7 +243,7 @@ impl Claim {
         let last = curve.samples.last().map(|sample| sample.factor).filter(|factor| *factor < 1.0);
         let end = match (curve.buckles_at, last) {
             (Some(factor), _) => {
-                let part = engineering(100.0 * factor, "%");
+                let part = load_percent(factor);
                 let text = format!("the exact beam buckles at {part} of the load: beyond it, its path is unstable");
                 Some(Self::new("beam_buckles", &[factor], text))
             }
@@ -273,25 +313,26 @@ impl Claim {
 impl PathSummary {
     /// Returns the claims that the path jumps, buckles, is about to, or ends at another equilibrium than the result.
     pub fn claims(&self) -> impl Iterator<Item = Claim> {
+        let drive = &self.drive;
         // The claim of another equilibrium has the buckling of the path from rest.
-        let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(|buckling| Claim::buckles(&buckling));
-        let jump = self.jump.map(|jump| Claim::new("jumps", &[jump.factor], &jump));
+        let buckling = self.buckling.filter(|_| self.elsewhere.is_none()).map(|event| Claim::buckles(event, drive));
+        let jump = self.jump.map(|jump| Claim::jumps(jump, drive));
         let critical = self.critical.map(|factor| {
             // Next to the load, four digits could say 100 %.
             let percent = match factor > 1.0 && factor < 1.0005 {
                 true => sentence!("just beyond 100 %"),
-                false => engineering(100.0 * factor, "%").into(),
+                false => load_percent(factor).into(),
             };
-            let text = sentence!("becomes unstable at %{percent} of %{drive}", percent, drive = &self.drive);
+            let text = sentence!("becomes unstable at %{percent} of %{drive}", percent, drive);
             Claim::new("critical", &[factor], text)
         });
         let elsewhere = self.elsewhere.map(|farthest| {
             let distance = engineering(farthest, "m");
             let text = match &self.buckling {
                 None => sentence!("loading from rest leads to another equilibrium, %{distance} away", distance),
-                Some(Bifurcation { factor, drive, .. }) => sentence!(
+                Some(Bifurcation { factor, .. }) => sentence!(
                     "not on the path from rest, which is unstable above %{percent} of %{drive} and ends %{distance} away",
-                    percent = engineering(100.0 * factor, "%"),
+                    percent = load_percent(*factor),
                     drive,
                     distance
                 ),
@@ -300,6 +341,11 @@ impl PathSummary {
         });
         jump.into_iter().chain(buckling).chain(critical).chain(elsewhere)
     }
+}
+
+/// Formats a load factor in percent, with four digits.
+fn load_percent(factor: f64) -> String {
+    engineering(100.0 * factor, "%")
 }
 
 /// Formats the motion of a moving support and its reaction; a support that only rotates has an angle, rad, and a moment,

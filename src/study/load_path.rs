@@ -7,7 +7,6 @@ use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, Problem};
 use crate::continuation::ContinuationPoint;
-use crate::format::engineering;
 use crate::method::{
     Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathPart, PathProgress, StaticEquations, Workspace,
     support_stiffness,
@@ -45,19 +44,6 @@ pub struct PathEnd {
     pub factor: f64,
     /// Reason.
     pub reason: PathEndReason,
-    /// Quantities that the load factor refers to.
-    pub drive: Drive,
-}
-
-impl std::fmt::Display for PathEnd {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "not followed beyond {} of {}: ", engineering(100.0 * self.factor, "%"), self.drive)?;
-        match self.reason {
-            PathEndReason::NoEquilibrium => write!(f, "no stable equilibrium was found there"),
-            PathEndReason::Solves(most) => write!(f, "the path took {most} solves until there"),
-            PathEndReason::Interrupted => write!(f, "interrupted"),
-        }
-    }
 }
 
 /// Critical points of the load path from rest, and its end.
@@ -141,6 +127,8 @@ pub struct LoadPath {
     pub bifurcations: Vec<Bifurcation>,
     /// Index of the first moving support: the path is drawn over its displacement; `None` if it is drawn over the load.
     pub driven: Option<usize>,
+    /// Quantities that the load factors refer to.
+    pub drive: Drive,
     /// Work of moving supports, the integral of their reactions along the path, J.
     pub supports_work: f64,
     /// End of the path before the full load; `None` if it was followed to its end.
@@ -338,7 +326,7 @@ impl Tracer {
         let (scene, problem) = (simulation.scene(), simulation.problem().clone());
         let driven = scene.supports.iter().position(Support::moves);
         Some(Self {
-            path: LoadPath { scene: scene.name.clone(), driven, ..LoadPath::default() },
+            path: LoadPath { scene: scene.name.clone(), driven, drive: Drive::of(&problem), ..LoadPath::default() },
             workspace: Workspace::new(problem.system()).ok()?,
             forces: Forces::new(problem.system().mesh().nodes().len()),
             timings: Timings::default(),
@@ -387,7 +375,7 @@ impl Tracer {
         let (events, factor) = (follower.take_events(), follower.last.factor);
         self.mark();
         (self.path.jump, self.path.bifurcations) = (events.jump, events.bifurcations);
-        self.path.end = end.map(|reason| PathEnd { factor, reason, drive: Drive::of(&self.problem) });
+        self.path.end = end.map(|reason| PathEnd { factor, reason });
         Some((self.path, self.end))
     }
 

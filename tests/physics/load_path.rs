@@ -53,12 +53,16 @@ fn columns_buckle_at_eulers_loads() {
 #[test]
 fn a_cancelled_path_is_reported_as_interrupted() {
     let asked = AtomicU32::new(0);
-    let path = LoadPath::observed(&scene("jump"), &|_| {
+    let scene = scene("jump");
+    let path = LoadPath::observed(&scene, &|_| {
         if asked.fetch_add(1, Ordering::Relaxed) < 19 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
-    let end = path.unwrap().end.unwrap();
+    let path = path.unwrap();
+    let end = path.end.unwrap();
     assert_eq!(end.reason, PathEndReason::Interrupted);
-    assert!(end.factor > 0.0 && end.factor < 1.0 && end.to_string().contains("interrupted"), "{end}");
+    let claims = Claim::of_path(&scene, &path);
+    let text = claims.last().unwrap().to_string();
+    assert!(end.factor > 0.0 && end.factor < 1.0 && text.contains("interrupted"), "{text}");
 }
 
 /// The command `curve` names the critical load, draws it, and calls states beyond it unstable; so does `solve`.

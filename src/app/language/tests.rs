@@ -44,9 +44,6 @@ fn the_sentences_of_the_library_are_translated() {
         both(&StopReason::Exploded { step: 0.1, critical: 0.02 }),
         both(&StopReason::RanAway(100.0)),
         both(&StopReason::Interrupted),
-        both(&Jump { factor: 0.5, distance: None, is_on_path: false, drive: Drive::Loads }),
-        both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: true, drive: Drive::Supports }),
-        both(&Jump { factor: 0.5, distance: Some(0.1), is_on_path: false, drive: Drive::Both }),
         both(&crate::stress::strain_warning(0.5).unwrap()),
         both(&crate::stress::inversion_warning(3, 10).unwrap()),
         both(&range("load.force").check(-1.0).unwrap_err()),
@@ -66,9 +63,12 @@ fn the_sentences_of_the_library_are_translated() {
         let SceneError::Invalid { invalid, .. } = Scene::from_toml(toml).unwrap_err() else { unreachable!("{toml}") };
         texts.push(both(&invalid));
     }
-    let (critical, drive, elsewhere) = (Some(0.5), Drive::Loads, Some(0.1));
-    let path = PathSummary { jump: None, buckling: None, critical, drive, supports_work: None, elsewhere };
-    texts.extend(path.claims().map(|claim| both(&claim)));
+    let jumps = [(None, false, Drive::Loads), (Some(0.1), true, Drive::Supports), (Some(0.1), false, Drive::Both)];
+    for (most, is_on_path, drive) in jumps {
+        let jump = Some(Jump { factor: 0.5, distance: most, is_on_path });
+        let path = PathSummary { jump, buckling: None, critical: most, drive, supports_work: None, elsewhere: most };
+        texts.extend(path.claims().map(|claim| both(&claim)));
+    }
     texts.push(both(&floor_text(3e-8, 1e-8)));
     texts.extend([0.5, 2.0, 1e4].map(|rho| both(&rho_text(rho))));
     texts.extend(["0,5", "3 qq", "3 kg", "?"].map(|text| both(&units::parse(text, "N").unwrap_err().message)));
