@@ -6,11 +6,9 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use super::args::{CurveArgs, FolderArgs, SolveArgs, TuneArgs};
-use super::progress::Watch;
+use super::progress::{Watch, watched};
 use super::solved::SolvedScene;
-use super::{
-    CliError, NOT_CONVERGED, about, check_fit, check_suffix, exit_code, json, sections_of, simulate, text, validated,
-};
+use super::{CliError, about, check_fit, check_suffix, ended, exit_code, json, sections_of, simulate, text, validated};
 use crate::atomic_write;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
@@ -137,7 +135,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
         _ => {}
     }
     let gained = simulation.motion().is_some_and(|motion| motion.ledger().has_gained_too_much());
-    Ok(if interrupted || gained { ExitCode::from(NOT_CONVERGED) } else { exit_code(&status) })
+    Ok(exit_code(!interrupted && !gained && status.is_success()))
 }
 
 /// Returns sentences about the limitations of a result that are found without a reference solution.
@@ -215,7 +213,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         Ok(plot::figures([&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
     })?;
     text::print(&summary)?;
-    Ok(if path.is_none_or(|path| path.end.is_none()) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+    Ok(exit_code(path.is_none_or(|path| path.end.is_none())))
 }
 
 /// Parses the name of the quantity to be drawn.
@@ -242,10 +240,7 @@ fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = validated(source)?;
-    let watch = Watch::new();
-    let study = Study::new(&scene, extent(out), &|progress| watch.observe(progress));
-    drop(watch);
-    let study = match study {
+    let study = match watched(|observe| Study::new(&scene, extent(out), observe)) {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
         study => study.map_err(|error| about(source, error))?,
     };
@@ -255,15 +250,6 @@ pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode
     Ok(ended(study.is_partial, "the study has only the settings measured until then"))
 }
 
-/// Returns the exit code of a command that may have been interrupted; prints what is missing if it was.
-fn ended(interrupted: bool, missing: &str) -> ExitCode {
-    if !interrupted {
-        return ExitCode::SUCCESS;
-    }
-    eprintln!("warpbeam: interrupted: {missing}");
-    ExitCode::from(NOT_CONVERGED)
-}
-
 pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let TuneArgs { scene, error, time, write } = args;
     write.as_deref().map_or(Ok(()), |path| check_suffix(path, ".toml"))?;
@@ -271,14 +257,11 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     let (scene, _) = validated(&source)?;
     let error = if time.is_none() { error.or(Some(1.0)) } else { error };
     let demand = Demand { max_error_percent: error, max_time_ms: time };
-    let watch = Watch::new();
-    let tuning = Tuning::of(&scene, demand, &|progress| watch.observe(progress));
-    drop(watch);
-    let tuning = match tuning {
+    let tuning = match watched(|observe| Tuning::of(&scene, demand, observe)) {
         Err(StudyError::Cancelled) => return Ok(ended(true, "nothing has been measured")),
         Err(error) if error.is_unknown() => {
             text::print(&format!("{}: it is not known which settings meet {demand}: {error}\n", scene.name))?;
-            return Ok(ExitCode::from(NOT_CONVERGED));
+            return Ok(exit_code(false));
         }
         tuning => tuning.map_err(|error| about(&source, error))?,
     };
@@ -290,7 +273,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
     if tuning.study.is_partial {
         return Ok(ended(true, "finer meshes have not been measured"));
     }
-    Ok(if tuning.met { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
+    Ok(exit_code(tuning.met))
 }
 
 /// Returns the scene with the chosen setting, to be written to `path`.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::args::LimitsArgs;
-use super::progress::Watch;
+use super::progress::watched;
 use super::{CliError, about, json, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
@@ -23,10 +23,8 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let (scene, system) = validated(&source)?;
     let seams = system.seams().iter().map(ToString::to_string);
     let notes: Vec<String> = seams.chain(moved_points(&scene, system.mesh()).iter().map(ToString::to_string)).collect();
-    let watch = Watch::new();
-    let limits = MethodLimits::of(&scene, &|progress| watch.observe(progress), &|_| {});
-    drop(watch);
-    let limits = limits.map_err(|error| about(&source, error))?;
+    let limits =
+        watched(|observe| MethodLimits::of(&scene, observe, &|_| {})).map_err(|error| about(&source, error))?;
     outputs.write_table(|| table(&limits))?;
     outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
     text::print(&match json {

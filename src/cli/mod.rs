@@ -16,7 +16,9 @@ use crate::assembly::{Problem, System, SystemError};
 use crate::format::number;
 use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError};
-use crate::simulation::{Simulation, SimulationError, Status};
+#[cfg(feature = "app")]
+use crate::simulation::Status;
+use crate::simulation::{Simulation, SimulationError};
 
 mod args;
 mod commands;
@@ -226,8 +228,26 @@ fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
     }
 }
 
-fn exit_code(status: &Status) -> ExitCode {
-    if status.is_success() { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
+/// Returns the exit code of a command that ran; `is_done` is `true` if it converged, and was not interrupted.
+fn exit_code(is_done: bool) -> ExitCode {
+    if is_done { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) }
+}
+
+/// Returns the exit code of a command that may have been interrupted; prints what is missing if it was.
+fn ended(interrupted: bool, missing: &str) -> ExitCode {
+    if interrupted {
+        eprintln!("warpbeam: interrupted: {missing}");
+    }
+    exit_code(!interrupted)
+}
+
+/// Returns the exit code of a picture or a recording of a scene; prints the reason why its simulation failed, if it did.
+#[cfg(feature = "app")]
+fn drawn(status: &Status) -> ExitCode {
+    if let Some(reason) = status.failure() {
+        eprintln!("warpbeam: {}: {reason}", status.word());
+    }
+    exit_code(status.is_success())
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::progress::Progress;
+use crate::progress::{Observer, Progress};
 use crate::simulation::{Simulation, Status};
 
 /// Interval between drawings of the line.
@@ -17,6 +17,12 @@ const LONG: Duration = Duration::from_millis(400);
 const TELLING: f64 = 0.02;
 /// Exit code after a second Ctrl-C, as used by shells.
 const KILLED_BY_INTERRUPT: i32 = 130;
+
+/// Computes a value with an observer that shows the progress, and cancels as [`Watch`] does.
+pub(super) fn watched<T>(compute: impl FnOnce(Observer<'_>) -> T) -> T {
+    let watch = Watch::new();
+    compute(&|progress| watch.observe(progress))
+}
 
 /// Line of progress on standard error, if that is a terminal, and handler of Ctrl-C, SIGTERM and SIGHUP: the first signal
 /// makes the command end with its partial result, the second ends the process.

@@ -38,7 +38,7 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     let status = simulation.status().clone();
     if matches!(status, Status::Diverged(_)) {
         eprintln!("warpbeam: {}", about(&source, status.failure().unwrap_or_default()));
-        return Ok(exit_code(&status));
+        return Ok(exit_code(false));
     }
     let sections = match (line, along) {
         (Some(line), _) => vec![simulation.section(line).map_err(refused)?],
@@ -77,7 +77,7 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
             heading(&scene, &simulation) + &cuts.join("\n")
         }
     })?;
-    Ok(exit_code(&status))
+    Ok(exit_code(status.is_success()))
 }
 
 /// Returns the point of a line through x; without y at half the height of the body's bounding box.

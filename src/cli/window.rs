@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::args::{DEFAULT_PICTURE, RecordArgs, ShotArgs, SolveArgs};
-use super::progress::Watch;
+use super::progress::{Watch, watched};
 use super::shared_args::SceneArgs;
-use super::{CliError, NOT_CONVERGED, check_fit, check_suffix, commands, exit_code, sections_of, simulate, text};
+use super::{CliError, check_fit, check_suffix, commands, drawn, ended, exit_code, sections_of, simulate, text};
 use crate::app;
 use crate::format::{count, number};
 use crate::render;
@@ -35,17 +35,13 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let interrupted = watch.is_cancelled();
     drop(watch);
     if interrupted {
-        eprintln!("warpbeam: interrupted: the picture shows only the settings measured until then");
-        return Ok(ExitCode::from(NOT_CONVERGED));
+        return Ok(ended(true, "the picture shows only the settings measured until then"));
     }
-    if let Some(reason) = shot.status.failure() {
-        eprintln!("warpbeam: {}: {reason}", shot.status.word());
-    }
-    if let Some(reason) = shot.study_error {
+    let code = drawn(&shot.status);
+    Ok(shot.study_error.map_or(code, |reason| {
         eprintln!("warpbeam: no study: {reason}");
-        return Ok(ExitCode::from(NOT_CONVERGED));
-    }
-    Ok(exit_code(&shot.status))
+        exit_code(false)
+    }))
 }
 
 /// Runs `warpbeam` without a command.
@@ -97,23 +93,16 @@ pub(super) fn record(args: RecordArgs) -> Result<ExitCode, CliError> {
     let RecordArgs { scene, story, output, options } = args;
     let source = (!story).then(|| scene::Source::from(scene));
     let opened = source.map(|source| scene::open(&source).map(|scene| (source, scene))).transpose()?;
-    let watch = Watch::new();
-    let recorded = app::record(opened, &options, &output, &|progress| watch.observe(progress));
-    drop(watch);
-    let recorded = recorded?;
+    let recorded = watched(|observe| app::record(opened, &options, &output, observe))?;
     if recorded.pictures == 0 {
         eprintln!("warpbeam: interrupted before the first picture: nothing was written");
-        return Ok(ExitCode::from(NOT_CONVERGED));
+        return Ok(exit_code(false));
     }
     text::print(&summary(&recorded, options.fps, &output))?;
     if recorded.interrupted {
-        eprintln!("warpbeam: interrupted: the recording is partial");
-        return Ok(ExitCode::from(NOT_CONVERGED));
+        return Ok(ended(true, "the recording is partial"));
     }
-    if let Some(reason) = recorded.status.failure() {
-        eprintln!("warpbeam: {}: {reason}", recorded.status.word());
-    }
-    Ok(exit_code(&recorded.status))
+    Ok(drawn(&recorded.status))
 }
 
 /// Describes the written file and its frame rate.
