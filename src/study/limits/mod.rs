@@ -198,8 +198,11 @@ impl Strip {
         self.points.iter().filter_map(move |point| Some((point.factor, point.answer(property)?)))
     }
 
-    /// Returns the rows of loads that have a property, from small to large.
+    /// Returns the rows of loads that have a property, from small to large, but none with an accident: errors are small
+    /// where results that grow too fast cross those of the reference.
     fn runs(&self, property: Property) -> Vec<LoadRange> {
+        /// Ratio of the ends of a range that is more than a crossing.
+        const WIDE: f64 = 1.5;
         let mut runs: Vec<LoadRange> = Vec::new();
         let mut last: Option<(f64, Option<bool>)> = None;
         for (factor, answer) in self.answers(property) {
@@ -214,18 +217,9 @@ impl Strip {
             }
             last = Some((factor, answer));
         }
-        runs
-    }
-
-    /// Returns the first row of loads that have a property, and `true` if other loads beyond have it too; `None` if there is
-    /// none, or only an accident: errors are small where results that grow too fast cross those of the reference.
-    fn first_run(&self, property: Property) -> Option<(LoadRange, bool)> {
-        /// Ratio of the ends of a range that is more than a crossing.
-        const WIDE: f64 = 1.5;
-        let mut runs = self.runs(property);
         let is_wide = |run: &LoadRange| run.before.is_none() || run.range[1] > WIDE * run.range[0];
         runs.retain(|run| !matches!(property, Property::Within(_)) || is_wide(run));
-        Some((*runs.first()?, runs.len() > 1))
+        runs
     }
 
     /// Returns the part of the load up to which the error is at most `percent`: 0 if it is larger at the smallest load, and
@@ -290,7 +284,8 @@ impl Strip {
     pub fn words(&self, axis: &LoadAxis, range: [f64; 2]) -> [Sentence; 4] {
         let load = |factor: f64| load_text(axis, factor);
         let of = |property: Property| {
-            let Some((run, again)) = self.first_run(property) else {
+            let runs = self.runs(property);
+            let Some(run) = runs.first() else {
                 return match self.answers(property).next() {
                     Some((_, Some(false))) => sentence!("not at %{load}", load = load(range[0])),
                     _ => sentence!("not known"),
@@ -303,7 +298,7 @@ impl Strip {
                 (Some(_), true) => sentence!("%{from} to %{to}", from, to),
                 (Some(_), false) => sentence!("from %{load}", load = from),
             };
-            if again && run.ends { sentence!("%{loads}, not everywhere beyond", loads) } else { loads }
+            if runs.len() > 1 && run.ends { sentence!("%{loads}, not everywhere beyond", loads) } else { loads }
         };
         let law = self.law_ends_at().map_or_else(|| "\u{2013}".into(), |f| sentence!("from %{load}", load = load(f)));
         [of(Property::Within(GOOD)), of(Property::Within(USABLE)), of(Property::Converges), law]
@@ -317,7 +312,7 @@ impl Strip {
         const NEAR: f64 = 2.0;
         let load = |factor: f64| load_text(axis, factor);
         let first = self.points.first()?;
-        let found = [GOOD, USABLE].map(|percent| Some((percent, self.first_run(Property::Within(percent))?.0)));
+        let found = [GOOD, USABLE].map(|percent| Some((percent, *self.runs(Property::Within(percent)).first()?)));
         let is_far = |(_, run): &(f64, LoadRange)| run.before.is_none() && run.range[1] > NEAR * range[0];
         let best = found.iter().copied().flatten().find(is_far).or(found[1]);
         Some(match (best, self.runs(Property::Converges).first()) {
