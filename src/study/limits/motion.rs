@@ -32,8 +32,7 @@ pub(super) fn limits(
     const REFERENCE: f64 = 0.3;
     let motions =
         Motions::new(scene, &|progress| observe(Progress { fraction: REFERENCE * progress.fraction, ..progress }))?;
-    let steps = motions.steps();
-    let factors: Vec<(f64, bool)> = steps.iter().map(|&(_, factor)| (factor, true)).collect();
+    let factors: Vec<(f64, bool)> = motions.steps().into_iter().map(|(_, factor)| (factor, true)).collect();
     let (Some(&(first, _)), Some(&(last, _))) = (factors.first(), factors.last()) else {
         return Err(StudyError::NoReference);
     };
@@ -52,14 +51,7 @@ pub(super) fn limits(
     rows.sort_by_key(|(_, integrator)| *integrator != scene.dynamics.integrator);
     let now = sentence!("following each integrator");
     parallel::all(&rows, observe, [REFERENCE, 1.0], &now, |&(row, integrator), observe| {
-        // Only paths with steps of powers of two have the samples of the reference.
-        let point = |factor: f64, _| match steps.iter().find(|(_, own)| *own == factor) {
-            Some((power, _)) => motions.solve(integrator, *power, factor, observe),
-            None => {
-                let converges = motions.finishes(integrator, factor, observe)?;
-                Ok(LimitPoint { factor, converges, ..LimitPoint::default() })
-            }
-        };
+        let point = |factor: f64, _| motions.solve(integrator, factor, observe);
         sweep.follow(row, &factors, &point, &|property, _| property == Property::Converges)
     })?;
     Ok(lock(&sweep.limits).clone())
@@ -106,35 +98,45 @@ impl<'a> Motions<'a> {
         powers.map(|power| (power, ratio * 2f64.powi(power))).collect()
     }
 
-    /// Computes the motion with a time step of 2ⁿ sampling intervals, `n` being the power, which is `factor` times the scene's.
-    /// Its error is the sum of those of the mesh, the time steps and the reference, as in
-    /// [`ErrorSplit::bound`](crate::study::ErrorSplit::bound).
-    fn solve(
-        &self,
-        integrator: IntegratorKind,
-        power: i32,
-        factor: f64,
-        observe: Observer<'_>,
-    ) -> Result<LimitPoint, StudyError> {
-        let [apart, steps] = [power, -power].map(|power| 1_u32 << power.max(0));
-        let Samples { interval, count } = self.samples;
-        let samples = Samples { interval: interval * f64::from(apart), count: count / apart };
-        let mut simulation = self.simulation(integrator, samples.interval / f64::from(steps))?;
+    /// Computes the motion with a time step that is `factor` times the scene's. Only the path with a step of 2ⁿ sampling
+    /// intervals has the samples of the reference: its error is the sum of those of the mesh, the time steps and the
+    /// reference, as in [`ErrorSplit::bound`](crate::study::ErrorSplit::bound). Of others only convergence is found.
+    fn solve(&self, integrator: IntegratorKind, factor: f64, observe: Observer<'_>) -> Result<LimitPoint, StudyError> {
+        let power = self.steps().into_iter().find(|(_, own)| *own == factor).map(|(power, _)| power);
+        let exponent = power.unwrap_or(0);
+        let [apart, steps] = [exponent, -exponent].map(|exponent| 1_u32 << exponent.max(0));
+        let samples = match power {
+            Some(_) => {
+                let Samples { interval, count } = self.samples;
+                Samples { interval: interval * f64::from(apart), count: count / apart }
+            }
+            None => {
+                let interval = factor * self.scene.dynamics.time_step;
+                Samples { interval, count: (self.samples.duration() / interval).ceil() as u32 }
+            }
+        };
+        let mut scene = self.scene.clone();
+        (scene.dynamics.integrator, scene.dynamics.time_step) = (integrator, samples.interval / f64::from(steps));
+        let mut simulation = Simulation::with_system(&scene, self.system.clone())?;
+        simulation.keep_ledger(false);
         let (mut max_strain, mut inverted_elements) = (0.0_f64, 0);
         let path = path(&mut simulation, samples, steps, observe, &mut |simulation| {
-            let deformation = Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress());
-            max_strain = max_strain.max(deformation.max_strain);
-            inverted_elements = inverted_elements.max(deformation.inverted_elements);
+            if power.is_some() {
+                let deformation = Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress());
+                max_strain = max_strain.max(deformation.max_strain);
+                inverted_elements = inverted_elements.max(deformation.inverted_elements);
+            }
         })?;
-        if matches!(simulation.status(), Status::Stopped(_)) {
-            return Ok(LimitPoint { factor, ..LimitPoint::default() });
+        let converges = !matches!(simulation.status(), Status::Stopped(_));
+        if !converges || power.is_none() {
+            return Ok(LimitPoint { factor, converges, ..LimitPoint::default() });
         }
         let every = apart as usize;
         let exact: Vec<_> = self.exact.iter().skip(every - 1).step_by(every).copied().collect();
         let [of_steps, _] = self.reference.distance(&path, &exact);
         Ok(LimitPoint {
             factor,
-            converges: true,
+            converges,
             displacement: path.last().copied().unwrap_or_default(),
             max_strain: Some(max_strain),
             inverted_elements,
@@ -142,22 +144,5 @@ impl<'a> Motions<'a> {
             error_percent: Some(self.mesh_error_percent + of_steps),
             reference_percent: Some(self.reference.error_percent),
         })
-    }
-
-    /// Returns `true` if the motion with a time step, relative to the scene's, does not stop early.
-    fn finishes(&self, integrator: IntegratorKind, factor: f64, observe: Observer<'_>) -> Result<bool, StudyError> {
-        let step = factor * self.scene.dynamics.time_step;
-        let mut simulation = self.simulation(integrator, step)?;
-        let samples = Samples { interval: step, count: (self.samples.duration() / step).ceil() as u32 };
-        path(&mut simulation, samples, 1, observe, &mut |_| {})?;
-        Ok(!matches!(simulation.status(), Status::Stopped(_)))
-    }
-
-    fn simulation(&self, integrator: IntegratorKind, step: f64) -> Result<Simulation, StudyError> {
-        let mut scene = self.scene.clone();
-        (scene.dynamics.integrator, scene.dynamics.time_step) = (integrator, step);
-        let mut simulation = Simulation::with_system(&scene, self.system.clone())?;
-        simulation.keep_ledger(false);
-        Ok(simulation)
     }
 }
