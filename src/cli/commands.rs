@@ -13,7 +13,7 @@ use crate::atomic_write;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
-use crate::scene::{self, Analysis, Scene};
+use crate::scene::{self, Analysis, Probe, Scene};
 use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
 use crate::study::extremes::{self, Case, Entry, motion, rest};
@@ -187,7 +187,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     let (scene, _) = validated(&source)?;
     // Report invalid names before computing the path.
-    let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, name))?;
+    let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, &name))?;
     outputs.check()?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
@@ -216,25 +216,23 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     Ok(exit_code(path.is_none_or(|path| path.end.is_none())))
 }
 
-/// Parses the name of the quantity to be drawn.
-fn ordinate(scene: &Scene, name: String) -> Result<Ordinate, CliError> {
-    for (i, probe) in scene.probes.iter().enumerate() {
-        match name.strip_prefix(&probe.name) {
-            Some("") => return Ok(Ordinate::Probe(i)),
-            Some(".path") => return Ok(Ordinate::Path(i)),
-            Some(".x") => return Ok(Ordinate::Component(i, 0)),
-            Some(".y") => return Ok(Ordinate::Component(i, 1)),
-            _ => {}
-        }
-    }
-    let supports = (0..scene.supports.len()).map(|i| format!("support.{i}"));
-    match supports.clone().position(|support| support == name) {
-        Some(i) => Ok(Ordinate::Reaction(i)),
-        None => {
-            let of_probe = |name: &String| ["", ".x", ".y", ".path"].map(|part| format!("{name}{part}"));
-            let known: Vec<_> = scene.probes.iter().flat_map(|probe| of_probe(&probe.name)).chain(supports).collect();
-            Err(format!("--of {name}: expected one of {}", known.join(", ")).into())
-        }
+/// Returns the quantity to be drawn by its name.
+fn ordinate(scene: &Scene, name: &str) -> Result<Ordinate, CliError> {
+    let of_probe = |(i, probe): (usize, &Probe)| {
+        let parts = [
+            ("", Ordinate::Probe(i)),
+            (".x", Ordinate::Component(i, 0)),
+            (".y", Ordinate::Component(i, 1)),
+            (".path", Ordinate::Path(i)),
+        ];
+        parts.map(|(part, ordinate)| (format!("{}{part}", probe.name), ordinate))
+    };
+    let supports = (0..scene.supports.len()).map(|i| (format!("support.{i}"), Ordinate::Reaction(i)));
+    let (names, mut ordinates): (Vec<String>, Vec<Ordinate>) =
+        scene.probes.iter().enumerate().flat_map(of_probe).chain(supports).unzip();
+    match names.iter().position(|known| known == name) {
+        Some(known) => Ok(ordinates.swap_remove(known)),
+        None => Err(format!("--of {name}: expected one of {}", names.join(", ")).into()),
     }
 }
 
