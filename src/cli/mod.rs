@@ -22,7 +22,6 @@ use crate::simulation::{Simulation, SimulationError};
 
 mod args;
 mod commands;
-mod contexts;
 #[cfg(feature = "app")]
 mod driver;
 #[cfg(feature = "app")]
@@ -118,7 +117,7 @@ fn run() -> ExitCode {
     let needs_dialog = matches!(command, None | Some(Command::Run { .. })) && explorer::leave_console();
     let result = match command {
         #[cfg(feature = "app")]
-        None => window::run_default(),
+        None => window::run(shared_args::SceneArgs::default().into(), Path::new(args::DEFAULT_PICTURE), None, true),
         // Unreachable: clap requires a command.
         #[cfg(not(feature = "app"))]
         None => Ok(ExitCode::from(BAD_INPUT)),

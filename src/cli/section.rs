@@ -24,15 +24,21 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
     outputs.check()?;
     let (scene, mut simulation) = simulate(&source)?;
     let refused = |error: SectionError| about(&source, error);
-    let line = at.map(|(x, y)| SectionLine { at: point_of(&simulation, x, y), angle });
+    let (low, high) = simulation.mesh().bounds();
+    // Without y, the line goes through the middle of the body's bounding box.
+    let point = |(x, y): (f64, Option<f64>)| Vector2::new(x, y.unwrap_or(0.5 * (low.y + high.y)));
+    let line = at.map(|at| SectionLine { at: point(at), angle });
     if line.is_none() && along.is_none() && scene.sections.is_empty() {
         return Err(about(&source, "expected --at or --along, or a scene with a [[section]]"));
     }
+    let cut = |simulation: &Simulation| match (line, along) {
+        (Some(line), _) => simulation.section(line).map(|section| vec![section]).map_err(refused),
+        (None, Some(count)) => simulation.sections(usize::from(count)).map_err(refused),
+        (None, None) => sections_of(&source, simulation),
+    };
     // A line that misses the body is refused before the solve.
-    match (line, along) {
-        (Some(line), _) => _ = simulation.section(line).map_err(refused)?,
-        (None, Some(_)) => {}
-        (None, None) => _ = sections_of(&source, &simulation)?,
+    if along.is_none() {
+        cut(&simulation)?;
     }
     Watch::new().run(&mut simulation, |_| ());
     let status = simulation.status().clone();
@@ -40,11 +46,7 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         eprintln!("warpbeam: {}", about(&source, status.failure().unwrap_or_default()));
         return Ok(exit_code(false));
     }
-    let sections = match (line, along) {
-        (Some(line), _) => vec![simulation.section(line).map_err(refused)?],
-        (None, Some(count)) => simulation.sections(usize::from(count)).map_err(refused)?,
-        (None, None) => sections_of(&source, &simulation)?,
-    };
+    let sections = cut(&simulation)?;
     outputs.write_table(|| match (along, &sections[..]) {
         (None, [section]) => stress_table(section),
         _ => forces_table(&sections),
@@ -78,12 +80,6 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         }
     })?;
     Ok(exit_code(status.is_success()))
-}
-
-/// Returns the point of a line through x; without y at half the height of the body's bounding box.
-fn point_of(simulation: &Simulation, x: f64, y: Option<f64>) -> Vector2<f64> {
-    let (low, high) = simulation.mesh().bounds();
-    Vector2::new(x, y.unwrap_or(0.5 * (low.y + high.y)))
 }
 
 fn heading(scene: &Scene, simulation: &Simulation) -> String {

@@ -7,8 +7,7 @@ use std::io::{ErrorKind, Write as _};
 use nalgebra::Vector2;
 
 use super::CliError;
-use super::contexts::Contexts;
-use super::solved::SolvedScene;
+use super::solved::{Contexts, SolvedScene};
 use crate::dynamics::Counts;
 use crate::export::{columns, csv_field};
 use crate::format::{count, engineering, engineering_pair, prefix, three_digits};

@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::args::{DEFAULT_PICTURE, RecordArgs, ShotArgs, SolveArgs};
+use super::args::{RecordArgs, ShotArgs, SolveArgs};
 use super::progress::{Watch, watched};
 use super::shared_args::SceneArgs;
 use super::{CliError, check_fit, check_suffix, commands, drawn, ended, exit_code, sections_of, simulate, text};
 use crate::app;
 use crate::format::{count, number};
 use crate::render;
-use crate::scene::{self, registry};
+use crate::scene;
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let ShotArgs { scene, output, options } = args;
@@ -42,12 +42,6 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
         eprintln!("warpbeam: no study: {reason}");
         exit_code(false)
     }))
-}
-
-/// Runs `warpbeam` without a command.
-pub(super) fn run_default() -> Result<ExitCode, CliError> {
-    let source = scene::Source { name: registry::DEFAULT.into(), assignments: Vec::new() };
-    run(source, Path::new(DEFAULT_PICTURE), None, true)
 }
 
 /// Opens the window. `is_default` is `true` if no scene was asked for.
