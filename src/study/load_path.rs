@@ -203,22 +203,17 @@ impl LoadPath {
             return Some(PathFromRest { summary: PathSummary { critical, ..summary }, end: None });
         }
         if simulation.problem().supports().move_the_body() {
-            return Self::traced(simulation, observe);
+            // The work of the supports is that to the full load, and the path goes on to the critical load next to it.
+            let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
+            let within = |most: f64| PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most);
+            let summary = within(1.0);
+            let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
+            let summary = PathSummary { critical, supports_work: Some(path.supports_work), ..summary };
+            return Some(PathFromRest { summary, end: Some(end?) });
         }
         let mut path = Self::end_of(simulation, 1.0, observe)?;
         path.summary.critical = path.summary.critical_load(simulation, observe);
         Some(path)
-    }
-
-    /// Follows the path of a scene with moving supports, with the work of these, to the critical load next to the full one;
-    /// `None` if the path cannot be followed to the full load, or is cancelled.
-    fn traced(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
-        let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
-        let within = |most: f64| PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most);
-        let summary = within(1.0);
-        let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
-        let summary = PathSummary { critical, supports_work: Some(path.supports_work), ..summary };
-        Some(PathFromRest { summary, end: Some(end?) })
     }
 
     /// Follows the load path of a simulation's scene on its mesh, to `part` of the load; returns its critical points and

@@ -75,12 +75,8 @@ impl Study {
 
     fn summary_at_rest(&self) -> String {
         let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
-        text.push_str(
-            "Pareto front: no measured setting is both faster and more accurate (error: at most the sum of its parts and \
-             of the reference's own error):\n",
-        );
-        text.push_str("    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting\n");
-        self.add_front(&mut text, |m, ErrorSplit { total, discretization, iteration, model }| {
+        let columns = "    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting";
+        self.add_front(&mut text, ["", columns], |m, ErrorSplit { total, discretization, iteration, model }| {
             let bound = self.error_bound(m);
             let parts = format!("{total:12.4} {discretization:12.4} {iteration:14.4} {model:14.4}");
             format!("{:12.4} {bound:12.4} {parts}", m.milliseconds)
@@ -105,8 +101,14 @@ impl Study {
     }
 
     /// Adds a row for each setting of the Pareto front, fastest first, and a note if the rank of one is undecided. `row`
-    /// formats time and errors of a setting.
-    fn add_front(&self, text: &mut String, row: impl Fn(&Measurement, ErrorSplit) -> String) {
+    /// formats time and errors of a setting, whose meaning is explained before the names of the columns.
+    fn add_front(&self, text: &mut String, head: [&str; 2], row: impl Fn(&Measurement, ErrorSplit) -> String) {
+        let [time, columns] = head;
+        let _ = writeln!(
+            text,
+            "Pareto front: no measured setting is both faster and more accurate ({time}error: at most the sum of its parts \
+             and of the reference's own error):\n{columns}"
+        );
         let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
         let mut front: Vec<_> = ranked.filter_map(|(m, undecided)| Some((m, m.error?, undecided))).collect();
         front.sort_by(|(a, ..), (b, ..)| a.milliseconds.total_cmp(&b.milliseconds));
@@ -155,14 +157,10 @@ impl Study {
             let lasts = number(reference.scene_duration);
             let _ = writeln!(text, "(the scene lasts {lasts} s; the rest is not measured)");
         }
-        text.push_str(
-            "\nPareto front: no measured setting is both faster and more accurate (time: per simulated \
-             second; error: at most the sum of its parts and of the reference's own error):\n",
-        );
-        text.push_str(
-            "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting\n",
-        );
-        self.add_front(&mut text, |m, ErrorSplit { total, discretization, iteration, model }| {
+        text.push('\n');
+        let columns = "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting";
+        let head = ["time: per simulated second; ", columns];
+        self.add_front(&mut text, head, |m, ErrorSplit { total, discretization, iteration, model }| {
             let bound = self.error_bound(m);
             let [rms, drift] = m.motion.map_or([0.0; 2], |motion| [motion.rms_percent, motion.drift_percent]);
             let parts = format!("{total:11.4} {rms:11.4} {discretization:12.4} {iteration:11.4} {model:14.4}");
