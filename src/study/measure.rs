@@ -183,9 +183,7 @@ pub(super) fn meshes(scene: &Scene, extent: Extent) -> Vec<(Setting, f64)> {
         // The number of nodes along the beam is about the same for every element; cells are as high as long if
         // possible.
         let pieces = element.entry().degree() as u32;
-        let nodes_along: &[u32] = &[5, 10, 20, 40, 80, 160];
-        let nodes_along = if extent == Extent::Quick { &nodes_along[..4] } else { nodes_along };
-        for &nodes_along in nodes_along {
+        for nodes_along in [5_u32, 10, 20, 40, 80, 160].into_iter().take(extent.pick([4, 6])) {
             let along = nodes_along.div_ceil(pieces);
             let pieces = f64::from(pieces);
             let squares = f64::from(along) * beam.height / beam.length;
