@@ -2,7 +2,6 @@
 
 use std::cmp::Reverse;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use nalgebra::Vector2;
 
@@ -154,8 +153,7 @@ fn on_fine_meshes(
     let mut finest = None;
     let mut fold: Vec<f64> = Vec::new();
     loop {
-        let system = Arc::new(System::with_mesh(&scene, meshes.mesh()?).map_err(SimulationError::from)?);
-        let mut simulation = Simulation::with_system(&scene, system)?;
+        let mut simulation = Simulation::with_mesh(&scene, meshes.mesh()?)?;
         if let Some(start) = &start {
             simulation.start_from(start).map_err(|_| StudyError::NoReference)?;
         }

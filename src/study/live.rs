@@ -1,11 +1,8 @@
 //! Reference solution that follows a dragged load: fine solutions on a few small meshes, each of which goes on from its own
 //! last state.
 
-use std::sync::Arc;
-
 use super::fine::{Effort, Meshes, errors, prepared};
 use super::reference::{MovedPoint, Reference, probes_of};
-use crate::assembly::System;
 use crate::scene::{Load, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, Status};
 
@@ -38,9 +35,9 @@ impl LiveReference {
         let (mut meshes, moved) = Meshes::of(&mut own, None, Effort::Bounded).ok()?;
         let mut levels = Vec::new();
         loop {
-            let system = Arc::new(System::with_mesh(&own, meshes.mesh().ok()?).ok()?);
-            let (dofs, nodes) = (system.dofs(), system.mesh().nodes().len());
-            levels.push(Simulation::with_system(&own, system).ok()?);
+            let level = Simulation::with_mesh(&own, meshes.mesh().ok()?).ok()?;
+            let (dofs, nodes) = (level.system().dofs(), level.mesh().nodes().len());
+            levels.push(level);
             if 4 * dofs > MAX_UNKNOWNS {
                 break;
             }
