@@ -96,7 +96,7 @@ impl Problem {
     /// # Errors
     /// The invalid key and the expected value.
     pub fn new(scene: &Scene, system: Arc<System>) -> Result<Self, SystemError> {
-        let system = system.adapt(scene)?;
+        let system = system.adapt(scene, None)?;
         Ok(Self {
             material: scene.material,
             scene_loads: scene.loads.clone(),
@@ -109,13 +109,13 @@ impl Problem {
         })
     }
 
-    /// Changes to another scene, recomputing only what has changed. A mouse spring stays attached if the mesh is the
-    /// same.
+    /// Changes to another scene, checking and recomputing only what differs `before`. A mouse spring stays attached if the
+    /// mesh is the same.
     ///
     /// # Errors
     /// Same errors as [`Self::new`]; the problem is then unchanged.
-    pub fn update(&mut self, scene: &Scene) -> Result<Change, SystemError> {
-        let system = self.system.adapt(scene)?;
+    pub fn update(&mut self, before: &Scene, scene: &Scene) -> Result<Change, SystemError> {
+        let system = self.system.adapt(scene, Some(before))?;
         let same_mesh = system.shares_mesh(&self.system);
         let same_system = Arc::ptr_eq(&system, &self.system);
         let same_probes =

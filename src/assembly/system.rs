@@ -166,16 +166,17 @@ impl System {
     /// # Errors
     /// Same errors as [`Self::new`].
     pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
-        scene.validate_all_but_geometry()?;
+        scene.validate_all_but_geometry(None)?;
         Self::of_body(Arc::new(MeshData::new(Origin::Given, mesh)), scene)?.analysed()
     }
 
     /// Returns the system of another scene: this one if it fits, one that shares its mesh if only supports differ or a
-    /// moment needs more couplings, else a new one. A mesh given by the caller is always kept.
+    /// moment needs more couplings, else a new one. A mesh given by the caller is always kept. Lists of the scene that are
+    /// equal in a valid one are not checked again.
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
-    pub fn adapt(self: &Arc<Self>, scene: &Scene) -> Result<Arc<Self>, SystemError> {
+    pub fn adapt(self: &Arc<Self>, scene: &Scene, valid: Option<&Scene>) -> Result<Arc<Self>, SystemError> {
         let same_mesh = match &self.body.origin {
             Origin::Given => true,
             Origin::Beam(beam) => scene.beam.as_ref() == Some(beam) && scene.mesh.is_none(),
@@ -184,10 +185,7 @@ impl System {
         if !same_mesh {
             return Ok(Arc::new(Self::new(scene)?));
         }
-        match &self.body.origin {
-            Origin::Given => scene.validate_all_but_geometry()?,
-            Origin::Beam(_) | Origin::File(_) => scene.validate()?,
-        }
+        scene.validate_all_but_geometry(valid)?;
         let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
         let same_supports = scene.supports.len() == self.supports.len()
             && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));

@@ -269,11 +269,22 @@ impl Scene {
         self.validate_choices()
     }
 
-    /// Checks as [`Self::validate`], but not the geometry; for a scene on a mesh given by the caller.
-    pub(crate) fn validate_all_but_geometry(&self) -> Result<(), Invalid> {
-        let mut table = self.table()?;
-        table.retain(|key, _| !["beam", "mesh"].contains(&key));
-        check(&table)?;
+    /// Checks as [`Self::validate`], but not the geometry, nor the lists that are equal in a valid scene; for a scene on an
+    /// existing mesh.
+    pub(crate) fn validate_all_but_geometry(&self, valid: Option<&Self>) -> Result<(), Invalid> {
+        let mut part = Self { beam: None, mesh: None, ..self.clone() };
+        if let Some(valid) = valid {
+            if part.supports == valid.supports {
+                part.supports.clear();
+            }
+            if part.loads == valid.loads {
+                part.loads.clear();
+            }
+            if part.probes == valid.probes {
+                part.probes.clear();
+            }
+        }
+        check(&part.table()?)?;
         self.validate_choices()
     }
 

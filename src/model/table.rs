@@ -40,7 +40,8 @@ pub(crate) fn check(scene: &Table) -> Result<(), Invalid> {
     let mut values = tables.iter().flat_map(|(table, parent, place)| table.iter().map(move |v| (v, *parent, place)));
     values.try_for_each(|((name, value), parent, place)| {
         let place = format!("{place}{name}");
-        let Some(key) = keys_of(parent).find(|key| name_of(key) == name) else {
+        let path = if parent.is_empty() { name.clone() } else { format!("{parent}.{name}") };
+        let Some(key) = KEYS.iter().find(|key| key.path == path) else {
             let known: Vec<&str> = keys_of(parent).map(name_of).collect();
             return Err(Invalid::new(place, format!("unknown key, expected one of {}", known.join(", "))));
         };
@@ -136,7 +137,11 @@ fn shown(value: &Value) -> String {
 
 /// Returns the keys of a table by its place, which is empty for the scene.
 pub(crate) fn keys_of(path: &str) -> impl Iterator<Item = &'static Key> {
-    KEYS.iter().filter(move |key| key.path.rsplit_once('.').map_or("", |(table, _)| table) == path)
+    let inside = move |key: &'static Key| match key.path.strip_prefix(path) {
+        Some(rest) if path.is_empty() => Some(rest),
+        rest => rest?.strip_prefix('.'),
+    };
+    KEYS.iter().filter(move |key| inside(key).is_some_and(|name| !name.contains('.')))
 }
 
 /// Returns the name of a key in its table.

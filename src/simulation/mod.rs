@@ -301,19 +301,23 @@ impl Simulation {
     /// # Errors
     /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
+        self.replace_scene(scene.clone())
+    }
+
+    fn replace_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let Self { body, process } = self;
-        let change = body.problem.update(scene)?;
+        let change = body.problem.update(&body.scene, &scene)?;
         if change == Change::Mesh {
-            *self = Self::with_problem(scene.clone(), body.problem.clone())?;
+            *self = Self::with_problem(scene, body.problem.clone())?;
             return Ok(());
         }
-        let before = std::mem::replace(&mut body.scene, scene.clone());
-        if scene.analysis != before.analysis {
+        let before = std::mem::replace(&mut body.scene, scene);
+        if body.scene.analysis != before.analysis {
             body.problem.set_time(0.0);
             let useful = body.is_useful_start(false);
             body.state.stop();
             if !useful {
-                body.state = start_of(scene, &body.problem);
+                body.state = start_of(&body.scene, &body.problem);
             }
             *process = Process::new(body)?;
         } else {
@@ -334,7 +338,7 @@ impl Simulation {
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
         let mut scene = self.body.scene.clone();
         change(&mut scene)?;
-        self.change_scene(&scene)
+        self.replace_scene(scene)
     }
 
     /// Attaches a mouse spring to a material point; its target is the current position until [`Self::pull_to`] is

@@ -116,7 +116,7 @@ impl Reference {
         observe: Observer<'_>,
     ) -> Result<Self, StudyError> {
         match near {
-            Some(_) => scene.validate_all_but_geometry(),
+            Some(_) => scene.validate_all_but_geometry(None),
             None => scene.validate(),
         }
         .map_err(SimulationError::from)?;
