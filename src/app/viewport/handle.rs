@@ -86,7 +86,24 @@ impl Handle {
 
 /// Returns the handle that a press at `pointer` grabs.
 pub(crate) fn at(handles: &[Handle], pointer: Pos2) -> Option<&Handle> {
-    let near = handles.iter().map(|handle| (handle.tip().distance(pointer), handle)).filter(|(d, _)| *d <= NEAR);
+    nearest(handles, NEAR, |handle| handle.tip().distance(pointer))
+}
+
+/// Returns the handle of the force arrow whose shaft a press at `pointer` grabs.
+pub(crate) fn of_shaft(handles: &[Handle], pointer: Pos2) -> Option<&Handle> {
+    /// Distance from a shaft within which a press grabs it, points.
+    const NEAR: f32 = 5.0;
+    nearest(handles, NEAR, |handle| match handle {
+        Handle::Force(Arrow { from, vector, .. }) => {
+            let along = ((pointer - *from).dot(*vector) / vector.length_sq()).clamp(0.0, 1.0);
+            pointer.distance(*from + along * *vector)
+        }
+        Handle::Moment(_) => f32::INFINITY,
+    })
+}
+
+fn nearest(handles: &[Handle], near: f32, distance: impl Fn(&Handle) -> f32) -> Option<&Handle> {
+    let near = handles.iter().map(|handle| (distance(handle), handle)).filter(|(d, _)| *d <= near);
     near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, handle)| handle)
 }
 

@@ -1,4 +1,4 @@
-//! Interaction of the pointer with the view. A drag of the tip of an arrow sets its load, a drag of the base of an
+//! Interaction of the pointer with the view. A drag of an arrow sets its load, a drag of the base of an
 //! object moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
 
 use std::ops::RangeInclusive;
@@ -141,6 +141,12 @@ impl HitTargets<'_> {
         Some(place - probe::place(self.mesh?, self.positions, point)?)
     }
 
+    /// Returns the handle that a press grabs; a base comes before the shaft that begins at it.
+    fn handle(&self, at: Pos2) -> Option<Handle> {
+        let of_shaft = || base::near(self.bases, at).is_none().then(|| handle::of_shaft(self.handles, at)).flatten();
+        handle::at(self.handles, at).or_else(of_shaft).copied()
+    }
+
     fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
         self.mesh?.pick(self.positions, self.outline, place, NEAR / self.camera.scale)
     }
@@ -250,8 +256,8 @@ impl Pointer {
 
     /// Returns the target of a press; load handles and bases come before the body, which they may cover.
     fn take(response: &Response, targets: &HitTargets<'_>, body: Interactivity, at: Pos2) -> Held {
-        if let Some(handle) = handle::at(targets.handles, at) {
-            return Held::Tip(Grip::new(*handle, at));
+        if let Some(handle) = targets.handle(at) {
+            return Held::Tip(Grip::new(handle, at));
         }
         let place = targets.place(response, at);
         if let Some(base) = base::near(targets.bases, at) {
@@ -309,7 +315,7 @@ impl Pointer {
             Held::Body(_) | Held::Base(_) => Some(CursorIcon::Grabbing),
             Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
             Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
-                self.over_tip = handle::at(targets.handles, at).copied();
+                self.over_tip = targets.handle(at);
                 if self.over_tip.is_some() {
                     return CursorIcon::Move;
                 }
