@@ -8,11 +8,13 @@ use egui_plot::{
 use crate::app::diagnosis::drift_text;
 use crate::app::interface::*;
 use crate::app::language::bound_percent;
+use crate::app::session::Session;
 use crate::app::session::clock::FRAMES;
 use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
 use crate::app::widgets::plot::{X_AXIS, fixed, marker, segments};
 use crate::element::ELEMENTS;
+use crate::exact_beam::error_percent;
 use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
 use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};
 
@@ -91,8 +93,9 @@ impl Budget {
         }
     }
 
-    /// Shows limits and plot for the lab's scene.
-    pub(crate) fn show(&mut self, ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
+    /// Shows limits and plot for the scene of a session.
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let scene = session.scene();
         let Self { study: fact, measured, is_hidden, demand, messages } = self;
         let study = fact.known().filter(|_| !*is_hidden).map(|(_, study)| study);
         let meeting = study.map(|study| meeting(study, *demand)).unwrap_or_default();
@@ -108,6 +111,7 @@ impl Budget {
                 _ => meeting,
             },
             current: fact.is_of(scene),
+            shown: shown_place(session),
             progress: fact.progress().filter(|_| measured.is_some()),
             error: fact.failure(scene),
         };
@@ -145,6 +149,8 @@ struct BudgetView<'a> {
     best: Option<&'a Measurement>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
+    /// Position in the plot of the result that the window shows, which may have a setting that the study has not.
+    shown: Option<[f64; 2]>,
     /// Fraction done and current measurement, while a study is in progress.
     progress: Option<(f64, &'a Sentence)>,
     /// Reason for which there is no study.
@@ -157,16 +163,28 @@ impl BudgetView<'_> {
         self.study.map_or(f64::INFINITY, |study| study.error_bound(m))
     }
 
-    /// Returns the position of a setting in the plot: the logarithms of time and error.
+    /// Returns the position of a setting in the plot.
     fn place(&self, m: &Measurement) -> [f64; 2] {
-        let error = self.error(m).clamp(SMALLEST_ERROR, LARGEST_ERROR);
-        [frame_ms(m).max(f64::MIN_POSITIVE).log10(), error.log10()]
+        place(frame_ms(m), self.error(m))
     }
 
     /// Returns the action that applies a measured setting.
     fn apply(&self, m: &Measurement) -> Action {
         Action::Apply(Box::new(m.apply(self.scene)))
     }
+}
+
+/// Returns a position in the plot: the logarithms of a time, ms, and an error, percent.
+fn place(time: f64, error: f64) -> [f64; 2] {
+    [time.max(f64::MIN_POSITIVE).log10(), error.clamp(SMALLEST_ERROR, LARGEST_ERROR).log10()]
+}
+
+/// Returns the position in the plot of a session's solve from rest; `None` until its time and error are known.
+fn shown_place(session: &Session) -> Option<[f64; 2]> {
+    let solve = session.timed_from_rest().filter(|solve| solve.is_solved)?;
+    let first = session.known_reference()?.first()?;
+    let error = error_percent(solve.displacement?, first.displacement)?;
+    Some(place(1e3 * solve.timings.total().as_secs_f64(), first.error_bound(error)))
 }
 
 /// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
@@ -484,8 +502,9 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
                 .map(|most| most.unwrap_or_default().log10());
             plot.vline(VLine::new(tr("at most"), most_time).color(limit).style(style));
             plot.hline(HLine::new(tr("at most"), most_error).color(limit).style(style));
-            if let Some(own) = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)) {
-                let cross = Points::new(tr("current"), vec![place(own)]).shape(MarkerShape::Plus);
+            let applied = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)).map(|m| place(m));
+            if let Some(own) = applied.or(budget.shown.filter(|_| budget.current)) {
+                let cross = Points::new(tr("current"), vec![own]).shape(MarkerShape::Plus);
                 plot.points(cross.color(text).radius(9.0));
             }
             if let Some(best) = budget.best {

@@ -46,7 +46,7 @@ impl Measure {
                     limits::show(ui, session, base, actions);
                 }
             }
-            MeasureTab::HowFast => self.budget.show(ui, scene, actions),
+            MeasureTab::HowFast => self.budget.show(ui, session, actions),
             MeasureTab::LoadCurve => {
                 load_curve::show(ui, session, first_probe(session.drawn()), view.curve_plot, actions)
             }
