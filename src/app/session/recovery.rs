@@ -81,20 +81,20 @@ pub struct RecoveryCopies {
 }
 
 impl RecoveryCopies {
-    /// Locks a free file in `folder`, which is created if it does not exist, and reads the edits that a crashed window
-    /// has left there.
+    /// Locks the first free file in `folder`, which is created if it does not exist, and reads the edits that a crashed
+    /// window has left there, also in a file after it.
     ///
     /// # Errors
     /// Error of the operating system, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
-        let (mut left, mut unreadable) = (None, Vec::new());
+        let (mut own, mut left, mut unreadable) = (None, None, Vec::new());
         for number in 0..PLACES {
+            if own.is_some() && !settings::has_copy(folder, number) {
+                continue;
+            }
             let Some(place) = settings::lock(folder, number)? else { continue };
             match Unsaved::read(&place.file) {
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                    let (left, edits) = left.unzip();
-                    return Ok((Self { place, written: None, last: None, left, unreadable }, edits));
-                }
+                Err(error) if error.kind() == io::ErrorKind::NotFound => own = own.or(Some(place)),
                 Ok(edits) => left = left.or(Some((place, edits))),
                 Err(reason) => unreadable.push(fill!(
                     "%{file} has unsaved changes, but cannot be read: %{reason}",
@@ -103,7 +103,9 @@ impl RecoveryCopies {
                 )),
             }
         }
-        Err(io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display())))
+        let is_full = || io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display()));
+        let (left, edits) = left.unzip();
+        Ok((Self { place: own.ok_or_else(is_full)?, written: None, last: None, left, unreadable }, edits))
     }
 
     /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
@@ -179,9 +181,11 @@ mod tests {
         assert_eq!(left, None, "another window offers it");
         next.discard_left(Some(&edits("article", -3.0))).unwrap();
         next.keep(None).unwrap();
-        drop(next);
+        let (mut after, _) = RecoveryCopies::open(&folder).unwrap();
+        after.keep(edits("cantilever", -4.0).parts()).unwrap();
+        drop((next, after));
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
-        assert_eq!(left, None);
+        assert_eq!(left, Some(edits("cantilever", -4.0)), "its file is after a free one");
     }
 
     #[test]

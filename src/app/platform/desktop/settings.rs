@@ -25,6 +25,11 @@ pub(crate) struct CopyPlace {
     _lock: File,
 }
 
+/// Returns `true` if `folder` has a copy with this number.
+pub(crate) fn has_copy(folder: &Path, number: usize) -> bool {
+    folder.join(format!("{number}.toml")).exists()
+}
+
 /// Locks the file with this number in `folder`, which is created if it does not exist; `None` if another window has
 /// locked it.
 pub(crate) fn lock(folder: &Path, number: usize) -> std::io::Result<Option<CopyPlace>> {
