@@ -284,9 +284,12 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Returns limits that software OpenGL also supports, except for the texture size, which is the adapter's.
+    /// Returns limits that software OpenGL also supports, except for the sizes of textures and buffers, which are the
+    /// adapter's.
     fn limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
-        wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits())
+        let own = adapter.limits();
+        let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(own.clone());
+        wgpu::Limits { max_buffer_size: own.max_buffer_size, ..limits }
     }
 
     /// Creates a device with these limits.

@@ -35,9 +35,13 @@ pub(crate) struct DisplayGeometry {
 
 impl DisplayGeometry {
     pub(crate) fn new(mesh: &Mesh) -> Self {
+        /// Largest number of elements whose curved sides and fields are drawn in several pieces: those of more elements
+        /// are too small to be seen, and fill hundreds of megabytes of the adapter.
+        const MAX_CURVED: usize = 25_000;
         let entry = mesh.element().entry();
-        let (stride, pieces) = (entry.nodes.len(), entry.drawn_pieces);
-        let pattern = CellPattern::new(entry);
+        let pieces = if mesh.element_count() > MAX_CURVED { 1 } else { entry.drawn_pieces };
+        let stride = entry.nodes.len();
+        let pattern = CellPattern::new(entry, pieces);
         let point_weights = pattern.point_weights.clone();
         let mut drawing = Self { stride, pieces, point_weights, boundary: mesh.outline(), ..Self::default() };
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
@@ -137,8 +141,8 @@ struct CellPattern {
 }
 
 impl CellPattern {
-    fn new(entry: &ElementType) -> Self {
-        let lattice = (entry.cell.lattice)(entry.drawn_pieces);
+    fn new(entry: &ElementType, pieces: u32) -> Self {
+        let lattice = (entry.cell.lattice)(pieces);
         let triangle_at = |piece: &[u32]| {
             let found = lattice.triangles.iter().position(|t| piece.iter().all(|p| t.contains(p)));
             found.unwrap_or_default() as u32
