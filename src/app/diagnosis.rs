@@ -5,6 +5,7 @@ use crate::app::language::sentence;
 use crate::app::prelude::*;
 use crate::app::readout::Readout;
 use crate::app::session::facts::first_probe;
+use crate::app::session::object_name;
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 
@@ -59,17 +60,7 @@ pub(crate) struct Errors {
     /// The error with the largest error of the reference added.
     pub bound: Option<f64>,
     pub linear: Option<f64>,
-    /// Error of a solve from rest that is accepted early, if it differs from the state's own: iterations from another
-    /// state are closer or farther.
-    pub from_rest: Option<f64>,
     pub source: Option<ErrorSource>,
-}
-
-impl Errors {
-    /// Returns the larger one of the bound of the error and the error from rest.
-    pub(crate) fn worst(&self) -> Option<f64> {
-        self.bound.map(|bound| self.from_rest.map_or(bound, |from_rest| from_rest.max(bound)))
-    }
 }
 
 /// Compares the state, and the state of linear theory, with the reference solution. Returns no errors while the body
@@ -101,10 +92,7 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
     let linear = behind.map_or_else(|| input.session.linear().and_then(first_probe), |behind| behind.linear);
     let linear = percent_of(linear).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
-    let accepted = input.session.timed_from_rest().filter(|_| *simulation.status() == Status::Accepted);
-    let from_rest = accepted.and_then(|solve| error_percent(solve.displacement?, first.displacement));
-    let from_rest = from_rest.filter(|error| own.is_some_and(|own| percent(own) != percent(*error)));
-    Errors { own, bound: own.map(|error| first.error_bound(error)), linear, from_rest, source }
+    Errors { own, bound: own.map(|error| first.error_bound(error)), linear, source }
 }
 
 /// Errors above this value, percent, are large: they need a remedy.
@@ -116,14 +104,9 @@ const COARSE: f64 = 0.25;
 /// Returns sentences about cuts through the mesh, about points that act on a node, and about held points too close to
 /// others, with the numbers of loads and supports in the panel.
 fn notes_on_mesh(simulation: &Simulation) -> Vec<Sentence> {
-    let named = |key: &str| match key.split_once('.').and_then(|(kind, i)| Some((kind, i.parse::<usize>().ok()?))) {
-        Some(("support", i)) => fill!("Support %{n}", n = i + 1),
-        Some(("load", i)) => fill!("Load %{n}", n = i + 1),
-        _ => key.to_owned(),
-    };
     let moved = moved_points(simulation.scene(), simulation.mesh());
-    let moved = moved.into_iter().map(|point| Sentence::from(&MovedPoint { key: named(&point.key), ..point }));
-    let crowded = simulation.system().crowded_supports(|i| named(&format!("support.{i}")));
+    let moved = moved.into_iter().map(|point| Sentence::from(&MovedPoint { key: object_name(&point.key), ..point }));
+    let crowded = simulation.system().crowded_supports(|i| object_name(&format!("support.{i}")));
     simulation.system().seams().iter().cloned().chain(moved).chain(crowded).collect()
 }
 
@@ -139,11 +122,10 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
     let strain = quality.deformation.max_strain;
-    let strained = strain_warning(strain).map(|_| fill!("strain %{strain}", strain = percent(100.0 * strain)));
+    let strained = strain_warning(strain).map(|_| fill!("nodal strain %{strain}", strain = percent(100.0 * strain)));
     let known = errors.own.zip(input.reference.and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
-    let from_rest = errors.from_rest.map(|error| fill!("from rest %{error}", error = percent(error)));
-    let doubts: Vec<String> = from_rest.into_iter().chain(strained).chain(coarse).collect();
+    let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();
     if !doubts.is_empty() {
         return Some(doubts.join(" · "));
     }
@@ -163,7 +145,7 @@ pub(crate) fn coarse_text(own: f64, reference: &ProbeReference) -> Option<String
 /// reference hides it.
 pub(crate) fn error_text(own: Option<f64>, bound: Option<f64>, is_live: bool) -> String {
     /// Smallest ratio of the bound to an error that says nothing, and smallest bound, percent, that matters.
-    const HIDDEN: [f64; 2] = [5.0, 0.01];
+    const HIDDEN: [f64; 2] = [3.0, 0.01];
     let Some(own) = own else { return UNKNOWN.to_owned() };
     match bound {
         Some(bound) if bound > HIDDEN[0] * own && bound > HIDDEN[1] => format!("≤ {}", format::bound_percent(bound)),
@@ -357,15 +339,8 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
     lines.extend(notes_on_mesh(simulation).iter().map(|note| sentence(&said(note))));
     let (residual, asked) = (number(two_digits(simulation.residual())), number(input.scene.solver.tolerance));
     if *simulation.status() == Status::Accepted {
-        let is_from_rest =
-            input.session.timed_from_rest().is_some_and(|solve| solve.displacement == first_probe(simulation));
-        let text = if is_from_rest {
-            "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
-             tolerance is %{asked}."
-        } else {
-            "Accepted after %{iterations} from the state before, as the scene asks: the relative residual is \
-             %{residual}, the tolerance is %{asked}. Reset begins at rest."
-        };
+        let text = "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
+                    tolerance is %{asked}.";
         lines.push(fill!(text, iterations = count(simulation.iterations(), "iteration"), residual, asked));
     }
     let part = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0);
@@ -442,13 +417,9 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         return restart(&said(&elsewhere), "Load from rest");
     }
     let own = errors.own.filter(|&error| is_large(error));
-    let from_rest = errors.from_rest.filter(|&error| is_large(error) && own.is_none_or(|own| error > own));
-    let off = percent(from_rest.or(own)?);
-    if from_rest.is_some() || errors.source == Some(ErrorSource::MeshOrIteration) {
-        let text = match from_rest {
-            Some(_) => "%{error} error from rest: the iteration is stopped early.",
-            None => "%{error} error: the iteration is stopped early.",
-        };
+    let off = percent(own?);
+    if errors.source == Some(ErrorSource::MeshOrIteration) {
+        let text = "%{error} error: the iteration is stopped early.";
         let (offer, label, method) = match runs_away(input) {
             true => ("Use newton", "Method", MethodKind::Newton),
             false => ("Iterate to the tolerance", "Accept after", scene.solver.method),

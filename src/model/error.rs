@@ -21,7 +21,7 @@ use crate::sentence::Sentence;
 pub struct Invalid {
     /// Key as in `--set`: `load.0.force`.
     pub key: String,
-    message: Sentence,
+    pub(crate) message: Sentence,
 }
 
 impl Invalid {

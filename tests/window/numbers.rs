@@ -68,7 +68,7 @@ impl Shown {
 /// Returns the start of the error in the bar: an error far below that of the reference is a bound.
 fn headline(error: f64, probe: &Value) -> String {
     let bound = error + probe["reference_error_percent"].as_f64().unwrap_or(0.0);
-    let is_hidden = bound > 0.01 && bound > 5.0 * error;
+    let is_hidden = bound > 0.01 && bound > 3.0 * error;
     format!("ERROR {}", if is_hidden { format!("≤ {}", bound_percent(bound)) } else { percent(error) })
 }
 

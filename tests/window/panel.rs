@@ -274,13 +274,13 @@ fn remedies_are_one_click_away() {
     let mut ui = open("article");
     settle(&mut ui);
     let error = percent(solve_error(&["article"]));
-    ui.get_by_label(&format!("ERROR {error} mesh · strain 56 %"));
+    ui.get_by_label(&format!("ERROR {error} mesh · nodal strain 56 %"));
     ui.get_by_label(&format!("{error} error: three-node triangles lock in bending."));
     ui.click("Try t6 with newton");
     assert_eq!(ui.scene().element().id(), "t6");
     settle(&mut ui);
     assert_eq!(*ui.simulation().status(), Status::Converged);
-    ui.get_by_label("ERROR 1.5 % strain 48 %");
+    ui.get_by_label("ERROR 1.5 % nodal strain 48 %");
     assert!(!ui.says("lock in bending"));
 
     let mut ui = open("cantilever");
@@ -316,7 +316,7 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     assert_eq!((reference.first(), reference.outline.len()), (None, 0));
     let mut ui = open_with("article", scene);
     settle(&mut ui);
-    ui.expect(&["no reference · strain 21 %"]);
+    ui.expect(&["no reference · nodal strain 21 %"]);
 
     // The equilibrium of a straight column above its buckling load is unstable, and has no error either.
     let set = ["load.0.force=[-520,0]", "solver.method=\"newton\""];

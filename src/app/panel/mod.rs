@@ -240,7 +240,7 @@ fn solver(ui: &mut Ui, panel: &mut Panel<'_>) {
     }
 }
 
-const ACCEPT_AFTER: NumberRow = NumberField::new("Accept after", keys::range("solver.accept_after"), 0.0..=20.0)
+const ACCEPT_AFTER: NumberRow = NumberField::new("Accept after", keys::range("solver.accept_after"), 1.0..=20.0)
     .whole()
     .tip("Iterations after which a result is accepted although it has not converged; 0: iterate to the tolerance.")
     .row(|s| f64::from(s.solver.accept_after), |s, v| s.solver.accept_after = v as u32);

@@ -218,7 +218,8 @@ impl Session {
         let request = SolveRequest {
             scene: self.present.scene.clone(),
             base,
-            from_rest: std::mem::take(&mut self.background.from_rest),
+            // A result that is accepted early would depend on the state before.
+            from_rest: std::mem::take(&mut self.background.from_rest) || self.scene().solver.accept_after > 0,
             iterations: self.background.iterations.take().or(is_made_here.then_some(0)),
             is_displayed: true,
         };

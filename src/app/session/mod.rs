@@ -26,6 +26,7 @@ use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::solve::{Equations, MAX_UNKNOWNS, Model, Quality, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
+use crate::assembly::SystemError;
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::simulation::{Equilibrium, SimulationError};
@@ -340,12 +341,11 @@ impl Session {
     /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background
     /// are reported later as a [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
-        let refused = |error: SimulationError| Sentence::from(&error);
         let before = self.present.clone();
         let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
         match edit {
             Edit::Scene(label, scene) => {
-                self.set_scene(*scene).map_err(refused)?;
+                self.set_scene(*scene).map_err(refusal)?;
                 self.record(before, Some(label));
                 self.background.before.iter_mut().for_each(|before| before.label = Some(label));
             }
@@ -360,20 +360,20 @@ impl Session {
                         Version { scene: document.original.clone(), document }
                     }
                 };
-                self.replace(version).map_err(refused)?;
+                self.replace(version).map_err(refusal)?;
                 self.record(before, None);
             }
             Edit::Restore(version) => {
-                self.replace(*version).map_err(refused)?;
+                self.replace(*version).map_err(refusal)?;
                 self.record(before, None);
             }
             Edit::Undo => {
                 let step = self.undo.undo(before);
-                self.go_to(step).map_err(refused)?;
+                self.go_to(step).map_err(refusal)?;
             }
             Edit::Redo => {
                 let step = self.undo.redo(before);
-                self.go_to(step).map_err(refused)?;
+                self.go_to(step).map_err(refusal)?;
             }
         }
         // With other settings an exploded body would still be kilometres long.
@@ -421,6 +421,7 @@ impl Session {
         (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
         self.note_size();
         self.scene_changed(&before);
+        self.begin_accepted_at_rest();
         let known = self.model.linear.take();
         self.model.linear = solve_linear(self.model.simulation.scene(), self.model.simulation.system(), known);
         if is_another_document {
@@ -867,6 +868,14 @@ impl Session {
         self.is_from_rest = false;
         self.model.simulation.release();
         self.playback.each(Simulation::release);
+        self.begin_accepted_at_rest();
+    }
+
+    /// Goes back to rest if results are accepted early, which would depend on the state before.
+    fn begin_accepted_at_rest(&mut self) {
+        if self.scene().solver.accept_after > 0 && !self.is_motion() {
+            self.reset();
+        }
     }
 
     /// Displays the recorded moment of a motion that is closest to `time`, s, and pauses there.
@@ -896,4 +905,24 @@ impl Session {
 /// Returns `true` if two scenes have the same mesh.
 pub(crate) fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
     scene.beam == other.beam && scene.mesh == other.mesh
+}
+
+/// Returns the name of the support or load that a key of a scene belongs to, with its number in the panel, or the key.
+pub(crate) fn object_name(key: &str) -> String {
+    let mut parts = key.split('.');
+    match (parts.next(), parts.next().and_then(|i| i.parse::<usize>().ok())) {
+        (Some("support"), Some(i)) => fill!("Support %{n}", n = i + 1),
+        (Some("load"), Some(i)) => fill!("Load %{n}", n = i + 1),
+        _ => key.to_owned(),
+    }
+}
+
+/// Returns the reason for which an edit was refused, in the words of the panel.
+fn refusal(error: SimulationError) -> Sentence {
+    match error {
+        SimulationError::System(SystemError::Scene(invalid)) => {
+            Sentence::located(object_name(&invalid.key), invalid.message.clone())
+        }
+        other => (&other).into(),
+    }
 }

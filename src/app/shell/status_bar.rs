@@ -88,18 +88,14 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let sought = input.session.facts().reference.progress().filter(|_| errors.own.is_none());
     let doubt = doubt(input, errors);
     let is_without_reference = is_without_reference(input);
-    // The error from rest is in the colour, and is no doubt if it is small.
-    let is_doubtful = self::doubt(input, &Errors { from_rest: None, ..*errors }).is_some();
+    let is_doubtful = doubt.is_some();
     let is_late = input.session.live().is_some_and(|live| live.is_late(input.shown));
-    let color = match error_color(palette, errors.worst()) {
+    let color = match error_color(palette, errors.bound) {
         _ if is_late => palette.secondary,
         color if is_doubtful && color == palette.good => palette.warning,
         color => color,
     };
     let of_reference = error_tip(input.reference, input.reference_failure);
-    let from_rest = errors.from_rest.map(|_| {
-        tr("From rest: the error of a solve from rest. A result that is accepted early depends on the state before it")
-    });
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
     let error = BarNumber {
         word: match (doubt, errors.source) {
@@ -119,7 +115,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
         ..BarNumber::new(
             ERROR,
             error_text(errors.own, errors.bound, input.session.live().is_some()),
-            [Some(&*of_reference), Some(beside), from_rest].into_iter().flatten().collect::<Vec<_>>().join("\n"),
+            format!("{of_reference}\n{beside}"),
             color,
         )
     };

@@ -479,6 +479,8 @@ impl BodyView {
     ) -> Margins {
         /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
+        /// Largest room for arrows on a side, relative to the view: the body keeps half of it.
+        const LARGEST: f64 = 0.25;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         if content.is_apart() || overlay::is_tiny(content.options, size) {
             return least;
@@ -497,11 +499,11 @@ impl BodyView {
             // A tip must not cover the colour bar.
             let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
             let below = if is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
-            let beyond = |outside: f32| f64::from((outside + BEYOND).max(0.0));
+            let beyond = |outside: f32, view: f64| f64::from((outside + BEYOND).max(0.0)).min(LARGEST * view);
             Margins {
-                sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x))),
-                top: margins.top.max(least.top + beyond(-tip.y)),
-                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below)),
+                sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x), view[0])),
+                top: margins.top.max(least.top + beyond(-tip.y, view[1])),
+                bottom: margins.bottom.max(least.bottom + beyond(tip.y - size.y + below, view[1])),
             }
         })
     }

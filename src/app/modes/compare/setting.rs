@@ -80,8 +80,12 @@ impl PaneSetting {
             stepping: None,
         }
         .apply(scene);
-        // The pane counts its own iterations.
-        own.solver.accept_after = if self.iterations.is_some() { 0 } else { scene.solver.accept_after };
+        // A pane with a number of iterations counts them; other settings than the scene's are iterated to the tolerance.
+        let is_scenes = |own: &Scene| {
+            (own.solver.method, own.element(), &own.beam) == (scene.solver.method, scene.element(), &scene.beam)
+        };
+        let stops = self.iterations.is_none() && is_scenes(&own);
+        own.solver.accept_after = if stops { scene.solver.accept_after } else { 0 };
         own.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
         own
     }
