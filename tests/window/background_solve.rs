@@ -92,7 +92,7 @@ fn every_edit_of_a_large_model_ends_with_the_result_of_solve() {
     let mut ui = open("cantilever");
     agrees_with_solve(&mut ui);
     let edits: [(&str, Edit); 9] = [
-        ("a load", &|ui| ui.type_into("Force", "700")),
+        ("a load", &|ui| ui.type_into("Force", "700 N")),
         ("a direction", &|ui| ui.type_into("Direction", "-60")),
         ("a method", &|ui| pick(ui, "Method", "newton")),
         ("an element", &|ui| pick(ui, "Element", "q4")),
@@ -129,7 +129,7 @@ fn a_body_solved_in_the_background_is_paused_and_stepped() {
     assert_eq!(iterations(&mut ui), all);
     ui.key_press(Key::N);
     settle(&mut ui);
-    ui.type_into("Force", "12000");
+    ui.type_into("Force", "12000 N");
     agrees_with_solve(&mut ui);
 }
 
@@ -157,7 +157,7 @@ fn cancel_restores_the_state_before_the_edit() {
     assert!(ui.query_by_label("Cancel").is_none(), "what nobody waits for is still named");
     agrees_with_solve(&mut ui);
     assert!(seen(&ui) == before && ui.state().frame().positions == shown);
-    ui.type_into("Force", "500");
+    ui.type_into("Force", "500 N");
     agrees_with_solve(&mut ui);
     // The key cancels during the search for an equilibrium, too.
     let before = seen(&ui);

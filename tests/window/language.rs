@@ -383,7 +383,7 @@ fn entries_are_chinese(ui: &mut Ui, picker: &str) {
 fn scenes_of_every_kind_are_in_chinese() {
     let size = [1280.0, 2000.0];
     let mut ui = settled("cantilever", size);
-    ui.type_into(&zh("Force"), "9000");
+    ui.type_into(&zh("Force"), "9000 N");
     assert_chinese(&ui, "diverged");
     for id in ["jump", "bracket", "cook", "snap"] {
         let mut ui = settled(id, size);

@@ -44,14 +44,14 @@ fn typed_values_take_effect_also_beyond_the_slider() {
         (&[("Force", "0.5 kN")], [0.0, -500.0]),
         (&[("Direction", "270")], [0.0, -500.0]),
         (&[("Direction", "0")], [500.0, 0.0]),
-        (&[("Force", "0"), ("Direction", "90"), ("Force", "2e7")], [0.0, 2e7]),
+        (&[("Force", "0 N"), ("Direction", "90"), ("Force", "2e7 N")], [0.0, 2e7]),
     ] {
         ui.type_all(fields);
         let off = Vector2::from(ui.force()) - Vector2::from(force);
         assert!(off.norm() < 1e-9, "{fields:?}: {off}");
     }
     ui.type_into("Gravity", "9.81");
-    ui.type_into("Moment", "500");
+    ui.type_into("Moment", "500 N m");
     assert_eq!(ui.scene().loads[1..], [Load::gravity([0.0, -9.81]), Load::moment("right", 500.0)]);
     ui.type_all(&[("Young E", "2 MPa"), ("Poisson ν", "0.45"), ("Density", "1200"), ("Thickness t", "0.2")]);
     let m = ui.scene().material;
@@ -69,13 +69,13 @@ fn typed_values_take_effect_also_beyond_the_slider() {
 #[test]
 fn values_out_of_range_are_refused_with_a_message() {
     let cases = [
-        ("Force", "1e16", "expected -1e15 to 1e15 N, got 1e16"),
+        ("Force", "1e16 N", "expected -1e15 to 1e15 N, got 1e16"),
         ("Force", "lots", "got \u{201c}lots\u{201d}"),
         ("Force", "0,5", "is not a number: numbers look like"),
-        ("Force", "30,000", "can be read in two ways: write 30000 or 30.000"),
+        ("Force", "30,000 N", "can be read in two ways: write 30000"),
         ("Force", "12 Pa", "is a pressure (Pa); expected a force (N)"),
         ("Direction", "400", "expected -360 to 360 °, got 400"),
-        ("Gravity", "1e9", "m/s², got 1e9"),
+        ("Gravity", "1e9 m/s²", "m/s², got 1e9"),
         ("Moment", "1e30", "N m, got 1e30"),
         ("Young E", "0", "Pa, got 0"),
         ("Young E", "nan", "got \u{201c}nan\u{201d}"),
@@ -150,7 +150,7 @@ fn a_refused_text_stays_for_correction() {
     }
     assert!(!ui.says("expected") && (ui.force()[1] + 4e3).abs() < 1e-6);
     // A negative force is one in the opposite direction.
-    ui.type_into("Force", "-5");
+    ui.type_into("Force", "-5 N");
     assert_eq!(ui.force(), [0.0, 5.0]);
 }
 
@@ -284,7 +284,7 @@ fn remedies_are_one_click_away() {
     assert!(!ui.says("lock in bending"));
 
     let mut ui = open("cantilever");
-    ui.type_into("Force", "9000");
+    ui.type_into("Force", "9000 N");
     assert!(matches!(ui.simulation().status(), Status::Diverged(_)));
     ui.wait_until("the reason", |ui| ui.says("Does not converge: \u{3c1} = 4.5 > 1"));
     assert!(!ui.says("Diverged"), "one message has the remedy");
@@ -343,7 +343,7 @@ fn odd_results_are_explained() {
     ui.edit(|scene| *scene = scene.clone().with_element(ElementKind::T3).with_cells(80, 8));
     assert!(!ui.says("inverted elements"));
     pick(&mut ui, "Method", "linear");
-    ui.type_into("Force", "1e13");
+    ui.type_into("Force", "1e13 N");
     assert_eq!(*ui.simulation().status(), Status::Converged);
     ui.expect(&["inverted elements"]);
     ui.click("explain");
@@ -433,7 +433,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
     let center = ui.state().view_rect().center();
     (0..5_u8).for_each(|step| ui.move_to(center + vec2(13.7 * f32::from(step), 31.3)));
     let before = ui.camera();
-    ui.type_into("Force", "30");
+    ui.type_into("Force", "30 N");
     ui.hover(center);
     assert!(ui.camera().scale > 1.1 * before.scale, "{before:?} {:?}", ui.camera());
 }

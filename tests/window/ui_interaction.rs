@@ -74,7 +74,7 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     assert!(before[3].starts_with("21 since the last change, residual"), "{before:?}");
     assert!(before[4].contains("ρ = 0.47"), "{before:?}");
     let scale = ui.camera().scale;
-    ui.type_into("Force", "176000");
+    ui.type_into("Force", "176000 N");
     assert!(matches!(ui.simulation().status(), Status::Diverged(_)));
     assert!((ui.camera().scale / scale - 1.0).abs() < 0.3, "the view follows the iterates");
     assert_eq!(ui.query_all_by_label("equilibrium at 30 kN; 176 kN not reached").count(), 2);
@@ -148,7 +148,7 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
     // The number can be typed; beyond ρ = 1 a result is said to diverge if it runs on.
     ui.type_into("Accept after", "3");
     assert_eq!(ui.scene().solver.accept_after, 3);
-    ui.type_into("Force", "60000");
+    ui.type_into("Force", "60000 N");
     settle(&mut ui);
     ui.get_by_label("Accepted · 3 iterations · diverges if it runs on");
     // It does not depend on the state before.
@@ -165,7 +165,7 @@ fn an_accepted_result_has_an_error_and_an_explanation() {
 fn iterations_are_counted_from_rest() {
     let mut ui = open("article");
     for force in ["32000", "33000", "32000"] {
-        ui.type_into("Force", force);
+        ui.type_into("Force", &format!("{force} N"));
         settle(&mut ui);
         let solved = solve_json(&["article", "--set", &format!("load.0.force=[0,-{force}]")]);
         ui.get_by_label(&format!("Converged · stable · {} iterations", solved["iterations"]));
@@ -293,7 +293,7 @@ fn edits_are_undone_and_redone() {
 fn values_go_back_to_those_of_the_scene() {
     let mut ui = open("cantilever");
     for (label, text) in
-        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6"), ("Density", "77"), ("Cells along", "40")]
+        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6 Pa"), ("Density", "77"), ("Cells along", "40")]
     {
         unfold(&mut ui, label);
         for by in [Some(Role::Slider), Some(Role::SpinButton), None] {
@@ -676,7 +676,7 @@ fn unsaved_edits_are_asked_about() {
     };
     assert!(may_close(&mut ui), "nothing is edited");
     closes.set(false);
-    ui.type_into("Force", "700");
+    ui.type_into("Force", "700 N");
     let edited = ui.scene().clone();
     let folder = tempfile::tempdir().unwrap();
     let [dropped, kept] = ["dropped.toml", "kept.toml"].map(|name| folder.path().join(name));
@@ -706,8 +706,8 @@ fn a_beam_gets_another_length_and_height() {
     let mut ui = open("cantilever");
     let before = ui.scene().clone();
     let beam = before.beam.clone().unwrap();
-    ui.type_into("Length", "12");
-    ui.type_into("Height", "1.5");
+    ui.type_into("Length", "12 m");
+    ui.type_into("Height", "1.5 m");
     let after = ui.scene().beam.clone().unwrap();
     let cells = |along: f64, across: f64| {
         [along * f64::from(beam.cells[0]), across * f64::from(beam.cells[1])].map(|n| n.round().max(1.0) as u32)
@@ -757,7 +757,7 @@ fn loads_and_supports_are_added_and_removed() {
     ui.open("Selected force");
     ui.get_by_label_contains("Force 2:").click();
     ui.run();
-    ui.type_into("Force", "10");
+    ui.type_into("Force", "10 N");
     let [Load::Force { force: left, .. }, Load::Force { force: second, .. }] = ui.scene().loads[..] else {
         unreachable!("{:?}", ui.scene().loads)
     };
@@ -880,7 +880,7 @@ fn enter_in_the_gallery_answers_no_question() {
     let question = format!("Save the changes to \u{201c}{}\u{201d}?", own.path().file_name().unwrap().display());
     std::fs::write(&own, ui.scene().to_toml().unwrap()).unwrap();
     ui.drop_file(own.path());
-    ui.type_into("Force", "700");
+    ui.type_into("Force", "700 N");
     let edited = ui.scene().clone();
     for answer in ["Escape", "Cancel", "Discard", "Save"] {
         ui.open("Scene");
@@ -919,7 +919,7 @@ fn a_file_changed_by_another_program_is_not_overwritten_without_a_question() {
     let mut ui = open("article");
     let text = || std::fs::read_to_string(&path).unwrap();
     ui.drop_file(&path);
-    ui.type_into("Force", "700");
+    ui.type_into("Force", "700 N");
     let edited = ui.scene().clone();
     std::fs::write(&path, &theirs).unwrap();
     // Cancelled, nothing is written. Reloaded; undo restores the edits, which are then saved without a question.

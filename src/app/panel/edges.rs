@@ -11,7 +11,7 @@ use crate::app::viewport::menu::{
     self, acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand,
 };
 use crate::app::viewport::moment_arrow::moment_range;
-use crate::app::widgets::number_field::read;
+use crate::app::widgets::number_field::{FirstText, read};
 use crate::study::moved_points;
 
 /// Name of the section, with which its messages are kept.
@@ -146,12 +146,16 @@ fn coordinates(
             let wide = widened.as_mut().map(|width| (tr("width"), width, limits::WIDTH, WIDTH));
             for (name, value, limit, tip) in fields.into_iter().chain(wide) {
                 let label = ui.label(name);
+                let first = FirstText::of(ui, ui.scope_id().with(name), editable(*value, "m"));
                 let field = DragValue::new(value)
                     .speed(0.0)
                     .update_while_editing(false)
                     .custom_formatter(|v, _| editable(v, "m"))
-                    .custom_parser(|text| read(text, limit).map_err(|reason| refused.replace(Some(reason))).ok());
-                ui.add(field).labelled_by(label.id).on_hover_text(tr(tip));
+                    .custom_parser(|text| {
+                        read(text, &first.text, limit).map_err(|reason| refused.replace(Some(reason))).ok()
+                    });
+                let field = ui.add(field).labelled_by(label.id).on_hover_text(tr(tip));
+                first.keep(ui, &field);
             }
         });
     });

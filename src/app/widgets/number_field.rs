@@ -88,7 +88,8 @@ impl NumberField {
         let (mut is_reset, mut is_committed) = (false, false);
         let tip = self.full_tip(original);
         let refused = RefCell::new(None);
-        let (shown, unit) = (editable(value, self.limit.unit), self.limit.unit);
+        let unit = self.limit.unit;
+        let first = FirstText::of(ui, Id::unique((self.label, "shown")), editable(value, unit));
         // In the frame after Escape egui reads the typed text once more.
         let escape_id = Id::unique((self.label, "escape"));
         let refused_id = Id::unique((self.label, "refused"));
@@ -104,14 +105,15 @@ impl NumberField {
                         .custom_formatter(|v, _| editable(v, unit))
                         .custom_parser(|text| {
                             // The text is unchanged, so the value keeps the digits that are not shown.
-                            if has_escaped || text.trim() == shown {
+                            if has_escaped || text.trim() == first.text {
                                 return Some(value);
                             }
-                            let number = read(text, self.limit).and_then(|number| self.check(number));
+                            let number = read(text, &first.text, self.limit).and_then(|number| self.check(number));
                             number.map_err(|reason| refused.replace(Some(reason))).ok()
                         });
                     let size = egui::vec2(VALUE_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
                     let response = ui.add_sized(size, drag).labelled_by(label.id);
+                    first.keep(ui, &response);
                     if response.gained_focus()
                         && let Some(mut text) = TextEditState::load(ui.ctx(), response.id)
                     {
@@ -249,9 +251,34 @@ impl NumberField {
     }
 }
 
-/// Reads a number within a limit; the error says what was expected.
-pub(crate) fn read(text: &str, limit: Limit) -> Result<f64, Sentence> {
-    match parse(text, limit.unit) {
+/// Text of a number when its edit began. While it is committed the field may show another unit.
+pub(crate) struct FirstText {
+    id: Id,
+    shown: String,
+    pub text: String,
+}
+
+impl FirstText {
+    /// Returns the text for a field that now shows `shown`; `id` is the place where it is kept.
+    pub(crate) fn of(ui: &Ui, id: Id, shown: String) -> Self {
+        let text = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| shown.clone());
+        Self { id, shown, text }
+    }
+
+    /// Keeps the shown text if an edit begins.
+    pub(crate) fn keep(&self, ui: &Ui, field: &Response) {
+        if field.gained_focus() {
+            ui.data_mut(|data| data.insert_temp(self.id, self.shown.clone()));
+        }
+    }
+}
+
+/// Reads a number within a limit; one without a unit has that of the text `shown` before. The error says what was expected.
+pub(crate) fn read(text: &str, shown: &str, limit: Limit) -> Result<f64, Sentence> {
+    let is_bare = text.trim_end().ends_with(|last: char| last.is_ascii_digit() || last == '.');
+    let unit = shown.split_once(' ').map_or("", |(_, unit)| unit);
+    let typed = if is_bare && text.trim() != shown { format!("{} {unit}", text.trim()) } else { text.to_owned() };
+    match parse(&typed, limit.unit) {
         Ok(number) if number.is_finite() => limit.check(number).map(|()| number),
         Ok(_) | Err(UnitError { has_number: false, .. }) => {
             let example = editable(12.0, limit.unit);
@@ -314,4 +341,28 @@ fn quiet_tip(response: Response, tip: &str) {
 fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
     // A prefix without a unit belongs to the field's unit.
     units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::keys;
+
+    #[test]
+    fn a_number_without_a_unit_has_the_one_that_is_shown() {
+        let length = keys::range("beam.length");
+        for (text, shown, value) in [
+            ("500", "600 mm", 0.5),
+            ("1.", "600 mm", 0.001),
+            ("2 m", "600 mm", 2.0),
+            ("7", "3 m", 7.0),
+            ("3e2", "600 mm", 0.3),
+            ("5k", "600 mm", 5e3),
+        ] {
+            assert_eq!(read(text, shown, length), Ok(value), "{text} in place of {shown}");
+        }
+        let degrees = Limit { unit: "\u{b0}", ..length };
+        assert_eq!(read("45", "90\u{b0}", degrees), Ok(45.0));
+        assert_eq!(read("3", "2", keys::range("solver.accept_after")), Ok(3.0));
+    }
 }
