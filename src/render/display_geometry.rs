@@ -196,6 +196,14 @@ mod tests {
         }
     }
 
+    /// Elements of a large mesh are drawn in one piece each.
+    #[test]
+    fn elements_of_large_meshes_are_drawn_whole() {
+        let scene = Scene::beam(20.0, 13.0).with_cells(200, 130).with_element(ElementKind::Q4);
+        let mesh = Mesh::beam(scene.beam.as_ref().unwrap()).unwrap();
+        assert_eq!(DisplayGeometry::new(&mesh).triangles.len(), 2 * mesh.element_count());
+    }
+
     /// The components at the drawn points are those from which the value at these points is computed.
     #[test]
     fn drawn_components_have_the_value_of_their_point() {

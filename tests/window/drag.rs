@@ -176,3 +176,20 @@ fn beyond_the_limit_the_reference_follows_the_hand() {
         assert_ne!(*ui.state().simulation().status(), Status::Converged, "{part}");
     }
 }
+
+/// A press in the middle of the shaft drags the arrow as one on its tip does, and does not move the view.
+#[test]
+fn a_shaft_is_dragged_as_its_tip() {
+    let force = |at: f32| {
+        let mut ui = open("cantilever");
+        settle(&mut ui);
+        let (foot, tip) = (ui.state().arrow_feet()[0], ui.tip());
+        let pressed = foot + at * (tip - foot);
+        ui.hold(pressed);
+        ui.hover_at(pressed + Vec2::new(30.0, 20.0));
+        ui.run_steps(2);
+        ui.force()
+    };
+    assert_eq!(force(0.5), force(1.0));
+    assert!(force(0.5)[0] > 0.0);
+}

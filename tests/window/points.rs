@@ -271,6 +271,8 @@ fn coordinates_of_a_point_are_typed() {
     ui.expect(&["expected"]);
     ui.type_into("width", "20 cm");
     assert!(matches!(ui.scene().loads[1], Load::Force { at_point: true, width: 0.2, .. }), "{:?}", ui.scene().loads);
+    ui.type_into("x", "20 m");
+    assert!(ui.says("Load 2: ") && !ui.says("load.1"), "a refusal names the load as the panel does: {:?}", ui.texts());
 }
 
 /// A new beam on two supports has an error; its name is typed, and is in its file.
