@@ -517,8 +517,12 @@ fn the_positive_part_of_g_is_no_less_than_g(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Stress), kind);
     for (along, across) in [(0.9, 0.9), (1.1, 1.05), (0.8, 1.2)] {
         let start = state(&problem, |x| bent(Vector2::new(along * x.x, across * x.y)));
-        let [exact, definite, geometric] =
-            [Tangent::EXACT, Tangent::DEFINITE, Tangent::GEOMETRIC].map(|t| dense(&problem, &start, t).0);
+        let [exact, definite, geometric, warped] =
+            [Tangent::EXACT, Tangent::DEFINITE, Tangent::GEOMETRIC, Tangent::WARPED]
+                .map(|t| dense(&problem, &start, t).0);
+        let positive = (&definite - warped).symmetric_eigenvalues();
+        assert!(positive.min() > -1e-12 * exact.norm(), "{positive}");
+        assert!(geometric.clone().symmetric_eigenvalues().min() < -1e-3 * exact.norm(), "G is positive by itself");
         let added = (&definite - &exact).symmetric_eigenvalues();
         assert!(added.min() > -1e-12 * exact.norm() && added.max() > 1e-3 * geometric.norm(), "{added}");
         // The added part is at most the norm of G times the number of elements.

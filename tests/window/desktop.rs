@@ -508,19 +508,3 @@ fn a_window_without_a_folder_for_settings_says_so() {
     let said = window.close(CLOSE);
     assert!(messages.iter().all(|message| said.matches(message).count() == 1), "{said}");
 }
-
-/// The key S saves the picture that the window shows.
-#[test]
-fn s_saves_a_screenshot() {
-    let Some(desktop) = Desktop::start() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let window = Window::open_in(&desktop, folder.path(), &["run", "article"]);
-    window.point(Pos2::new(1000.0, 700.0));
-    let shown = window.settle();
-    let path = folder.path().join("warpbeam-001.png");
-    let bgrx = ask_until("the whole screenshot", || _ = window.key("s"), || read_bgrx(&path));
-    assert_eq!(bgrx.len(), shown.len());
-    let different = changed(&bgrx, &shown);
-    assert!(different < 1_000, "{different} pixels differ from the window");
-    window.close(CLOSE);
-}
