@@ -341,9 +341,8 @@ impl Ui {
 
     /// Returns the window position of a material point.
     pub fn on_body(&self, at: impl Into<Vector2<f64>>) -> Pos2 {
-        let (mesh, u) = (self.simulation().system().mesh(), self.simulation().displacement());
-        let weights = mesh.weights(mesh.locate(at.into()).unwrap()).unwrap();
-        in_view(self.state(), weights.iter().map(|&(n, w)| (mesh.nodes()[n as usize] + u[n as usize]) * w).sum())
+        let at = at.into();
+        in_view(self.state(), at + displacement_at(self.simulation(), at).unwrap())
     }
 
     /// Runs frames until a condition holds, with a short sleep after each for background tasks.

@@ -45,6 +45,12 @@ pub fn sampled<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> Vec<T> {
     cases.into_iter().step_by(if sweeps_run_in_full() { 1 } else { stride }).collect()
 }
 
+/// Returns the seeds of a sweep from `WARPBEAM_SEED`, or `usual`, on: `all` where sweeps run in full, and otherwise `few`.
+pub fn seeds(usual: u64, few: usize, all: usize) -> Vec<u64> {
+    let first = std::env::var("WARPBEAM_SEED").map_or(usual, |seed| seed.parse().unwrap());
+    (first..).take(if sweeps_run_in_full() { all } else { few }).collect()
+}
+
 /// Opens a built-in scene.
 pub fn scene(id: &str) -> Scene {
     scene_with(id, &[])
@@ -74,9 +80,13 @@ pub fn ended(scene: &Scene) -> Simulation {
 
 /// Solves a scene; fails unless it ends so.
 pub fn ends_as(scene: &Scene, status: &Status) -> Simulation {
-    let simulation = ended(scene);
-    let (element, method) = (scene.element(), scene.solver.method);
-    let what = format!("{}, {element:?} {method:?}, {:?}", scene.name, scene.dynamics.integrator);
+    to_end(Simulation::new(scene).unwrap(), status)
+}
+
+fn to_end(mut simulation: Simulation, status: &Status) -> Simulation {
+    simulation.solve();
+    let (scene, element) = (simulation.scene(), simulation.mesh().element());
+    let what = format!("{}, {element:?} {:?}, {:?}", scene.name, scene.solver.method, scene.dynamics.integrator);
     assert_eq!(simulation.status(), status, "{what}: residual {:e}", simulation.residual());
     simulation
 }
@@ -84,6 +94,11 @@ pub fn ends_as(scene: &Scene, status: &Status) -> Simulation {
 /// Solves a scene; fails unless it converges.
 pub fn solved(scene: &Scene) -> Simulation {
     ends_as(scene, &Status::Converged)
+}
+
+/// Solves a scene on a mesh; fails unless it converges.
+pub fn solved_on(scene: &Scene, mesh: Mesh) -> Simulation {
+    to_end(Simulation::with_mesh(scene, mesh).unwrap(), &Status::Converged)
 }
 
 /// Runs a motion; fails unless it finishes.
@@ -212,6 +227,70 @@ pub fn columns(problem: &Problem, mut map: impl FnMut(&[f64], &mut [f64])) -> DM
         map(&unit, dense.column_mut(column).as_mut_slice());
     }
     dense
+}
+
+/// Returns the forces of a state.
+pub fn forces_at(problem: &Problem, state: &State) -> Forces {
+    let mut forces = Forces::new(state.displacement().len());
+    problem.linearize(state, &mut forces, None);
+    forces
+}
+
+/// Returns the components of a nodal vector at the free unknowns.
+pub fn restrict(problem: &Problem, nodal: &[Vector2<f64>]) -> DVector<f64> {
+    let mut free = DVector::zeros(problem.system().dofs());
+    problem.system().pattern().restrict(nodal, free.as_mut_slice());
+    free
+}
+
+/// Returns the derivative of the forces out of balance under a load factor by the free unknowns, N/m, by central differences.
+pub fn numeric_stiffness(problem: &Problem, state: &State, factor: f64, step: f64) -> DMatrix<f64> {
+    let out_of_balance = |unit: &[f64], by: f64| {
+        let mut u = state.displacement().to_vec();
+        problem.system().pattern().add_free(unit, by, &mut u);
+        let mut moved = state.with_displacement(u).unwrap();
+        problem.system().update_rotations(&mut moved, Kinematics::Corotated);
+        let mut forces = forces_at(problem, &moved);
+        problem.balance(&moved, Kinematics::Corotated, factor, &mut forces);
+        restrict(problem, forces.residual())
+    };
+    columns(problem, |unit, image| {
+        let change = out_of_balance(unit, -step) - out_of_balance(unit, step);
+        image.copy_from_slice((change / (2.0 * step)).as_slice());
+    })
+}
+
+/// Returns the distance of a state's strains from exact ones in the energy norm, relative to these. The rule has points and
+/// weights on the cell.
+pub fn strain_error(
+    problem: &Problem,
+    state: &State,
+    rule: &[([f64; 2], f64)],
+    exact: impl Fn(Vector2<f64>) -> Matrix2<f64>,
+) -> f64 {
+    let (system, moduli) = (problem.system(), problem.material().membrane());
+    let (mesh, entry) = (system.mesh(), system.mesh().element().entry());
+    let (u, rotations, mut strains) = (state.displacement(), state.rotations(), Vec::new());
+    system.elements().visit_strains(moduli, u, rotations, &mut |_, _, strain| strains.push(*strain));
+    let (mut error, mut energy) = (0.0, 0.0);
+    for (own, strains) in mesh.elements().zip(strains.chunks(entry.points.len())) {
+        let rest: Vec<_> = own.iter().map(|&n| mesh.nodes()[n as usize]).collect();
+        for &(at, weight) in rule {
+            let area = weight * entry.jacobian(&rest, at).determinant();
+            let exact = exact(rest.iter().zip((entry.shape)(at)).map(|(x, n)| x * n).sum());
+            let found: Matrix2<f64> = strains.iter().zip((entry.point_weights)(at)).map(|(s, w)| s * w).sum();
+            error += area * moduli.energy_density(&(found - exact));
+            energy += area * moduli.energy_density(&exact);
+        }
+    }
+    (error / energy).sqrt()
+}
+
+/// Returns the displacement of a point that is given at rest; `None` outside of the body.
+pub fn displacement_at(simulation: &Simulation, x: Vector2<f64>) -> Option<Vector2<f64>> {
+    let (mesh, u) = (simulation.mesh(), simulation.displacement());
+    let weights = mesh.weights(mesh.locate(x)?)?;
+    Some(weights.iter().map(|&(node, weight)| u[node as usize] * weight).sum())
 }
 
 /// Returns all pairs of the entries of two lists.

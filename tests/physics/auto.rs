@@ -71,13 +71,8 @@ fn drag(mut scene: Scene, frames: u32, asked: f64) {
     let (mut factorizations, mut newtons, mut old) = (0, 0, 0);
     for frame in 0..frames {
         let share = f64::from(frame) / f64::from(frames - 1);
-        let (s, c) = (0.5 * share).sin_cos();
-        let size = 0.2 + 0.8 * share;
-        let turned = [size * (c * force[0] - s * force[1]), size * (s * force[0] + c * force[1])];
-        scene.loads[0] = match &scene.loads[0] {
-            Load::Force { place, .. } => Load::force(place.clone(), turned),
-            other => other.clone(),
-        };
+        let turned = Rotation::from_angle(0.5 * share).apply(force.into()) * (0.2 + 0.8 * share);
+        scene.set_force(LoadId::nth(0), turned).unwrap();
         let simulation = auto.get_or_insert_with(|| Simulation::new(&scene).unwrap());
         simulation.change_scene(&scene).unwrap();
         simulation.solve();

@@ -43,12 +43,9 @@ fn a_body_whose_loads_vanish_returns_to_rest() {
             body.edit(|scene| scene.set_force(LoadId::nth(0), force)).unwrap();
             body.solve();
             body.edit(|scene| scene.set_force(LoadId::nth(0), [0.0; 2])).unwrap();
-            assert_eq!(*body.solve(), Status::Converged, "{id} {element:?} {method:?} {force:?}");
-            assert_eq!(
-                (largest(body.displacement()), body.residual()),
-                (0.0, 0.0),
-                "{id} {element:?} {method:?} {force:?}"
-            );
+            let what = format!("{id} {element:?} {method:?} {force:?}");
+            assert_eq!(*body.solve(), Status::Converged, "{what}");
+            assert_eq!((largest(body.displacement()), body.residual()), (0.0, 0.0), "{what}");
         }
     }
 }

@@ -157,8 +157,8 @@ fn the_mouse_spring_force_is_the_negative_gradient_of_its_energy() {
             let mut u: Vec<_> = problem.system().mesh().nodes().iter().map(|x| Vector2::new(0.0, 0.01 * x.x)).collect();
             problem.system().pattern().stop_fixed(&mut u);
             let state_of = |u: &[Vector2<f64>]| problem.system().state_of(u).unwrap();
-            let (state, mut forces) = (state_of(&u), Forces::new(u.len()));
-            problem.linearize(&state, &mut forces, None);
+            let state = state_of(&u);
+            let mut forces = forces_at(problem, &state);
             problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
             let spring = problem.mouse_spring().unwrap();
             let (force, stretch) = (spring.force_at_rest(&u), spring.target() - spring.position(&u));

@@ -25,10 +25,9 @@ fn solved(scene: &Scene, strip: &Strip, factor: f64) -> Option<(Option<f64>, boo
 
 #[test]
 fn stated_ends_of_limits_hold() {
-    let first: u64 = std::env::var("WARPBEAM_SEED").map_or(300, |seed| seed.parse().unwrap());
-    let count = if sweeps_run_in_full() { 30 } else { 2 };
+    let seeds = seeds(300, 2, 30);
     let (mut ends, mut wrong) = ([0; 4], Vec::new());
-    for seed in (first..).take(count) {
+    for &seed in &seeds {
         let mut scene = random::scene(seed);
         scene.solver.accept_after = 0;
         let Ok(limits) = MethodLimits::of(&scene, &go_on, &|_| {}) else { continue };
@@ -62,5 +61,5 @@ fn stated_ends_of_limits_hold() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(ends.iter().sum::<usize>() >= 3 * count, "{ends:?}");
+    assert!(ends.iter().sum::<usize>() >= 3 * seeds.len(), "{ends:?}");
 }

@@ -59,8 +59,7 @@ fn files_without_a_mesh_are_refused() {
 fn a_mesh_given_by_the_caller_is_used() {
     let mesh = Mesh::new(square(), ElementKind::T3, vec![0, 1, 2, 0, 2, 3], edge("foot", &[&[0, 1]])).unwrap();
     let scene = Scene::named("Square").clamp("foot").force([0.0, 1.0], [1000.0, 0.0]).probe("corner", [1.0, 1.0]);
-    let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();
-    assert_eq!(*simulation.solve(), Status::Converged);
+    let simulation = solved_on(&scene, mesh);
     assert!(simulation.probe("corner").unwrap().x > 0.0);
     assert_eq!(simulation.probe("nowhere"), None);
 }

@@ -298,16 +298,6 @@ fn load_steps_go_on_after_a_failed_descent() {
     }
 }
 
-/// Returns the first seed of a sweep: `WARPBEAM_SEED`, or `usual`.
-fn first_seed(usual: u64) -> u64 {
-    std::env::var("WARPBEAM_SEED").map_or(usual, |seed| seed.parse().unwrap())
-}
-
-/// Number of scenes of a sweep: a tenth of them in the plain suite.
-fn share(all: u64) -> u64 {
-    if sweeps_run_in_full() { all } else { all / 10 }
-}
-
 /// Returns the equilibrium that loading in small steps leads to, each by full Newton steps from the one before; `None`
 /// if a step fails or is so long that it may be a jump.
 fn in_small_steps(scene: &Scene, steps: u32) -> Option<Simulation> {
@@ -350,8 +340,8 @@ fn imbalance(simulation: &Simulation) -> [f64; 3] {
 /// the path is the stored energy.
 #[test]
 fn random_scenes_end_on_their_path() {
-    let (mut judged, mut wrong) = (0, Vec::new());
-    for seed in (first_seed(7000)..).take(share(300) as usize) {
+    let (seeds, mut judged, mut wrong) = (seeds(7000, 30, 300), 0, Vec::new());
+    for &seed in &seeds {
         let mut scene = random::scene(seed);
         (scene.solver.method, scene.solver.accept_after) = (MethodKind::Newton, 0);
         let Ok(mut simulation) = Simulation::new(&scene) else { continue };
@@ -382,17 +372,17 @@ fn random_scenes_end_on_their_path() {
     }
     println!("{judged} judged");
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(judged >= share(300) / 3, "{judged} judged");
+    assert!(judged >= seeds.len() / 3, "{judged} judged");
 }
 
 /// Columns, arches and strips near their critical load: the branch is that of small steps or of the exact beam; a jump
 /// is stated exactly where small steps meet one; the body never stores more than the work done on it.
 #[test]
 fn random_columns_arches_and_strips_end_on_their_path() {
-    let (mut judged, mut wrong) = (0, Vec::new());
+    let (seeds, mut judged, mut wrong) = (seeds(0, 20, 200), 0, Vec::new());
     // In these, the path turns sharply just below the full load.
     let hard = [20_097, 20_111, 30_084, 64_114];
-    for seed in (first_seed(0)..).take(share(200) as usize).chain(hard) {
+    for &seed in seeds.iter().chain(&hard) {
         let mut random = Random(seed.wrapping_mul(0x9E37_79B9).wrapping_add(77));
         let slenderness = 10f64.powf(random.between(1.0, 2.3));
         let imperfection = 10f64.powf(random.between(-6.0, -2.0)) * random.one_of(&[-1.0, 1.0]);
@@ -411,12 +401,8 @@ fn random_columns_arches_and_strips_end_on_their_path() {
             }
             1 => {
                 let strain = 4.0 * near * euler / 1e6;
-                let side = [0.0, euler * imperfection];
-                scene
-                    .clamp("left")
-                    .clamp("right")
-                    .moved([-strain * slenderness, 0.0], 0.0)
-                    .force([0.5 * slenderness, 0.5], side)
+                let held = scene.clamp("left").clamp("right").moved([-strain * slenderness, 0.0], 0.0);
+                held.force([0.5 * slenderness, 0.5], [0.0, euler * imperfection])
             }
             _ => {
                 scene.beam.as_mut().unwrap().rise = rise;
@@ -426,17 +412,13 @@ fn random_columns_arches_and_strips_end_on_their_path() {
         };
         let scene =
             scene.probe("probe", if kind == 0 { "right".into() } else { Place::from([0.5 * slenderness, middle]) });
-        let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
-        if *simulation.solve() != Status::Converged {
-            wrong.push(format!(
-                "seed {seed}, kind {kind}: {:?} after {}",
-                simulation.status(),
-                simulation.iterations()
-            ));
-            continue;
-        }
         let words =
             format!("seed {seed}, kind {kind}, L/H {slenderness:.1}, {near:.3}, imperfection {imperfection:.1e}");
+        let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
+        if *simulation.solve() != Status::Converged {
+            wrong.push(format!("{words}: {:?} after {}", simulation.status(), simulation.iterations()));
+            continue;
+        }
         if simulation.certify().stable != Some(true) {
             wrong.push(format!("{words}: unstable"));
         }
@@ -450,9 +432,7 @@ fn random_columns_arches_and_strips_end_on_their_path() {
         if energy.external < -outward || kind != 1 && events.jump.is_none() && energy.elastic > energy.external {
             wrong.push(format!("{words}: {energy:?}"));
         }
-        let Some(truth) = in_small_steps(&scene, 400) else {
-            continue;
-        };
+        let Some(truth) = in_small_steps(&scene, 400) else { continue };
         judged += 1;
         let off = (tip(&truth) - tip(&simulation)).norm();
         if off > 2e-3 * tip(&truth).norm() || events.jump.is_some() {
@@ -461,5 +441,5 @@ fn random_columns_arches_and_strips_end_on_their_path() {
     }
     println!("{judged} judged");
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert!(judged >= share(200) / 3, "{judged} judged");
+    assert!(judged >= seeds.len() / 3, "{judged} judged");
 }

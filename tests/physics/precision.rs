@@ -178,8 +178,7 @@ struct Rounding {
 impl Rounding {
     /// Computes error and bound, and checks every free node's error against its own bound.
     fn of(problem: &Problem, state: &State, kinematics: Kinematics) -> Self {
-        let mut forces = Forces::new(state.displacement().len());
-        problem.linearize(state, &mut forces, None);
+        let mut forces = forces_at(problem, state);
         let residual = problem.balance(state, kinematics, 1.0, &mut forces);
         let mut bounds = forces.residual().to_vec();
         let bound = problem.residual_floor(state, &forces, &mut bounds).unwrap();

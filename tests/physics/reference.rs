@@ -82,20 +82,13 @@ fn independent(scene: &Scene, nodes: f64, coarser: Option<&Simulation>) -> Optio
     let mesh = six_node_grid(&scene, &beam, cells);
     let mut simulation = Simulation::with_mesh(&scene, mesh).unwrap();
     if let Some(coarser) = coarser {
-        let start: Vec<_> = simulation.system().mesh().nodes().iter().map(|&x| displacement_at(coarser, x)).collect();
+        // By rounding, a node of a side may lie outside.
+        let nearest = |x| coarser.displacement()[coarser.mesh().nearest_node(x) as usize];
+        let start = |&x: &Vector2<f64>| displacement_at(coarser, x).unwrap_or_else(|| nearest(x));
+        let start: Vec<_> = simulation.system().mesh().nodes().iter().map(start).collect();
         simulation.start_from(&start).unwrap();
     }
     (*simulation.solve() == Status::Converged).then_some(simulation)
-}
-
-/// Returns the displacement at the rest position `x`, m.
-fn displacement_at(simulation: &Simulation, x: Vector2<f64>) -> Vector2<f64> {
-    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    match mesh.locate(x).and_then(|point| mesh.weights(point)) {
-        Some(weights) => weights.iter().map(|&(node, weight)| u[node as usize] * weight).sum(),
-        // By rounding, a node of a side may lie outside.
-        None => u[mesh.nearest_node(x) as usize],
-    }
 }
 
 /// Compares a reference with two independent solutions: returns its own error, the distance of those, percent, and words if

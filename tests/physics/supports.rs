@@ -3,11 +3,6 @@
 use crate::common::*;
 use warpbeam::method::{Workspace, is_stable};
 
-fn rotated(v: Vector2<f64>, angle: f64) -> Vector2<f64> {
-    let (s, c) = angle.sin_cos();
-    Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y)
-}
-
 /// Returns a beam clamped at both ends.
 fn clamped() -> Scene {
     let mut scene = Scene::beam(10.0, 1.0).with_cells(16, 2).clamp("left").clamp("right").probe("middle", [5.0, 0.0]);
@@ -29,8 +24,7 @@ fn moved_edges_strain_a_patch_uniformly() {
         let mesh = mesh.moved(|x| {
             x + Vector2::new(0.06, 0.04) * ((PI * x.x / 2.0).sin() * (PI * (x.y + 0.5)).sin() * (1.0 + x.x * x.y))
         });
-        let mut simulation = Simulation::with_mesh(&scene, mesh.unwrap()).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged, "{} {}", element.id, method.id);
+        let simulation = solved_on(&scene, mesh.unwrap());
         let (problem, state) = (simulation.problem(), simulation.state());
         let lame = problem.material().lame();
         let expected = Matrix2::new(a, 0.0, 0.0, b);
@@ -61,7 +55,7 @@ fn a_rigid_rotation_of_all_supports_leaves_no_stress() {
                 let arm = middle - centre;
                 let increment = match method.kind {
                     MethodKind::Linear => Vector2::new(-arm.y, arm.x) * angle,
-                    _ => rotated(arm, angle) - arm,
+                    _ => Rotation::from_angle(angle).apply(arm) - arm,
                 };
                 scene.move_support(SupportId::nth(support), increment, angle).unwrap();
             }
@@ -75,7 +69,7 @@ fn a_rigid_rotation_of_all_supports_leaves_no_stress() {
                 continue;
             }
             for (x, u) in simulation.system().mesh().nodes().iter().zip(simulation.displacement()) {
-                let expected = rotated(x - centre, angle) + centre - x;
+                let expected = Rotation::from_angle(angle).apply(x - centre) + centre - x;
                 assert!((u - expected).norm() < 1e-9, "{} {} {angle}: {u} {expected}", element.id, method.id);
             }
             // The clamps move straight, so that the line through them makes no full turn, and the edges along it make none.
@@ -94,9 +88,9 @@ fn a_rotated_clamp_equals_a_rotated_gravity() {
         let angle = 2.5;
         let weight = Vector2::new(0.0, -0.15);
         let turned = solved(&straight.clone().gravity(weight).moved([0.5, 0.25], angle));
-        let built = solved(&straight.gravity(rotated(weight, -angle)));
+        let built = solved(&straight.gravity(Rotation::from_angle(-angle).apply(weight)));
         let [turned, built] = [&turned, &built].map(|s| Vector2::new(10.0, 0.0) + s.probe("tip").unwrap());
-        let expected = rotated(built, angle) + Vector2::new(0.5, 0.25);
+        let expected = Rotation::from_angle(angle).apply(built) + Vector2::new(0.5, 0.25);
         assert!((turned - expected).norm() < 1e-5, "{}: {turned} {expected}", method.id);
     }
 }

@@ -194,18 +194,6 @@ fn state(problem: &Problem, place: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Sta
     problem.system().state_of(&u).unwrap()
 }
 
-fn forces(problem: &Problem, state: &State) -> Forces {
-    let mut forces = Forces::new(nodes(problem).len());
-    problem.linearize(state, &mut forces, None);
-    forces
-}
-
-fn restrict(problem: &Problem, nodal: &[Vector2<f64>]) -> DVector<f64> {
-    let mut free = vec![0.0; problem.system().dofs()];
-    problem.system().pattern().restrict(nodal, &mut free);
-    DVector::from_vec(free)
-}
-
 fn is_inside(x: &Vector2<f64>) -> bool {
     x.x > 1e-9 && x.x < 2.0 - 1e-9 && x.y.abs() < 1.0 - 1e-9
 }
@@ -270,7 +258,7 @@ fn patch_test(kind: ElementKind) {
         let turned = state(&problem, |x| turn.apply(stretch * x));
         assert!(turned.rotations().iter().all(|r| (r.c - turn.c).hypot(r.s - turn.s) < 1e-13));
         for state in [linear, turned] {
-            let forces = forces(&problem, &state);
+            let forces = forces_at(&problem, &state);
             let largest = largest(forces.internal());
             for (x, f) in nodes(&problem).iter().zip(forces.internal()).filter(|(x, _)| is_inside(x)) {
                 assert!(f.norm() < 1e-12 * largest, "{plane:?} at {x}: {f}");
@@ -284,8 +272,7 @@ fn uniform_traction_gives_uniform_strain(kind: ElementKind) {
     for method in METHODS {
         let mut scene = irregular_scene(Plane::Stress).force("right", [3.0, 0.0]).with_method(method.kind);
         scene.solver.tolerance = 1e-13;
-        let mut simulation = Simulation::with_mesh(&scene, irregular_mesh(kind)).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged, "{}", method.id);
+        let simulation = solved_on(&scene, irregular_mesh(kind));
         let strain = 3.0 / (100.0 * 0.5 * 2.0);
         // `auto` uses linear theory here; the others iterate to the tolerance.
         for (x, u) in simulation.system().mesh().nodes().iter().zip(simulation.displacement()) {
@@ -451,7 +438,7 @@ fn rigid_motions_give_no_force_and_no_energy(kind: ElementKind) {
         let turn = Rotation::from_angle(degrees.to_radians());
         let state = state(&problem, |x| turn.apply(x) + Vector2::new(3.0, -20.0));
         // A strain of 1 gives forces of about 100 N; coordinates of 20 give rounding errors of 20 ε.
-        assert!(forces(&problem, &state).internal().iter().all(|f| f.norm() < 1e-11), "{degrees}°");
+        assert!(forces_at(&problem, &state).internal().iter().all(|f| f.norm() < 1e-11), "{degrees}°");
         assert!(problem.elastic_energy(&state) < 1e-25, "{degrees}°");
     }
 }
@@ -465,7 +452,7 @@ fn bent(x: Vector2<f64>) -> Vector2<f64> {
 fn the_force_is_the_gradient_of_the_energy(kind: ElementKind) {
     let problem = problem(&irregular_scene(Plane::Strain), kind);
     let start = state(&problem, bent);
-    let forces = forces(&problem, &start);
+    let forces = forces_at(&problem, &start);
     check_gradient(forces.internal(), 1e-5, 1e-8 * largest(forces.internal()), |node, step| {
         let mut u = start.displacement().to_vec();
         u[node] += step;
@@ -475,29 +462,10 @@ fn the_force_is_the_gradient_of_the_energy(kind: ElementKind) {
 
 /// A + G and the moment's own tangent are the derivative of f_int − f_ext; A + max(G, 0) is positive definite.
 fn the_tangent_is_the_derivative_of_the_force(kind: ElementKind) {
-    const STEP: f64 = 1e-6;
     const FACTOR: f64 = 0.7;
     let problem = problem(&irregular_scene(Plane::Strain).moment("right", 3.0), kind);
     let start = state(&problem, bent);
-    let mut u = start.displacement().to_vec();
-    let out_of_balance = |u: &[Vector2<f64>]| {
-        let state = problem.system().state_of(u).unwrap();
-        let mut forces = forces(&problem, &state);
-        problem.balance(&state, Kinematics::Corotated, FACTOR, &mut forces);
-        restrict(&problem, forces.residual())
-    };
-    let n = problem.system().dofs();
-    let mut numeric = DMatrix::zeros(n, n);
-    for (column, &unknown) in problem.system().pattern().free().iter().enumerate() {
-        let (node, axis) = (unknown as usize / 2, unknown as usize % 2);
-        let at = u[node][axis];
-        u[node][axis] = at + STEP;
-        let above = out_of_balance(&u);
-        u[node][axis] = at - STEP;
-        let below = out_of_balance(&u);
-        u[node][axis] = at;
-        numeric.set_column(column, &((below - above) / (2.0 * STEP)));
-    }
+    let numeric = numeric_stiffness(&problem, &start, FACTOR, 1e-6);
     let dense = |tangent| dense(&problem, &start, tangent).0;
     // The loads' own stiffness is that of the moment.
     let (pattern, u) = (problem.system().pattern(), start.displacement());
@@ -578,7 +546,7 @@ fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind
     let small: Vec<_> = v.iter().map(|v| v * 1e-3).collect();
     let mut strained = problem.system().state_of(&small).unwrap();
     system.update_rotations(&mut strained, Kinematics::Linear);
-    let elastic = forces(&problem, &strained);
+    let elastic = forces_at(&problem, &strained);
     let viscous = force(&rest, StrainRate::Velocity(&small));
     let size = largest(&viscous);
     assert!(elastic.internal().iter().zip(&viscous).all(|(a, b)| (a - b).norm() < 1e-12 * size));
@@ -633,7 +601,7 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     let (a, _) = dense(&problem, &start, Tangent::WARPED);
     let with_rotations_of_start = |u: Vec<Vector2<f64>>| {
         let state = start.with_displacement(u).unwrap();
-        forces(&problem, &state).internal().to_vec()
+        forces_at(&problem, &state).internal().to_vec()
     };
     // A displacement of free nodes by d changes the force by exactly A d, because the force is linear in x for fixed R.
     // Neither state is the one that R belongs to, where R may add a force of its own.
@@ -648,20 +616,18 @@ fn the_stiffness_and_the_offset_make_up_the_force(kind: ElementKind) {
     // With all nodes at the origin, f_int is −R K X, which is exact in a rigidly rotated body.
     let turn = Rotation::from_angle(1.1);
     let turned = state(&problem, |x| turn.apply(x));
-    let offset = forces(&problem, &turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap());
+    let offset = forces_at(&problem, &turned.with_displacement(nodes(&problem).iter().map(|x| -x).collect()).unwrap());
     let magnitude = largest(offset.internal());
     assert!(magnitude > 1.0);
     // A x − R K X vanishes in a rigidly rotated body.
-    assert!(forces(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));
+    assert!(forces_at(&problem, &turned).internal().iter().all(|f| f.norm() < 1e-12 * magnitude));
 }
 
 /// Betti's theorem: each of two loads does the same work along the displacement of the other.
 fn works_are_reciprocal(kind: ElementKind) {
     let tip = |force: [f64; 2], at: [f64; 2]| {
         let scene = irregular_scene(Plane::Strain).force(at, force).with_method(MethodKind::Linear);
-        let mut simulation = Simulation::with_mesh(&scene, irregular_mesh(kind)).unwrap();
-        assert_eq!(*simulation.solve(), Status::Converged);
-        simulation
+        solved_on(&scene, irregular_mesh(kind))
     };
     let loads = [([1.0, 2.0], [2.0, 1.0]), ([-3.0, 0.5], [1.0, -1.0]), ([0.2, -1.0], [2.0, -1.0])];
     for (force, at) in loads {
@@ -711,21 +677,17 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     let problem = Problem::new(&scene, System::new(&scene).unwrap().into()).unwrap();
     let entry = kind.entry();
     let moduli = material.membrane();
-    let sym = |h: Matrix2<f64>| (h + h.transpose()) * 0.5;
+    let strain_at = |x: Vector2<f64>| (smooth_gradient(x) + smooth_gradient(x).transpose()) * 0.5;
     // The error of this rule is negligible compared with the measured one.
     let rule = fine_rule(entry, 4);
     // f_a = ∫ σ(u) ∇N_a dA.
     let mut force = vec![Vector2::zeros(); nodes(&problem).len()];
-    let rest_of = |own: &[u32]| -> Vec<Vector2<f64>> { own.iter().map(|&n| nodes(&problem)[n as usize]).collect() };
-    let strain_at = |rest: &[Vector2<f64>], at: [f64; 2]| {
-        let x: Vector2<f64> = rest.iter().zip((entry.shape)(at)).map(|(x, n)| x * n).sum();
-        sym(smooth_gradient(x))
-    };
     for own in problem.system().mesh().elements() {
-        let rest = rest_of(own);
+        let rest: Vec<_> = own.iter().map(|&n| nodes(&problem)[n as usize]).collect();
         for &(at, small) in &rule {
             let jacobian = entry.jacobian(&rest, at);
-            let stress = moduli.stress(&strain_at(&rest, at)) * (small * jacobian.determinant());
+            let x: Vector2<f64> = rest.iter().zip((entry.shape)(at)).map(|(x, n)| x * n).sum();
+            let stress = moduli.stress(&strain_at(x)) * (small * jacobian.determinant());
             let to_global = jacobian.try_inverse().unwrap().transpose();
             for (&node, g) in own.iter().zip((entry.local_gradients)(at)) {
                 force[node as usize] += stress * (to_global * g);
@@ -741,18 +703,5 @@ fn energy_norm_error(kind: ElementKind, n: u32) -> f64 {
     factor.solve_in_place(&mut free);
     let mut u = vec![Vector2::zeros(); force.len()];
     system.pattern().add_free(&free, 1.0, &mut u);
-    let (rest, mut strains) = (system.at_rest(), Vec::new());
-    system.elements().visit_strains(moduli, &u, rest.rotations(), &mut |_, _, strain| strains.push(*strain));
-    let (mut error, mut energy) = (0.0, 0.0);
-    for (own, strains) in system.mesh().elements().zip(strains.chunks(entry.points.len())) {
-        let rest = rest_of(own);
-        for &(at, small) in &rule {
-            let area = small * entry.jacobian(&rest, at).determinant();
-            let exact = strain_at(&rest, at);
-            let found: Matrix2<f64> = strains.iter().zip((entry.point_weights)(at)).map(|(s, w)| s * w).sum();
-            error += area * moduli.energy_density(&(found - exact));
-            energy += area * moduli.energy_density(&exact);
-        }
-    }
-    (error / energy).sqrt()
+    strain_error(&problem, &system.at_rest().with_displacement(u).unwrap(), &rule, strain_at)
 }

@@ -294,9 +294,7 @@ fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     // Near the clamp, the bodies of all panes overlap.
     let pane = ui.state().panes()[1].simulation().unwrap();
     let rest = Vector2::new(1.0, 0.1);
-    let mesh = pane.system().mesh();
-    let weights = mesh.weights(mesh.locate(rest).unwrap()).unwrap();
-    let u: Vector2<f64> = weights.iter().map(|&(n, w)| pane.displacement()[n as usize] * w).sum();
+    let u = displacement_at(pane, rest).unwrap();
     let [x, y] = ui.camera().to_view(rest + u);
     ui.hover_at(places[1].center() + vec2(x as f32, y as f32));
     ui.run_steps(2);
