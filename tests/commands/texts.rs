@@ -2,8 +2,8 @@
 //! assert the kind of a claim and its numbers.
 //!
 //! `tests/golden/texts.txt` has a block for each command: after `$` its arguments, after `~` a change of the scene
-//! [`GOOD`], which `solve` then reads; the exit code; messages; of a result its status, claims and notes. `UPDATE_GOLDEN=1 cargo
-//! test --test commands texts` rewrites everything but the lines of `$` and `~`.
+//! [`GOOD`], which `solve` then reads; the exit code; messages; of a result its status, claims and notes. The commands run in a
+//! copy of `tests/data/files`. `UPDATE_GOLDEN=1 cargo test --test commands texts` rewrites everything but the lines of `$` and `~`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -57,6 +57,8 @@ fn texts(folder: &Path, header: &str) -> String {
     stderr(&output).lines().take_while(|line| !line.is_empty()).for_each(|line| _ = writeln!(text, "{line}"));
     if code > 1 {
         assert!(entries(folder) == before, "{header}: refused commands write no files");
+        // A result that cannot be written is printed.
+        assert!(output.stdout.is_empty() || header.contains("/no/such/"), "{header}: refused commands print nothing");
     } else if arguments[0] == "solve" {
         let json = stdout(&warpbeam_in(folder, &[&arguments[..], &["--json"]].concat()));
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -72,6 +74,9 @@ fn texts(folder: &Path, header: &str) -> String {
         }
         let notes = json["warnings"].as_array().unwrap();
         let notes: String = notes.iter().map(|note| format!("note: {}\n", note.as_str().unwrap())).collect();
+        let inverted = json["inverted_elements"].as_u64().filter(|number| *number > 0);
+        let is_told = inverted.is_some_and(|number| notes.contains(&format!("inverted elements: {number} of ")));
+        assert_eq!([is_told, notes.contains("inverted elements")], [inverted.is_some(); 2], "{header}");
         // The text of a diverged iteration ends before its numbers and notes.
         let is_short = json["status"] == "diverged";
         assert!(is_short || out.contains(&notes), "{header}: text and JSON differ: {out}");
@@ -84,7 +89,10 @@ fn texts(folder: &Path, header: &str) -> String {
 fn texts_are_those_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bytes.toml"), [0xff, 0xfe, 0x00]).unwrap();
-    fs::write(folder.path().join("square.msh"), include_str!("../data/square.msh")).unwrap();
+    fs::copy("assets/scenes/bracket.toml", folder.path().join("alone.toml")).unwrap();
+    for file in fs::read_dir("tests/data/files").unwrap().map(Result::unwrap) {
+        fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
+    }
     let kept = fs::read_to_string(FILE).unwrap();
     let is_header = |line: &&str| line.starts_with("$ ") || line.starts_with("~ ");
     let mut now = String::new();

@@ -117,14 +117,3 @@ fn a_motion_ends_at_its_duration() {
     simulation.step();
     assert!((simulation.state().time() - 0.11 - STEP).abs() < 1e-12 && *simulation.status() == Status::Finished);
 }
-
-#[test]
-fn a_pulse_shorter_than_a_step_is_reported() {
-    let said = |duration: &str| {
-        let set = format!("load.1.pulse={{start=0.2,duration={duration}}}");
-        stdout(&warpbeam(&["solve", "sway", "--set", &set, "--set", "dynamics.duration=0.3"]))
-    };
-    let text = said("0.004");
-    assert!(text.contains("load.1") && text.contains("its shape is not resolved"), "{text}");
-    assert!(!said("0.5").contains("not resolved"));
-}

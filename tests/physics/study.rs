@@ -248,7 +248,6 @@ fn study_of_a_motion_writes_its_files() {
         assert!(svg.contains("Pareto front") && svg.contains("real time") && svg.contains("t6 energy-momentum"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
-    refuses(&["tune", "swing"], "expected a scene with analysis = \"static\"");
 }
 
 /// Motions are studied over periods or their duration, however slow: linear theory is wrong for a body that sags.

@@ -31,29 +31,6 @@ fn units_are_read_to_the_last_digit() {
     }
 }
 
-#[test]
-fn wrong_units_are_refused_with_the_expected_ones() {
-    for (text, unit, message) in [
-        ("12 kN", "Pa", "`12 kN` is a force (N); expected a pressure (Pa)"),
-        ("3 mm", "N", "`3 mm` is a length (m); expected a force (N)"),
-        ("2 1/s", "rad/s", "`2 1/s` is a rate (1/s); expected an angular velocity (rad/s)"),
-        ("2 Pa s", "s", "`2 Pa s` is a quantity in m^-1 kg s^-1; expected a time (s)"),
-        ("1 N", "", "`1 N` is a force (N); expected a pure number"),
-        ("12 kn", "N", "`12 kn` has the unknown unit `kn`; expected a force (N)"),
-        ("12 kkN", "N", "unknown unit `kkN`"),
-        ("1 m/", "m", "unknown unit"),
-        ("1 /", "m", "unknown unit"),
-        ("1 m^99", "m", "unknown unit"),
-        ("1 m^0", "m", "unknown unit"),
-        ("two", "N", "`two` is not a number; expected a force (N)"),
-        ("", "m", "is not a number"),
-        ("kN", "N", "is not a number"),
-    ] {
-        let error = parse(text, unit).unwrap_err().to_string();
-        assert!(error.contains(message), "{text}: {error}");
-    }
-}
-
 const WITH_UNITS: &str = include_str!("../data/files/units.toml");
 const PLAIN: &str = include_str!("../data/files/units-plain.toml");
 
@@ -109,26 +86,12 @@ fn plain_numbers_are_si() {
     }
 }
 
-/// The error names both readings of a comma if there are two. Spaces separate groups, too.
+/// Spaces separate groups, too. Other commas are refused, as `tests/golden/texts.txt` shows.
 #[test]
-fn groups_of_three_digits_are_thousands_and_other_commas_are_refused() {
+fn groups_of_three_digits_are_thousands() {
     let spaced = [("30 000", 3e4), ("30\u{a0}000 N", 3e4), ("1 200 kN", 1.2e6), ("12kN", 12e3), ("1.2e4", 1.2e4)];
     let grouped = [("1,000,000", 1e6), ("1,234.5 N", 1234.5), ("-1,234,567.5 N", -1_234_567.5), ("30 N", 30.0)];
     for (text, value) in spaced.into_iter().chain(grouped).chain([("\u{2212}2.5", -2.5)]) {
         assert_eq!(parse(text, "N"), Ok(value), "{text}");
-    }
-    for (text, readings) in [
-        ("1,000 kN", "write 1000 kN or 1.000 kN"),
-        ("30,000", "write 30000 or 30.000"),
-        ("-1,234", "write -1234 or -1.234"),
-        ("1,000e3", "write 1000e3 or 1.000e3"),
-    ] {
-        assert_eq!(parse(text, "N").unwrap_err().to_string(), format!("`{text}` can be read in two ways: {readings}"));
-    }
-    let texts = "0,5|-0,5|1,5 kN|30,00|30 00|1,234 567|30.000,5|0,500|1,,000|,5|1234,567|1.000.000|1.000.000 N|1..5";
-    for text in texts.split('|') {
-        let refused = parse(text, "N").unwrap_err().to_string();
-        let words = "is not a number: numbers look like 1500000, 1 500 000 and 1.5e6";
-        assert!(refused.contains(words), "{text}: {refused}");
     }
 }
