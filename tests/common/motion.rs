@@ -25,30 +25,19 @@ pub fn momentum(simulation: &Simulation) -> Momentum {
     simulation.motion().unwrap().momentum()
 }
 
-/// Returns the first mode of a small body, scaled to 1 mm.
-pub fn first_mode(simulation: &Simulation) -> Vec<Vector2<f64>> {
-    let mut u = vec![Vector2::zeros(); simulation.system().mesh().nodes().len()];
-    simulation.system().pattern().add_free(vibration(simulation).0.as_slice(), 1e-3, &mut u);
-    u
-}
-
-/// Returns the lowest angular frequency of a small body, rad/s.
-pub fn lowest_frequency(simulation: &Simulation) -> f64 {
-    vibration(simulation).1
-}
-
-/// Returns the slowest vibration about rest of a small body, from the matrices of linear theory and the integrator's
-/// mass matrix: the amplitudes of the free unknowns, at most 1, and the angular frequency, rad/s.
-fn vibration(simulation: &Simulation) -> (DVector<f64>, f64) {
+/// Returns a small body at the start of its slowest vibration about rest, from the matrices of linear theory and the
+/// integrator's mass matrix, with an amplitude of 1 mm; and the angular frequency, rad/s.
+pub fn vibrating(scene: &Scene) -> (Simulation, f64) {
+    let mut simulation = Simulation::new(scene).unwrap();
     let system = simulation.system();
     let (n, nodes) = (system.dofs(), system.mesh().nodes().len());
-    let mass = Mass::new(system, simulation.scene().material.area_density());
+    let mass = Mass::new(system, scene.material.area_density());
     let (stiffness, _) = dense(simulation.problem(), &system.at_rest(), Tangent::WARPED);
     let inertia = columns(simulation.problem(), |unit, image| {
         let (mut nodal, mut moved) = (vec![Vector2::zeros(); nodes], vec![Vector2::zeros(); nodes]);
         system.pattern().add_free(unit, 1.0, &mut nodal);
         // Explicit integrators have lumped masses.
-        if simulation.scene().dynamics.integrator.entry().is_explicit() {
+        if scene.dynamics.integrator.entry().is_explicit() {
             moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect();
         } else {
             mass.multiply(&nodal, &mut moved);
@@ -63,7 +52,10 @@ fn vibration(simulation: &Simulation) -> (DVector<f64>, f64) {
         growth = mode.amax();
         mode /= growth;
     }
-    (mode, 1.0 / growth.sqrt())
+    let mut u = vec![Vector2::zeros(); nodes];
+    system.pattern().add_free(mode.as_slice(), 1e-3, &mut u);
+    simulation.start_from(&u).unwrap();
+    (simulation, 1.0 / growth.sqrt())
 }
 
 pub fn beam(cells: u32, slenderness: f64) -> Scene {
