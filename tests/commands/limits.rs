@@ -1,16 +1,22 @@
 //! Tests of `warpbeam limits`: its numbers are those of `solve`.
 
 use std::fs;
+use std::path::Path;
 
 use crate::common::*;
+use serde_json::Value;
+
+/// Returns the strip of an element and a method.
+fn strip<'a>(json: &'a Value, element: &str, method: &str) -> &'a Value {
+    let mut strips = json["strips"].as_array().unwrap().iter();
+    strips.find(|strip| strip["element"] == element && strip["method"] == method).unwrap()
+}
 
 /// Errors and displacements at the scene's own load are those of `solve`, and `warped` stops where `solve` stops.
 #[test]
 fn limits_are_those_of_solve() {
     let folder = tempfile::tempdir().unwrap();
-    let output = warpbeam_in(folder.path(), &["limits", "article", "--json", "--out", "t.csv", "--picture", "t.svg"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let json = parsed(&output);
+    let json = json_in(folder.path(), &["limits", "article", "--json", "--out", "t.csv", "--picture", "t.svg"]);
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 9, "three elements, each with three methods");
     let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
@@ -49,13 +55,9 @@ fn limits_are_those_of_solve() {
 /// Next to buckling `warped` stops; its limit of 1 % is that of `newton`, whose results are the same.
 #[test]
 fn a_method_may_converge_again_beyond_buckling() {
-    let json: serde_json::Value = serde_json::from_slice(&warpbeam(&["limits", "column", "--json"]).stdout).unwrap();
-    let strip = |method: &str| {
-        let mut strips = json["strips"].as_array().unwrap().iter();
-        strips.find(|strip| strip["element"] == "t6" && strip["method"] == method).unwrap()
-    };
-    let [warped, newton] = ["warped", "newton"].map(strip);
-    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let json = json_in(Path::new("."), &["limits", "column", "--json"]);
+    let [warped, newton] = ["warped", "newton"].map(|method| strip(&json, "t6", method));
+    let number = |value: &Value| value.as_f64().unwrap();
     let [end, again] = ["converges_to", "converges_again_from"].map(|key| number(&warped[key]));
     let gaps: Vec<[f64; 2]> = serde_json::from_value(warped["does_not_converge"].clone()).unwrap();
     assert!(gaps[0] == [end, again] && again < 1.0 && gaps.len() == 2, "{gaps:?}");
@@ -69,8 +71,7 @@ fn an_early_stop_has_a_strip() {
     let folder = tempfile::tempdir().unwrap();
     let settings = ["--set", "beam.element=\"q4\"", "--set", "beam.cells=[10,1]", "--set", "solver.accept_after=2"];
     let args = [&["limits", "cantilever", "--json", "--out", "t.csv"][..], &settings].concat();
-    let output = warpbeam_in(folder.path(), &args);
-    let json = parsed(&output);
+    let json = json_in(folder.path(), &args);
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 10, "nine strips, and the one of the early stop");
     let early: Vec<_> = strips.iter().filter(|strip| strip["accept_after"] == 2).collect();
@@ -92,11 +93,8 @@ fn the_limit_of_linear_theory_is_that_of_the_exact_beam() {
     let text = stdout(&warpbeam(&["curve", "elastica"]));
     let line = text.lines().find(|line| line.starts_with("linear theory differs by 5 %")).unwrap();
     let percent: f64 = line.split(" at ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
-    let json = stdout(&warpbeam(&["limits", "elastica", "--json"]));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let strips = json["strips"].as_array().unwrap();
-    let linear = strips.iter().find(|s| s["element"] == "t6" && s["method"] == "linear").unwrap();
-    let factor = linear["within_5_percent"].as_f64().unwrap();
+    let json = json_in(Path::new("."), &["limits", "elastica", "--json"]);
+    let factor = strip(&json, "t6", "linear")["within_5_percent"].as_f64().unwrap();
     assert!((factor / (0.01 * percent) - 1.0).abs() < 0.1, "{factor}, curve: {percent} %");
 }
 
@@ -107,9 +105,7 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
     // A coarse mesh and a short motion keep the test short.
     let scene = ["jelly", "--json", "--set", "beam.cells=[8,2]", "--set", "dynamics.duration=0.5"];
     let args = [&["limits", "--out", "t.csv", "--picture", "t.svg"][..], &scene].concat();
-    let output = warpbeam_in(folder.path(), &args);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let json = parsed(&output);
+    let json = json_in(folder.path(), &args);
     let strips = json["strips"].as_array().unwrap();
     let own = json["full_load"].as_f64().unwrap();
     assert_eq!((strips.len(), &json["load"]), (4, &"time step".into()));
@@ -136,8 +132,7 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
             let step = format!("dynamics.time_step={}", factor * own);
             let integrator = format!("dynamics.integrator=\"{integrator}\"");
             let args = [&["solve"][..], &scene, &["--set", &integrator, "--set", &step]].concat();
-            let json: serde_json::Value = serde_json::from_slice(&warpbeam(&args).stdout).unwrap();
-            json["status"] != "stopped"
+            parsed(&warpbeam(&args))["status"] != "stopped"
         };
         assert!(finishes(0.98 * end) && !finishes(1.05 * end), "{integrator}: {end}");
     }
@@ -155,10 +150,8 @@ fn ends_are_those_of_single_solves() {
     for (name, element, key, wanted) in
         [("limit-arch", "t3", "law_ends_at", jump), ("limit-column", "t6", "within_1_percent", error)]
     {
-        let json = parsed(&warpbeam(&["limits", &file(name), "--json"]));
-        let strips = json["strips"].as_array().unwrap();
-        let strip = strips.iter().find(|strip| strip["element"] == element && strip["method"] == "newton").unwrap();
-        let found = strip[key].as_f64().unwrap();
+        let json = json_in(Path::new("."), &["limits", &file(name), "--json"]);
+        let found = strip(&json, element, "newton")[key].as_f64().unwrap();
         assert!((found / wanted - 1.0).abs() < 0.015, "{element} {key}: {found}, {wanted}");
     }
 }

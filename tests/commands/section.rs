@@ -6,7 +6,7 @@ use crate::common::*;
 
 /// Returns the JSON object of `section --json`.
 fn sections(args: &[&str]) -> serde_json::Value {
-    serde_json::from_str(&succeeds(&[&["section", "--json"], args].concat())).unwrap()
+    json_in(".".as_ref(), &[&["section", "--json"], args].concat())
 }
 
 /// In text, JSON and files, along the beam and in one cut.
@@ -95,10 +95,7 @@ fn a_cut_in_linear_theory_has_moved_with_the_body() {
 fn sections_of_a_scene_are_printed_with_its_results() {
     let lines = "section=[{at=[\"400 cm\", 0.0]}, {at=[7.0, 0.1], angle=\"20°\"}]";
     let of = |command: &str, more: &[&str]| warpbeam(&[&[command, "cantilever", "--set", lines], more].concat());
-    let values = |command: &str| -> serde_json::Value {
-        let json: serde_json::Value = serde_json::from_str(&stdout(&of(command, &["--json"]))).unwrap();
-        json["sections"].clone()
-    };
+    let values = |command: &str| parsed(&of(command, &["--json"]))["sections"].clone();
     let each = [&["--at", "4,0"][..], &["--at", "7,0.1", "--angle", "20deg"]]
         .map(|args| sections(&[&["cantilever"], args].concat())["sections"][0].clone());
     assert_eq!(values("solve").as_array().unwrap()[..], each);

@@ -151,6 +151,11 @@ pub fn succeeds_in(folder: &Path, args: &[&str]) -> String {
     text
 }
 
+/// Asserts that a text has each of these parts, which `|` separates.
+pub fn has_all(text: &str, parts: &str) {
+    parts.split('|').for_each(|part| assert!(text.contains(part), "no {part:?}: {text}"));
+}
+
 /// Fails unless a command is refused with a message that contains this text.
 pub fn refuses(args: &[&str], message: &str) {
     refuses_in(Path::new("."), args, message);
@@ -164,6 +169,11 @@ pub fn refuses_in(folder: &Path, args: &[&str], message: &str) {
 /// Returns the JSON object that a command prints, whatever its exit code.
 pub fn parsed(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", stderr(output)))
+}
+
+/// Returns the JSON object of a command that succeeds in a folder.
+pub fn json_in(folder: &Path, args: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&succeeds_in(folder, args)).unwrap()
 }
 
 /// Returns the header of a CSV file, and its rows.
@@ -195,12 +205,16 @@ pub fn file(name: &str) -> String {
 
 /// Returns the output of `solve --json`; fails unless the solve converges.
 pub fn solve_json(args: &[&str]) -> serde_json::Value {
-    serde_json::from_str(&succeeds(&[&["solve", "--json"], args].concat())).unwrap()
+    json_in(Path::new("."), &[&["solve", "--json"], args].concat())
 }
 
 /// Returns the displacement of the first probe, as `solve --json` prints it.
 pub fn solve_u(args: &[&str]) -> Vector2<f64> {
-    let json = solve_json(args);
+    first_u(&solve_json(args))
+}
+
+/// Returns the displacement of the first probe of a JSON object.
+pub fn first_u(json: &serde_json::Value) -> Vector2<f64> {
     [0, 1].map(|i| json["probes"][0]["u"][i].as_f64().unwrap()).into()
 }
 
@@ -337,8 +351,6 @@ pub const SQUARE_PROBE: &str = "probe = [{ name = \"corner\", at = [1, 0] }]";
 pub fn cantilever(length_over_height: f64, alpha: f64, set: &[&str]) -> Scene {
     let length = length_over_height;
     let force = alpha * 1e6 / 12.0 / (length * length);
-    let mut all = vec![format!("beam.length={length}"), format!("load.0.force=[0,{}]", -force)];
-    all.extend(set.iter().map(|s| (*s).to_owned()));
-    let all: Vec<&str> = all.iter().map(String::as_str).collect();
-    scene_with("elastica", &all)
+    let own = [format!("beam.length={length}"), format!("load.0.force=[0,{}]", -force)];
+    scene_with("elastica", &[&own.each_ref().map(String::as_str), set].concat())
 }

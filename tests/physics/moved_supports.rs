@@ -18,14 +18,6 @@ fn path(name: &str, set: &[String]) -> (Scene, LoadPath) {
     (scene, path)
 }
 
-fn vector(value: &Value) -> [f64; 2] {
-    [0, 1].map(|i| value[i].as_f64().unwrap())
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    f64::hypot(a[0] - b[0], a[1] - b[1])
-}
-
 /// Returns assignments that turn both ends of a beam, and stretch it by this much.
 fn turned_both(degrees: f64, length: f64, stretched: f64) -> Vec<String> {
     let (s, c) = degrees.to_radians().sin_cos();
@@ -59,13 +51,11 @@ fn a_turned_clamp_under_load_follows_the_elastica() {
         let set = vec![format!("support.0.turn={}", f64::to_radians(degrees))];
         for method in ["newton", "auto"] {
             let json = solve("catapult", &[&set[..], &[format!("solver.method={method}")]].concat());
-            let u = vector(&json["probes"][0]["u"]);
-            if let Some(tip) = tip {
-                assert!(distance(u, tip) < 0.015, "{degrees}° {method}: {u:?}");
-            }
+            let u = first_u(&json);
+            assert!(tip.is_none_or(|tip| (u - Vector2::from(tip)).norm() < 0.015), "{degrees}° {method}: {u}");
             assert!(json["stable"] == true && json["jumped"] == false && json["on_path_from_rest"] == true, "{json}");
             let end = path("catapult", &set).1.states.last().unwrap().probes[0];
-            assert!(distance(u, end.into()) < 1e-4, "{degrees}° {method}: {u:?} {end}");
+            assert!((u - end).norm() < 1e-4, "{degrees}° {method}: {u} {end}");
         }
     }
     // Under less load, the path folds.

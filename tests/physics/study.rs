@@ -217,9 +217,7 @@ fn study_of_a_motion_writes_its_files() {
         let out = folder.path().join(id);
         let summary = succeeds(&["study", id, "--quick", "--set", set, "--out", out.to_str().unwrap()]);
         assert_eq!(summary, fs::read_to_string(out.join("study.txt")).unwrap());
-        for text in ["its own error about", "real time", "an error of 10 % costs", "auto compared with newton"] {
-            assert!(summary.contains(text), "{text}: {summary}");
-        }
+        has_all(&summary, "its own error about|real time|an error of 10 % costs|auto compared with newton");
         let csv = fs::read_to_string(out.join("study.csv")).unwrap();
         let (header, rows) = table(&csv);
         assert_eq!(
