@@ -59,6 +59,11 @@ pub fn window_at([step, most]: [f32; 2], size: [f32; 2], lab: Lab) -> Ui {
     ))
 }
 
+/// Returns a window with a scene that may not come to rest.
+pub fn window_of(id: &str, scene: Scene) -> Ui {
+    window(SIZE, lab_of(id, scene))
+}
+
 /// Opens a built-in scene in a window whose frames are short enough for double clicks.
 pub fn open(id: &str) -> Ui {
     open_of(id, scene(id))
@@ -72,9 +77,15 @@ pub fn open_of(id: &str, scene: Scene) -> Ui {
 
 /// Opens a window of a scene that is solved.
 pub fn open_solved(id: &str, scene: Scene) -> Ui {
+    open_with(SIZE, id, scene, &|_| {})
+}
+
+/// Opens a window of this size of a scene that is solved, after `show`.
+pub fn open_with(size: [f32; 2], id: &str, scene: Scene, show: &dyn Fn(&mut Lab)) -> Ui {
     let mut lab = lab_of(id, scene);
+    show(&mut lab);
     lab.solve();
-    let mut ui = window(SIZE, lab);
+    let mut ui = window(size, lab);
     ui.run();
     ui
 }
@@ -377,9 +388,23 @@ pub fn primary(pos: Pos2, pressed: bool) -> Event {
     Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE }
 }
 
+/// Returns the event of a key without modifiers.
+pub fn key_event(key: Key, pressed: bool) -> Event {
+    Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
+}
+
 /// Returns the first force of a scene.
 pub fn force(scene: &Scene) -> [f64; 2] {
-    scene.loads.iter().find_map(|load| if let Load::Force { force, .. } = load { Some(*force) } else { None }).unwrap()
+    forces(scene)[0]
+}
+
+/// Returns the forces of a scene.
+pub fn forces(scene: &Scene) -> Vec<[f64; 2]> {
+    scene
+        .loads
+        .iter()
+        .filter_map(|load| if let Load::Force { force, .. } = load { Some(*force) } else { None })
+        .collect()
 }
 
 /// Returns the window position of a point of the plane.
@@ -391,10 +416,8 @@ pub fn in_view(lab: &Lab, place: Vector2<f64>) -> Pos2 {
 /// Returns two texts in the view of which one covers the other.
 pub fn covered_text(ui: &Ui) -> Option<[String; 2]> {
     let view = ui.state().view_rect();
-    let texts = shapes(ui).into_iter().filter_map(|shape| match shape {
-        egui::Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect().shrink(1.0))),
-        _ => None,
-    });
+    let texts = text_shapes(ui).into_iter();
+    let texts = texts.map(|(_, text)| (text.galley.text().to_owned(), text.visual_bounding_rect().shrink(1.0)));
     let texts: Vec<(String, Rect)> = texts.filter(|(_, at)| view.contains_rect(*at)).collect();
     let pairs = texts.iter().enumerate().flat_map(|(i, a)| texts[..i].iter().map(move |b| (a, b)));
     // Semibold texts are drawn twice.
@@ -402,26 +425,30 @@ pub fn covered_text(ui: &Ui) -> Option<[String; 2]> {
     covered.next().map(|(a, b)| [a.0.clone(), b.0.clone()])
 }
 
-/// Returns all painted shapes, including nested ones.
-pub fn shapes(ui: &Ui) -> Vec<egui::Shape> {
-    fn flatten(shape: &egui::Shape, found: &mut Vec<egui::Shape>) {
+/// Returns all painted shapes with their clip rectangles, including nested ones.
+pub fn shapes(ui: &Ui) -> Vec<(Rect, egui::Shape)> {
+    fn flatten(shape: &egui::Shape, clip: Rect, found: &mut Vec<(Rect, egui::Shape)>) {
         match shape {
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| flatten(shape, found)),
-            shape => found.push(shape.clone()),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| flatten(shape, clip, found)),
+            shape => found.push((clip, shape.clone())),
         }
     }
     let mut found = Vec::new();
-    ui.output().shapes.iter().for_each(|clipped| flatten(&clipped.shape, &mut found));
+    ui.output().shapes.iter().for_each(|clipped| flatten(&clipped.shape, clipped.clip_rect, &mut found));
     found
+}
+
+/// Returns all painted texts with their clip rectangles.
+pub fn text_shapes(ui: &Ui) -> Vec<(Rect, egui::epaint::TextShape)> {
+    let texts = shapes(ui).into_iter();
+    texts
+        .filter_map(|(clip, shape)| if let egui::Shape::Text(text) = shape { Some((clip, text)) } else { None })
+        .collect()
 }
 
 /// Returns all painted texts with their positions.
 pub fn painted(ui: &Ui) -> Vec<(Pos2, String)> {
-    let texts = shapes(ui).into_iter().filter_map(|shape| match shape {
-        egui::Shape::Text(text) => Some((text.pos, text.galley.text().to_owned())),
-        _ => None,
-    });
-    texts.collect()
+    text_shapes(ui).into_iter().map(|(_, text)| (text.pos, text.galley.text().to_owned())).collect()
 }
 
 /// Runs frames until `done`, with a short sleep after each for background tasks; returns the number of frames.

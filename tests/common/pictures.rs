@@ -5,10 +5,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use warpbeam::Simulation;
 use warpbeam::app::{Lab, Picture};
-use warpbeam::scene::{Analysis, Source};
+use warpbeam::scene::Analysis;
 
+use super::lab::lab_of;
 use super::{scene, scene_with};
 
 /// Returns the `--set` assignments for a scene's picture: a body in motion is drawn half a second after its start.
@@ -21,9 +21,7 @@ pub fn for_picture(id: &str) -> &'static [&'static str] {
 
 /// Returns a lab with a built-in scene, changed by [`for_picture`].
 pub fn lab(id: &str) -> Lab {
-    let scene = scene_with(id, for_picture(id));
-    let simulation = Simulation::new(&scene).unwrap();
-    Lab::new(Source { name: id.into(), assignments: Vec::new() }, scene, simulation)
+    lab_of(id, scene_with(id, for_picture(id)))
 }
 
 pub fn read_png(path: &Path) -> Picture {

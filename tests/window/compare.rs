@@ -4,10 +4,6 @@ use crate::common::lab::{self, *};
 use crate::common::pictures::{distance, pixel};
 use warpbeam::render::Gpu;
 
-fn open_of(id: &str, scene: Scene) -> Ui {
-    window(SIZE, lab_of(id, scene))
-}
-
 /// Draws frames until a condition holds.
 fn wait(ui: &mut Ui, what: &str, holds: impl Fn(&Lab) -> bool) {
     lab::wait(ui, what, holds);
@@ -23,19 +19,16 @@ fn set(ui: &mut Ui, id: &str, assignment: &str) {
     ui.step();
 }
 
-fn have_ended(lab: &Lab) -> bool {
-    !lab.panes().is_empty() && lab.panes().iter().all(|pane| pane.end().is_some())
-}
-
 fn are_judged(lab: &Lab) -> bool {
     let has_failed = |pane: &Pane| pane.end().is_some_and(|end| !end.status.is_success());
     let judged = |pane: &Pane| pane.error_percent.is_some() && pane.seconds().is_some() || has_failed(pane);
+    let mut panes = lab.panes().iter();
     // The error of a live reference comes before that of the reference.
-    have_ended(lab) && !lab.is_computing() && lab.panes().iter().all(judged)
+    !lab.panes().is_empty() && !lab.is_computing() && panes.all(|pane| pane.end().is_some() && judged(pane))
 }
 
 fn compared(id: &str, panes: &str) -> Ui {
-    let mut ui = open_of(id, scene(id));
+    let mut ui = window_of(id, scene(id));
     ui.state_mut().show_comparison(&parse_panes(panes).unwrap());
     wait_for_panes(&mut ui);
     ui
@@ -63,7 +56,7 @@ fn panes_agree_with_solves(ui: &Ui) {
 
 #[test]
 fn presets_make_panes_with_the_results_of_independent_solves() {
-    let mut ui = open_of("article", scene("article"));
+    let mut ui = window_of("article", scene("article"));
     ui.run();
     ui.key_press(Key::K);
     ui.step();
@@ -105,10 +98,8 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
         set(&mut ui, "cantilever", &format!("load.0.force=[0,{force}]"));
         for _ in 0..4 {
             let error = ui.state().panes()[0].error_percent;
-            assert!(
-                error.is_none_or(|error| (error - before).abs() < 0.2 * before + 0.1),
-                "{error:?} %, before {before} %"
-            );
+            let is_same = error.is_none_or(|error| (error - before).abs() < 0.2 * before + 0.1);
+            assert!(is_same, "{error:?} %, before {before} %");
             ui.step();
         }
     }
@@ -153,10 +144,7 @@ fn a_diverging_pane_does_not_set_the_range_of_colours() {
         ui.hover_at(egui::pos2(1100.0, 600.0 + f32::from(i)));
         set(&mut ui, "cantilever", &format!("load.0.force=[0,-{}]", 1e3 + 1e2 * f64::from(i)));
         let panes = ui.state().panes();
-        let [linear, warped] = [0, 1].map(|number| {
-            let u = panes[number].simulation().unwrap().displacement();
-            largest(u)
-        });
+        let [linear, warped] = [0, 1].map(|number| largest(panes[number].simulation().unwrap().displacement()));
         has_diverged |= warped > 2.0 * linear;
         let high = panes[1].color_range()[1];
         assert!(high < 1e6, "{high} Pa under {:?} N", ui.force());
@@ -188,7 +176,7 @@ fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
 fn panes_magnify_the_displacement() {
     let mut stiff = scene("cantilever");
     stiff.material.young *= 1e4;
-    let mut ui = open_of("cantilever", stiff);
+    let mut ui = window_of("cantilever", stiff);
     ui.state_mut().show_comparison(&parse_panes("linear,warped,newton:t6").unwrap());
     wait_for_panes(&mut ui);
     assert_eq!(magnified(&mut ui, Magnification::Factor(400.0)), 400.0);
@@ -211,7 +199,7 @@ fn magnified(ui: &mut Ui, magnification: Magnification) -> f64 {
 fn panes_of_motions_magnify_the_displacement() {
     let mut weak = scene("chime");
     weak.scale_loads(0.05);
-    let mut ui = open_of("chime", weak);
+    let mut ui = window_of("chime", weak);
     ui.step();
     ui.key_press(Key::K);
     wait(&mut ui, "motions", |lab| lab.panes().iter().all(|pane| pane.simulation().is_some()));
@@ -313,7 +301,7 @@ fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
 /// Paused panes say so in their headers too.
 #[test]
 fn paused_panes_are_paused_everywhere() {
-    let mut ui = open_of("article", scene("article"));
+    let mut ui = window_of("article", scene("article"));
     ui.run();
     ui.click_for("Step", 2);
     ui.state_mut().show_comparison(&parse_panes("linear,newton").unwrap());

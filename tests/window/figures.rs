@@ -10,23 +10,15 @@ const SETS: &[&str] = &["beam.element=t3", "beam.cells=[80,8]", "load.0.force=[0
 
 /// Returns a solved scene with its load curve.
 fn with_curve(scene: Scene) -> Ui {
-    shown(scene, &|lab| lab.show_curve())
-}
-
-fn shown(scene: Scene, show: &dyn Fn(&mut Lab)) -> Ui {
-    let mut lab = lab_of("scene", scene);
-    show(&mut lab);
-    lab.solve();
-    let mut ui = window(SIZE, lab);
-    ui.run();
-    ui
+    open_with(SIZE, "scene", scene, &|lab| lab.show_curve())
 }
 
 #[test]
 fn a_wrong_displacement_of_the_right_length_has_an_error() {
     let cantilever = scene_with("cantilever", SETS);
     let exact = Reference::of(&cantilever).unwrap().first().unwrap().displacement;
-    let ui = shown(cantilever.clone(), &|lab| lab.show_comparison(&parse_panes("linear,newton").unwrap()));
+    let compared = |lab: &mut Lab| lab.show_comparison(&parse_panes("linear,newton").unwrap());
+    let ui = open_with(SIZE, "scene", cantilever.clone(), &compared);
     let pane = &ui.state().panes()[0];
     let linear = pane.end().unwrap().probes[0].u;
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
@@ -78,16 +70,8 @@ fn loads_are_plotted_in_their_unit() {
 
 /// Returns every painted text with its rectangle and its clip rectangle.
 fn texts(ui: &Ui) -> Vec<(String, Rect, Rect)> {
-    fn of(shape: &egui::Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
-        match shape {
-            egui::Shape::Text(text) => found.push((text.galley.text().to_owned(), text.visual_bounding_rect(), clip)),
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| of(shape, clip, found)),
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    ui.output().shapes.iter().for_each(|clipped| of(&clipped.shape, clipped.clip_rect, &mut found));
-    found
+    let texts = text_shapes(ui).into_iter();
+    texts.map(|(clip, text)| (text.galley.text().to_owned(), text.visual_bounding_rect(), clip)).collect()
 }
 
 /// On the first frame, titles of axes are already next to their numbers, and no text is clipped.

@@ -129,9 +129,7 @@ fn a_clicked_triangle_shows_its_f_r_and_s() {
     for element in [6, 0, 3] {
         let (rest, now) = corners(ui.state(), element);
         let at = in_view(ui.state(), middle(now));
-        ui.hover_at(at);
-        ui.drag_at(at);
-        ui.release(at);
+        ui.click_at(at);
         let f = gradient(rest, now);
         let r = polar(&f).unwrap();
         let angle = r.angle().to_degrees();

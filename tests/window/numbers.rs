@@ -20,7 +20,7 @@ pub fn solve(scene: &Scene) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene.to_toml().unwrap()).unwrap();
-    serde_json::from_slice(&warpbeam(&["solve", path.to_str().unwrap(), "--json"]).stdout).unwrap()
+    solve_end(&[path.to_str().unwrap()]).1
 }
 
 /// Formats a displacement as plots do.
@@ -94,19 +94,14 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
     assert_eq!(shown.row("Equilibrium"), stable, "{what}");
     assert!(stable == "\u{2013}" || summary.contains(&format!("· {stable} ·")), "{what}: {summary}");
     let name = probe["name"].as_str().unwrap();
-    let u = [0, 1].map(|i| probe["u"][i].as_f64().unwrap());
-    assert_eq!(shown.row(&format!("{name} Δx, Δy")), engineering_pair(u, "m"), "{what}");
+    let whole_pair = |value: &Value| engineering_pair([0, 1].map(|i| value[i].as_f64().unwrap()), "m");
+    assert_eq!(shown.row(&format!("{name} Δx, Δy")), whole_pair(&probe["u"]), "{what}");
     let mesh_error = format!("{} (estimate)", percent(json["mesh_error_percent"].as_f64().unwrap()));
     assert_eq!(shown.row("Error in energy"), mesh_error, "{what}");
     let strain = engineering(three_digits(100.0 * json["max_strain"].as_f64().unwrap()), "%");
     let stress = &json["max_von_mises"];
-    let stress = match stress["value"].as_f64() {
-        Some(value) => {
-            let at = [0, 1].map(|i| stress["at"][i].as_f64().unwrap());
-            format!("{} at {}", engineering(three_digits(value), "Pa"), engineering_pair(at, "m"))
-        }
-        None => "\u{2013}".to_owned(),
-    };
+    let place = |value: f64| format!("{} at {}", engineering(three_digits(value), "Pa"), whole_pair(&stress["at"]));
+    let stress = stress["value"].as_f64().map_or("\u{2013}".to_owned(), place);
     assert!(shown.row("Stress").starts_with(&stress), "{what}: {stress}, {}", shown.row("Stress"));
     let row = shown.row("Strain");
     assert!(row == strain || row == format!("{strain}: too large"), "{what}: {strain}");
@@ -132,7 +127,6 @@ fn compare(what: &str, shown: &Shown, json: &Value) {
 /// Each scene has its own load and a hundred times it, where `warped` diverges and has no numbers; some have a tenth too.
 #[test]
 fn numbers_are_those_of_solve() {
-    let folder = tempfile::tempdir().unwrap();
     let (mut results, mut diverged) = (0, 0);
     let little = sampled(ids_of(Analysis::Static), 4);
     for id in ids_of(Analysis::Static) {
@@ -146,11 +140,8 @@ fn numbers_are_those_of_solve() {
             if factor > 1.0 {
                 scene.solver.method = MethodKind::Warped;
             }
-            let path = folder.path().join("scene.toml");
-            std::fs::write(&path, scene.to_toml().unwrap()).unwrap();
-            let name = if scene.mesh.is_some() { id } else { path.to_str().unwrap() };
             let what = format!("{id} at {factor}");
-            let json: Value = serde_json::from_slice(&warpbeam(&["solve", name, "--json"]).stdout).unwrap();
+            let json = if scene.mesh.is_some() { solve_end(&[id]).1 } else { solve(&scene) };
             let shown = Shown::of(id, scene.clone());
             if json["status"] == "converged" {
                 compare(&what, &shown, &json);
@@ -279,15 +270,13 @@ fn cards_have_the_numbers_of_solve() {
 fn settings_have_the_errors_of_study() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let output = warpbeam(&["study", "article", "--quick", "--out", out]);
-    assert!(output.status.success(), "{output:?}");
-    let table = std::fs::read_to_string(folder.path().join("study.csv")).unwrap();
-    let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
-    let head = rows.next().unwrap();
+    succeeds(&["study", "article", "--quick", "--out", out]);
+    let csv = std::fs::read_to_string(folder.path().join("study.csv")).unwrap();
+    let (head, rows) = table(&csv);
     let column = |name: &str| head.iter().position(|own| *own == name).unwrap();
     let scene = scene("article");
     let study = Study::new(&scene, Extent::Quick, &go_on).unwrap();
-    let written: Vec<_> = rows.zip(&study.measurements).collect();
+    let written: Vec<_> = rows.into_iter().zip(&study.measurements).collect();
     assert_eq!(written.len(), study.measurements.len());
     let texts = written.iter().map(|(row, m)| {
         assert_eq!((row[column("element")], row[column("method")]), (m.setting.element.id(), m.setting.method.id()));

@@ -4,18 +4,9 @@ use crate::common::lab::*;
 use crate::ui_interaction::is_solved;
 
 fn open(id: &str) -> Ui {
-    let mut ui = open_of(id);
+    let mut ui = window_of(id, scene(id));
     ui.run();
     ui
-}
-
-/// Returns a window with a scene that may not come to rest.
-fn open_of(id: &str) -> Ui {
-    open_with(id, scene(id))
-}
-
-fn open_with(id: &str, scene: Scene) -> Ui {
-    window(SIZE, lab_of(id, scene))
 }
 
 #[test]
@@ -215,10 +206,7 @@ fn keys_that_end_a_text_edit_do_not_act_on_the_window() {
     let mut ui = open("article");
     let converged = ui.simulation().iterations();
     ui.enter("Force");
-    let key = |key, text: &str| {
-        let press = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
-        [press, Event::Text(text.to_owned())]
-    };
+    let key = |key, text: &str| [key_event(key, true), Event::Text(text.to_owned())];
     // Outside the field, Space pauses and N steps.
     let typed = [key(Key::Num3, "30"), key(Key::Space, " "), key(Key::N, "kN")].into_iter().flatten();
     let [enter, _] = key(Key::Enter, "");
@@ -294,7 +282,7 @@ fn remedies_are_one_click_away() {
     assert_eq!((ui.scene().solver.method, ui.simulation().status()), (MethodKind::Newton, &Status::Converged));
 
     // The slot of the error has the progress of the reference solution.
-    let mut ui = open_of("cook");
+    let mut ui = window_of("cook", scene("cook"));
     ui.wait_until("it is said", |ui| ui.says("computing the reference: "));
     settle(&mut ui);
     assert!(!ui.says("computing the reference: "));
@@ -304,7 +292,7 @@ fn remedies_are_one_click_away() {
 /// An outline whose error is unknown is not drawn as a reference.
 #[test]
 fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
-    let mut ui = open_with("article", scene("article").force([2.5, 0.0], [0.0, -20e3]));
+    let mut ui = window_of("article", scene("article").force([2.5, 0.0], [0.0, -20e3]));
     ui.run();
     ui.expect(&["Load 2 at (2.5, 0) m acts on the nearest node, 707.1 mm away"]);
 
@@ -314,7 +302,7 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     let scene = scene.force(place, [60e3, 0.0]).probe("there", place).with_method(MethodKind::Newton);
     let reference = Reference::of(&scene).unwrap();
     assert_eq!((reference.first(), reference.outline.len()), (None, 0));
-    let mut ui = open_with("article", scene);
+    let mut ui = window_of("article", scene);
     settle(&mut ui);
     ui.expect(&["no reference · nodal strain 21 %"]);
 
@@ -398,11 +386,7 @@ fn keys_are_listed_and_work() {
     // Only pressed: a release would be another frame with its own output.
     ui.key_down(Key::C);
     ui.step();
-    let text = ui.output().platform_output.commands.iter().find_map(|c| match c {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    let text = text.unwrap();
+    let [egui::OutputCommand::CopyText(text)] = &ui.output().platform_output.commands[..] else { panic!("no text") };
     assert!(text.starts_with("# Save as scene.toml, then: warpbeam solve scene.toml"), "{text}");
     let path = tempfile::NamedTempFile::with_suffix(".toml").unwrap();
     std::fs::write(&path, text).unwrap();
@@ -422,9 +406,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
     ui.run();
     let zoomed = ui.camera();
     assert!(zoomed.scale > 1.2 * fitted.scale && (zoomed.to_world(offset) - under).norm() < 1e-6, "{zoomed:?}");
-    ui.hold(pointer);
-    ui.move_to(pointer + vec2(40.0, 25.0));
-    ui.release(pointer + vec2(40.0, 25.0));
+    ui.drag(pointer, pointer + vec2(40.0, 25.0));
     assert!((ui.camera().to_world([190.0, -55.0]) - under).norm() < 1e-2, "the body did not follow the pointer");
     ui.key(Key::F);
     assert_eq!(ui.camera(), fitted);
@@ -472,7 +454,7 @@ fn a_support_is_dragged_and_its_reaction_is_shown() {
         ui.type_into("Move y", text);
         assert!((crown(&ui) - y).abs() < within, "{text}");
     }
-    assert!(open_of("cantilever").query_by_label("Move y").is_none(), "its supports are fixed");
+    assert!(window_of("cantilever", scene("cantilever")).query_by_label("Move y").is_none(), "its supports are fixed");
 }
 
 /// A built-in scene has its edits when the user returns to it, and opens without them when it is chosen once more.
@@ -651,7 +633,7 @@ fn a_beam_is_pulled_and_springs_back() {
 /// A motion runs in real time; a reset returns to its start.
 #[test]
 fn a_motion_is_run_paused_stepped_pulled_and_reset() {
-    let mut ui = open_of("swing");
+    let mut ui = window_of("swing", scene("swing"));
     let time = |ui: &Ui| ui.simulation().state().time();
     wait(&mut ui, "half a second of motion", |lab| lab.simulation().state().time() > 0.5);
     ui.click_for("Pause", 3);
@@ -684,7 +666,7 @@ fn a_motion_is_run_paused_stepped_pulled_and_reset() {
 fn every_motion_is_shown_with_every_integrator_and_plot() {
     let plots = IntegratorKind::all().zip(["Energy", "Tip"].into_iter().cycle()).collect::<Vec<_>>();
     for (id, (kind, plot)) in sampled(pairs(ids_of(Analysis::Dynamic), plots), 3) {
-        let mut ui = open_of(id);
+        let mut ui = window_of(id, scene(id));
         ui.key_press(Key::E);
         ui.run_steps(2);
         ui.edit(|scene| scene.dynamics.integrator = kind);
@@ -705,7 +687,7 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
 /// An integrator that becomes unstable leaves comparison and plots with a message; the others continue.
 #[test]
 fn an_unstable_integrator_leaves_the_comparison() {
-    let mut ui = open_of("swing");
+    let mut ui = window_of("swing", scene("swing"));
     ui.state_mut().compare_with(IntegratorKind::SymplecticEuler);
     ui.state_mut().compare_with(IntegratorKind::EnergyMomentum);
     ui.wait_until("a message", |ui| ui.says("symplectic-euler is unstable: its critical time step is"));
@@ -716,7 +698,7 @@ fn an_unstable_integrator_leaves_the_comparison() {
 #[test]
 fn a_motions_settings_are_measured_and_applied() {
     // The motion is shortened for the test.
-    let mut ui = open_with("swing", scene_with("swing", &["dynamics.duration=0.1"]));
+    let mut ui = window_of("swing", scene_with("swing", &["dynamics.duration=0.1"]));
     ui.key_press(Key::Space);
     ui.key_press(Key::B);
     ui.run_steps(4);
@@ -744,7 +726,7 @@ fn a_motions_settings_are_measured_and_applied() {
 #[test]
 fn integrators_are_compared_in_panes() {
     // A coarse mesh keeps a busy machine near real time.
-    let mut ui = open_with("swing", scene_with("swing", &["beam.cells=[6,1]"]));
+    let mut ui = window_of("swing", scene_with("swing", &["beam.cells=[6,1]"]));
     ui.key_press(Key::K);
     ui.run_steps(4);
     assert!(ui.state().panes().iter().all(|pane| pane.place.is_some()));

@@ -126,10 +126,7 @@ fn a_card_leaves_the_body_in_view() {
     for size in [[640.0, 480.0], [900.0, 600.0], SIZE, [1920.0, 1080.0]] {
         for name in ["article", "cantilever", "gravity"] {
             let what = format!("{size:?}, {name}");
-            let mut lab = lab_of(name, scene(name));
-            lab.solve();
-            let mut ui = window(size, lab);
-            ui.run();
+            let mut ui = open_with(size, name, scene(name), &|_| {});
             let (low, high) = ui.simulation().mesh().bounds();
             let on = |part: [f64; 2]| low + Vector2::from(part).component_mul(&(high - low));
             let grid = (0..=40).flat_map(|i| [0.1, 0.5, 0.9].map(|y| on([0.01 + 0.98 * f64::from(i) / 40.0, y])));

@@ -9,10 +9,6 @@ fn open(id: &str) -> Ui {
     ui
 }
 
-fn choose(ui: &mut Ui, rest: [f64; 2], entry: &str) {
-    ui.choose(ui.on_body(rest), entry);
-}
-
 /// Returns the text of the forces of the first section.
 fn forces(lab: &Lab) -> String {
     let simulation = lab.simulation();
@@ -25,7 +21,7 @@ fn forces(lab: &Lab) -> String {
 fn a_section_is_added_moved_and_removed() {
     let mut ui = open("cantilever");
     let before = ui.scene().clone();
-    choose(&mut ui, [4.0, 0.0], "Add a section here");
+    ui.choose(ui.on_body([4.0, 0.0]), "Add a section here");
     let line = ui.scene().sections[0];
     assert!((line.at - Vector2::new(4.0, 0.0)).norm() < 0.05 && line.angle == 0.0, "{line:?}");
     let simulation = ui.simulation();
@@ -51,8 +47,8 @@ fn a_section_is_added_moved_and_removed() {
         assert_eq!(ui.scene().sections.first().map(|line| line.at), at);
     }
     assert_eq!(*ui.scene(), before);
-    choose(&mut ui, [4.0, 0.0], "Add a section here");
-    choose(&mut ui, [4.0, 0.1], "Remove this section");
+    ui.choose(ui.on_body([4.0, 0.0]), "Add a section here");
+    ui.choose(ui.on_body([4.0, 0.1]), "Remove this section");
     assert_eq!(*ui.scene(), before);
 }
 
@@ -60,7 +56,7 @@ fn a_section_is_added_moved_and_removed() {
 #[test]
 fn a_section_is_turned_by_its_ends() {
     let mut ui = open("cantilever");
-    choose(&mut ui, [4.0, 0.0], "Add a section here");
+    ui.choose(ui.on_body([4.0, 0.0]), "Add a section here");
     let line = ui.scene().sections[0];
     // Each end of the cut, the place to which it is dragged, and the angle of the normal then.
     for (end, to, degrees) in [([4.0, 0.5], [4.49, 0.5], -45.0), ([3.5, -0.5], [4.0, -0.5], 0.0)] {
@@ -80,7 +76,7 @@ fn the_plots_have_the_values_of_the_library() {
     let mut ui = open("cantilever");
     ui.key_press(Key::Q);
     ui.wait_until("the moment", |ui| painted(ui).iter().any(|(_, text)| text.starts_with("bending moment M")));
-    choose(&mut ui, [4.0, 0.0], "Add a section here");
+    ui.choose(ui.on_body([4.0, 0.0]), "Add a section here");
     let simulation = ui.simulation();
     let section = simulation.section(ui.scene().sections[0]).unwrap();
     let within = section_chart::contexts(std::slice::from_ref(&section), simulation);
@@ -108,7 +104,7 @@ fn a_body_without_axis_has_its_own_sections_only() {
     ui.run_steps(4);
     assert!(ui.says("No section"));
     let node = ui.simulation().mesh().nodes()[0];
-    choose(&mut ui, node.into(), "Add a section here");
+    ui.choose(ui.on_body(node), "Add a section here");
     assert!(!ui.says("No section") && ui.says("in the cut (of the drawn stress)") && !ui.has(Role::Button, "N"));
     assert_eq!(ui.scene().sections.len(), 1);
     // Without the menu: a section through the middle of the body.

@@ -81,6 +81,11 @@ fn on_the_body(lab: &Lab, part: f64) -> egui::Pos2 {
     in_view(lab, nodes[node] + u[node])
 }
 
+/// Returns a vector with components from −1 to 1.
+fn vector(random: &mut Random) -> egui::Vec2 {
+    egui::vec2(random.between(-1.0, 1.0) as f32, random.between(-1.0, 1.0) as f32)
+}
+
 /// A window whose body is dragged at random keeps running and shows finite values.
 #[test]
 fn random_input_never_breaks_the_window() {
@@ -95,21 +100,11 @@ fn random_input_never_breaks_the_window() {
         let mut play = |frames: Range<u32>| {
             for frame in frames {
                 let rect = ui.state().view_rect();
-                let reach = 0.45 * rect.size();
-                let place = rect.center()
-                    + egui::vec2(
-                        random.between(-1.0, 1.0) as f32 * reach.x,
-                        random.between(-1.0, 1.0) as f32 * reach.y,
-                    );
+                let place = rect.center() + vector(&mut random) * 0.45 * rect.size();
                 match frame % 12 {
                     0 => {
                         let node = on_the_body(ui.state(), 0.5 + 0.5 * random.between(-1.0, 1.0));
-                        ui.drag_at(
-                            node + egui::vec2(
-                                random.between(-1.0, 1.0) as f32 * 20.0,
-                                random.between(-1.0, 1.0) as f32 * 20.0,
-                            ),
-                        );
+                        ui.drag_at(node + vector(&mut random) * 20.0);
                     }
                     8 => ui.drop_at(place),
                     _ => ui.hover_at(place),

@@ -138,15 +138,8 @@ fn the_body_depends_on_the_time_only() {
 #[test]
 fn any_input_ends_the_story_and_leaves_the_default_scene() {
     let at = Pos2::new(700.0, 250.0);
-    let key = |pressed| Event::Key {
-        key: Key::Space,
-        physical_key: None,
-        pressed,
-        repeat: false,
-        modifiers: Modifiers::NONE,
-    };
     let input = |ui: &mut Ui, number: u32, pressed: bool| match number {
-        0 => ui.event(key(pressed)),
+        0 => ui.event(key_event(Key::Space, pressed)),
         1 => ui.event(primary(at, pressed)),
         _ if pressed => ui.wheel(20.0),
         _ => {}
@@ -156,7 +149,7 @@ fn any_input_ends_the_story_and_leaves_the_default_scene() {
             let mut ui = story();
             show(&mut ui, time);
             ui.event(Event::PointerMoved(at));
-            ui.event(key(false));
+            ui.event(key_event(Key::Space, false));
             ui.step();
             assert!(ui.state().story().is_some(), "the pointer ended the story");
             input(&mut ui, number, true);

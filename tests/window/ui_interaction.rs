@@ -616,11 +616,8 @@ fn a_moment_needs_an_edge_that_can_rotate() {
         let mut ui = open(id);
         let before = ui.simulation().displacement().to_vec();
         ui.type_into("Moment", moment);
-        let mut edges = ui.scene().loads.iter().filter_map(|l| match l {
-            Load::Moment { edge, .. } => Some(edge),
-            _ => None,
-        });
-        assert!(edges.next().is_some_and(|edge| edge != held), "{id}: a held edge cannot turn");
+        let is_free = |load: &Load| matches!(load, Load::Moment { edge, .. } if edge != held);
+        assert!(ui.scene().loads.iter().any(is_free), "{id}: a held edge cannot turn");
         assert!(largest_distance(ui.simulation().displacement(), &before) > 1e-6, "{id}: it does nothing");
     }
 }
@@ -641,10 +638,7 @@ fn loads_and_supports_are_put_on_other_edges() {
     assert_eq!(*ui.scene(), scene("cantilever"));
     // A force is added with the size of the present ones, a probe at a point, which can be moved and removed.
     ui.push("Force");
-    let [Load::Force { force: first, .. }, Load::Force { force: second, .. }] = &ui.scene().loads[..] else {
-        unreachable!("{:?}", ui.scene().loads)
-    };
-    assert_eq!(first, second);
+    assert_eq!(forces(ui.scene()), [ui.force(); 2]);
     ui.undo();
     assert!(ui.rect(Role::Button, "Probe").right() < 1270.0, "it widens the panel");
     ui.push("Probe");
@@ -758,9 +752,7 @@ fn loads_and_supports_are_added_and_removed() {
     ui.get_by_label_contains("Force 2:").click();
     ui.run();
     ui.type_into("Force", "10 N");
-    let [Load::Force { force: left, .. }, Load::Force { force: second, .. }] = ui.scene().loads[..] else {
-        unreachable!("{:?}", ui.scene().loads)
-    };
+    let [left, second] = forces(ui.scene())[..] else { panic!("{:?}", ui.scene().loads) };
     assert!(left == first && (second[0].hypot(second[1]) - 10.0).abs() < 1e-9, "{left:?} {second:?}");
     assert_eq!(*ui.simulation().status(), Status::Converged);
     let up: f64 = ui.simulation().support_reactions().iter().map(|r| r.force.y).sum();
@@ -772,18 +764,6 @@ fn loads_and_supports_are_added_and_removed() {
         ui.undo();
     }
     assert_eq!(*ui.scene(), before);
-}
-
-/// Rows of the card of a point.
-const CARD: &[&str] =
-    &["u", "θ", "σ_x, σ_y", "τ_xy", "σ_1, σ_2", "von Mises", "ε_X, ε_Y", "γ_XY", "ε_1, ε_2", "ψ", "F", "R", "S"];
-
-/// Returns the values on the card of a point by the names of the rows.
-fn card(ui: &Ui) -> std::collections::BTreeMap<String, String> {
-    let nodes = ui.get_all_by_role(Role::Label).map(|node| node.accesskit_node());
-    let texts: Vec<String> = nodes.filter_map(|node| node.value().or_else(|| node.label())).collect();
-    let rows = texts.windows(2).filter(|pair| CARD.contains(&pair[0].as_str()));
-    rows.map(|pair| (pair[0].clone(), pair[1].clone())).collect()
 }
 
 /// F, S, ε and σ agree with each other to the printed digits, and the card names their kind.
@@ -807,9 +787,9 @@ fn the_card_of_a_point_is_of_one_deformation() {
             [("recovered at the nodes", PointValues::Recovered), ("element value, not smoothed", PointValues::Raw)]
         {
             ui.get_by_label(kind);
-            let card = card(&ui);
+            let card = Shown::labels(&ui);
             let numbers = |name: &str| -> Vec<f64> {
-                card[name].split([' ', '\n', '(', ')', ',']).filter_map(|word| word.parse().ok()).collect()
+                card.row(name).split([' ', '\n', '(', ')', ',']).filter_map(|word| word.parse().ok()).collect()
             };
             let [f, r, s] = ["F", "R", "S"].map(|name| nalgebra::Matrix2::from_row_slice(&numbers(name)));
             // Four decimals are printed.
@@ -820,7 +800,7 @@ fn the_card_of_a_point_is_of_one_deformation() {
             }
             let state = ui.simulation().point_state(point, values).unwrap();
             let stress = engineering(three_digits(state.field(Field::VonMises).unwrap()), "Pa");
-            assert_eq!(card["von Mises"], stress, "{id} {kind}");
+            assert_eq!(card.row("von Mises"), stress, "{id} {kind}");
             assert!((state.stretch - s).amax() < 6e-5, "{id} {kind}: {card:?}");
             ui.get_by_role_and_label(Role::CheckBox, "Each element alone").scroll_to_me();
             ui.run_steps(4);
@@ -839,13 +819,14 @@ fn the_colour_bar_is_not_on_the_arrow_of_a_weight() {
         let (pos, _) = painted(&ui).into_iter().find(|(_, text)| text.starts_with("von Mises")).unwrap();
         let bar = Rect::from_min_size(pos, vec2(170.0, 46.0));
         // The shafts of arrows are three points wide.
-        let arrows = shapes(&ui).into_iter().filter_map(|shape| match shape {
-            egui::Shape::LineSegment { points: [a, b], stroke } if stroke.width == 3.0 => {
-                Some(Rect::from_two_pos(a, b))
+        let mut arrows = Vec::new();
+        for (_, shape) in shapes(&ui) {
+            if let egui::Shape::LineSegment { points: [a, b], stroke } = shape
+                && stroke.width == 3.0
+            {
+                arrows.push(Rect::from_two_pos(a, b));
             }
-            _ => None,
-        });
-        let arrows: Vec<Rect> = arrows.collect();
+        }
         assert!(arrows.len() == 1 && !bar.intersects(arrows[0]), "{size:?}: {bar:?} on {arrows:?}");
     }
 }
@@ -901,11 +882,8 @@ fn enter_in_the_gallery_answers_no_question() {
         if answer == "Discard" {
             ui.undo();
         }
-        assert_eq!(
-            (*ui.scene() == edited, read(own.path()) == edited),
-            (answer != "Save", answer == "Save"),
-            "{answer}"
-        );
+        let is_saved = read(own.path()) == edited;
+        assert_eq!((*ui.scene() != edited, is_saved), (answer == "Save", answer == "Save"), "{answer}");
     }
 }
 
