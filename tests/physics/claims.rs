@@ -217,8 +217,7 @@ fn claims_near_critical_loads_are_true() {
                     claims.check_result(claim, seed, &column);
                 }
                 let is_near = |scene: Scene, expected: f64| {
-                    factor_of("critical", &claims_of(&mut solved(&scene)))
-                        .is_some_and(|at| (at / expected - 1.0).abs() < 1e-3)
+                    critical(&claims_of(&mut solved(&scene))).is_some_and(|at| (at / expected - 1.0).abs() < 1e-3)
                 };
                 let below = push(0.8 * at, 0.0).with_method(MethodKind::Newton);
                 let is_stated = is_near(below, 1.25) && is_near(push(1.0, 0.0).with_method(MethodKind::Linear), at);

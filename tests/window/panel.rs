@@ -117,7 +117,7 @@ fn a_refused_text_stays_for_correction() {
     ui.replace_text("7 kN");
     ui.key(Key::Escape);
     assert_eq!(ui.force(), before);
-    ui.type_all(&[("Force", "12"), ("Force", "12 kg")]);
+    ui.type_all(&[("Force", "12 N"), ("Force", "12 kg")]);
     ui.key_press(Key::Backspace);
     ui.key_press(Key::Backspace);
     ui.text("kN");
@@ -593,7 +593,7 @@ fn decisions_are_shown() {
     unfold(&mut ui, "stable");
     ui.get_by_label("New factorization.");
     // From the state under the large load it iterates; from the next one it uses linear theory.
-    ui.type_all(&[("Force", "0.1"), ("Force", "0.09")]);
+    ui.type_all(&[("Force", "0.1 N"), ("Force", "0.09 N")]);
     ui.get_by_label("Linear theory suffices.");
     ui.type_into("Density", "1234");
     ui.get_by_label("Nothing changed: no solve.");

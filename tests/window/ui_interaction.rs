@@ -293,7 +293,7 @@ fn edits_are_undone_and_redone() {
 fn values_go_back_to_those_of_the_scene() {
     let mut ui = open("cantilever");
     for (label, text) in
-        [("Force", "77"), ("Direction", "-60"), ("Young E", "2e6 Pa"), ("Density", "77"), ("Cells along", "40")]
+        [("Force", "77 N"), ("Direction", "-60"), ("Young E", "2e6 Pa"), ("Density", "77"), ("Cells along", "40")]
     {
         unfold(&mut ui, label);
         for by in [Some(Role::Slider), Some(Role::SpinButton), None] {

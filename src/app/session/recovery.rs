@@ -182,7 +182,7 @@ mod tests {
         next.discard_left(Some(&edits("article", -3.0))).unwrap();
         next.keep(None).unwrap();
         let (mut after, _) = RecoveryCopies::open(&folder).unwrap();
-        after.keep(edits("cantilever", -4.0).parts()).unwrap();
+        after.keep(Some(&edits("cantilever", -4.0))).unwrap();
         drop((next, after));
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, Some(edits("cantilever", -4.0)), "its file is after a free one");
