@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_790),
-    ("study", &["src/study"], 6_887),
-    ("model", &["src/model", "src/scene"], 3_157),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
-    ("simulation", &["src/simulation"], 2_551),
-    ("assembly", &["src/assembly"], 2_993),
-    ("cli", &["src/cli"], 2_315),
+    ("app", &["src/app"], 24_152),
+    ("study", &["src/study"], 6_710),
+    ("model", &["src/model", "src/scene"], 3_173),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
+    ("simulation", &["src/simulation"], 2_555),
+    ("assembly", &["src/assembly"], 2_991),
+    ("cli", &["src/cli"], 2_295),
     ("dynamics", &["src/dynamics"], 1_931),
-    ("render", &["src/render"], 1_915),
+    ("render", &["src/render"], 1_930),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_849),
+    ("tests", &["tests"], 19_283),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 59_549;
+const SRC: usize = 58_690;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
