@@ -114,7 +114,8 @@ impl Gallery {
                 ui.horizontal(|ui| {
                     for entry in row {
                         let is_present = entry.0.id == input.session.document().source.name.as_os_str();
-                        let response = self.entry(ui, &palette, entry, width, is_present);
+                        let is_edited = is_present && input.session.is_edited();
+                        let response = self.entry(ui, &palette, entry, width, (is_present, is_edited));
                         if is_present && !self.is_open && by_key {
                             response.scroll_to_me(Some(Align::Center));
                             response.request_focus();
@@ -136,7 +137,7 @@ impl Gallery {
         palette: &Palette,
         (built_in, scene): &GalleryEntry,
         width: f32,
-        is_present: bool,
+        (is_present, is_edited): (bool, bool),
     ) -> Response {
         const PADDING: f32 = 6.0;
         const TEXT: f32 = 12.0;
@@ -163,7 +164,8 @@ impl Gallery {
         let left = plate.right() + TEXT;
         // On selected or hovered entries only the main text colour has enough contrast.
         let quiet = if fill == palette.control { palette.secondary } else { palette.text };
-        let mut job = described(tr(&scene.name), tr(&scene.about), palette.text, quiet);
+        let about = if is_edited { "Edited. Choose it again to open it without the edits." } else { &scene.about };
+        let mut job = described(tr(&scene.name), tr(about), palette.text, quiet);
         job.wrap = TextWrapping { max_width: rect.right() - PADDING - left, max_rows: 4, ..TextWrapping::default() };
         let galley = ui.painter().layout_job(job);
         let at = pos2(left, rect.center().y - 0.5 * galley.size().y);

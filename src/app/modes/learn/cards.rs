@@ -93,7 +93,7 @@ pub(crate) const CARDS: &[Card] = &[
         title: "Linear theory makes the area grow",
         text: "Linear theory replaces a rotation by its tangent: a part that rotates by an angle θ moves along a \
                straight line instead of an arc, and grows. Its area growth is θ² (θ in radians), whatever the \
-               material. The dashed line is the reference solution, which rotates without growing.",
+               material. The dashed line is the reference solution, which rotates and hardly grows.",
         formula: &["K u = f", "`det` ( I + θ J ) = 1 + θ^{2}"],
         symbols: "K: stiffness matrix (N/m). u: displacements of the nodes (m). f: forces on the nodes (N). I: \
                   identity matrix. J: rotation by 90°. det: determinant, the factor by which an area grows.",
@@ -160,7 +160,7 @@ pub(crate) const CARDS: &[Card] = &[
         title: "Iterate",
         text: "R depends on the positions, and the positions depend on R. So solve with the current R, compute the new \
                R, and solve again: a fixed-point iteration. Near the equilibrium each iteration multiplies the \
-               residual by ρ. Elsewhere each frame iterates to equilibrium; a step is one iteration.",
+               residual by ρ. On other cards a frame iterates to the equilibrium; here a step is one iteration.",
         formula: &["A x_{k+1} = f + R_{k} K X", "A = R_{k} K R_{k}^{T}", "| r_{k+1} | ≈ ρ | r_{k} |"],
         symbols: "k: number of the iteration. r: residual. ρ: convergence factor (spectral radius); below 1 the \
                   iteration converges from a start that is near enough.",
