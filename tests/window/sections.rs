@@ -70,6 +70,26 @@ fn a_section_is_turned_by_its_ends() {
     assert_eq!(ui.scene().sections[0].angle.to_degrees().round(), -45.0);
 }
 
+/// A section and its numbers follow the pointer while it is dragged, in one step of the undo history.
+#[test]
+fn a_section_follows_the_pointer() {
+    let mut ui = open("cantilever");
+    ui.choose(ui.on_body([4.0, 0.0]), "Add a section here");
+    let (before, from) = (ui.scene().clone(), ui.on_body([4.0, 0.0]));
+    let mut places = Vec::new();
+    ui.hold(from);
+    for x in [5.0, 6.0] {
+        ui.move_to(ui.on_body([x, 0.0]));
+        ui.run_steps(3);
+        places.push(ui.scene().sections[0].at.x.round());
+        ui.get_by_label(&forces(ui.state()));
+    }
+    assert_eq!(places, [5.0, 6.0]);
+    ui.release(ui.on_body([6.0, 0.0]));
+    ui.undo();
+    assert_eq!(*ui.scene(), before);
+}
+
 /// The plots show M along the beam, or the stress along a section; N, V and M have their largest values.
 #[test]
 fn the_plots_have_the_values_of_the_library() {

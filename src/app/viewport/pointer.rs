@@ -91,7 +91,7 @@ pub(crate) struct Interaction {
     pub load: Option<(usize, Pull)>,
     /// Index of a load that is reset to the value in the scene's document.
     pub restore: Option<usize>,
-    /// Object whose base was dropped, and the position there.
+    /// Object whose base was dropped, or cut that is dragged, and the position there.
     pub dropped: Option<(Object, Pos2)>,
     /// Click in the view: on a point of the body, or `Some(None)` outside the body.
     pub clicked: Option<Option<MaterialPoint>>,
@@ -291,6 +291,9 @@ impl Pointer {
                 let has_left = f64::from(held.pressed.distance(at)) > DRAG_DISTANCE;
                 if has_left || held.dragged.is_some() {
                     held.dragged = Some(at);
+                    // The body does not depend on its cuts, whose forces follow the pointer.
+                    let is_cut = matches!(held.base.object, Object::Section(_) | Object::SectionEnd { .. });
+                    interaction.dropped = is_cut.then_some((held.base.object, at));
                 }
             }
             Held::Body(press) if body == Interactivity::Grabbable => {
