@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_152),
+    ("app", &["src/app"], 24_157),
     ("study", &["src/study"], 6_710),
     ("model", &["src/model", "src/scene"], 3_173),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_936),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_283),
+    ("tests", &["tests"], 19_303),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 58_690;
+const SRC: usize = 58_695;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
