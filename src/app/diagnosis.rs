@@ -227,7 +227,9 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
         _ => {}
     }
     if *simulation.status() == Status::Running && simulation.iterations() > 0 {
-        if let Some(part) = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0) {
+        if let Some(part) =
+            simulation.equilibrium().map(|search| search.load_factor()).filter(|part| 0.0 < *part && *part < 1.0)
+        {
             add(fill!("at %{part} of the load", part = percent(100.0 * part)));
         }
         add(fill!("residual %{residual}", residual = format!("{:.1e}", simulation.residual())));

@@ -483,6 +483,11 @@ impl Session {
         self.is_slow = false;
     }
 
+    /// Forgets the steps of the undo history.
+    pub(crate) fn forget_steps(&mut self) {
+        self.undo = UndoHistory::default();
+    }
+
     /// Makes the current scene the unedited scene of a document; the undo history is cleared.
     pub(crate) fn rebase(&mut self, source: Source) {
         self.present.document = Document::new(source, self.present.scene.clone());

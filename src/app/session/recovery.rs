@@ -67,7 +67,7 @@ impl Unsaved {
     }
 }
 
-/// File for this window's copy, and the copy left by a crashed window.
+/// File for this window's copy, and the copies left by crashed windows.
 #[derive(Debug)]
 pub struct RecoveryCopies {
     place: CopyPlace,
@@ -75,19 +75,20 @@ pub struct RecoveryCopies {
     written: Option<Unsaved>,
     /// Time of the last write, or of the last attempt.
     last: Option<Instant>,
-    left: Option<CopyPlace>,
+    /// Copies left by crashed windows, the newest last.
+    left: Vec<(CopyPlace, Unsaved)>,
     /// Messages about copies that cannot be read. They are kept: the user may repair them by hand.
     pub(crate) unreadable: Vec<String>,
 }
 
 impl RecoveryCopies {
-    /// Locks the first free file in `folder`, which is created if it does not exist, and reads the edits that a crashed
-    /// window has left there, also in a file after it.
+    /// Locks the first free file in `folder`, which is created if it does not exist, and reads the edits that crashed
+    /// windows have left there, also in files after it. Returns the newest.
     ///
     /// # Errors
     /// Error of the operating system, or all files are taken.
     pub fn open(folder: &Path) -> io::Result<(Self, Option<Unsaved>)> {
-        let (mut own, mut left, mut unreadable) = (None, None, Vec::new());
+        let (mut own, mut left, mut unreadable) = (None, Vec::new(), Vec::new());
         for number in 0..PLACES {
             if own.is_some() && !settings::has_copy(folder, number) {
                 continue;
@@ -95,7 +96,7 @@ impl RecoveryCopies {
             let Some(place) = settings::lock(folder, number)? else { continue };
             match Unsaved::read(&place.file) {
                 Err(error) if error.kind() == io::ErrorKind::NotFound => own = own.or(Some(place)),
-                Ok(edits) => left = left.or(Some((place, edits))),
+                Ok(edits) => left.push((place, edits)),
                 Err(reason) => unreadable.push(fill!(
                     "%{file} has unsaved changes, but cannot be read: %{reason}",
                     file = place.file.display(),
@@ -104,8 +105,9 @@ impl RecoveryCopies {
             }
         }
         let is_full = || io::Error::other(format!("{} has {PLACES} copies of unsaved scenes", folder.display()));
-        let (left, edits) = left.unzip();
-        Ok((Self { place: own.ok_or_else(is_full)?, written: None, last: None, left, unreadable }, edits))
+        left.sort_by_key(|(place, _)| settings::modified(&place.file));
+        let newest = left.last().map(|(_, edits)| edits.clone());
+        Ok((Self { place: own.ok_or_else(is_full)?, written: None, last: None, left, unreadable }, newest))
     }
 
     /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
@@ -140,13 +142,14 @@ impl RecoveryCopies {
         self.keep(edits).map(drop)
     }
 
-    /// Removes the copy left by a crashed window, once this window's own edits are written.
+    /// Removes the newest copy left by a crashed window, once this window's own edits are written. Returns the one before.
     ///
     /// # Errors
     /// Error of the operating system; the copy is still there.
-    pub(crate) fn discard_left(&mut self, edits: Option<&Unsaved>) -> io::Result<()> {
+    pub(crate) fn discard_left(&mut self, edits: Option<&Unsaved>) -> io::Result<Option<Unsaved>> {
         self.keep_at_once(edits)?;
-        self.left.take().map_or(Ok(()), |left| settings::remove(&left.file))
+        self.left.pop().map_or(Ok(()), |(left, _)| settings::remove(&left.file))?;
+        Ok(self.left.last().map(|(_, edits)| edits.clone()))
     }
 }
 
@@ -186,6 +189,20 @@ mod tests {
         drop((next, after));
         let (_, left) = RecoveryCopies::open(&folder).unwrap();
         assert_eq!(left, Some(edits("cantilever", -4.0)), "its file is after a free one");
+    }
+
+    #[test]
+    fn copies_of_several_windows_are_offered_one_after_the_other_the_newest_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut windows: Vec<_> = (0..2).map(|_| RecoveryCopies::open(folder.path()).unwrap().0).collect();
+        windows[1].keep(Some(&edits("article", -1.0))).unwrap();
+        std::thread::sleep(Duration::from_millis(20));
+        windows[0].keep(Some(&edits("article", -2.0))).unwrap();
+        drop(windows);
+        let (mut next, left) = RecoveryCopies::open(folder.path()).unwrap();
+        assert_eq!(left, Some(edits("article", -2.0)));
+        assert_eq!(next.discard_left(None).unwrap(), Some(edits("article", -1.0)));
+        assert_eq!(next.discard_left(None).unwrap(), None);
     }
 
     #[test]

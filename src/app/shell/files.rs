@@ -267,8 +267,13 @@ impl Lab {
             return;
         }
         let Some(left) = self.left.clone() else { return };
+        let loses = self.desk.session.is_edited();
         if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new(left))) {
             return;
+        }
+        if restore && !loses {
+            // An undo would go from the restored work, whose copy is removed, to a scene without edits.
+            self.desk.session.forget_steps();
         }
         self.left = None;
         self.requests.push(Request::DiscardCopy);

@@ -270,7 +270,10 @@ impl App {
                 Request::DiscardCopy => {
                     let edits = self.lab.unsaved();
                     let discarded = self.recovery.as_mut().map(|recovery| recovery.discard_left(edits));
-                    discarded.and_then(Result::err).into_iter().for_each(|error| self.warn(no_copy(error)));
+                    match discarded.transpose() {
+                        Ok(next) => next.flatten().into_iter().for_each(|left| self.lab.offer(left)),
+                        Err(error) => self.warn(no_copy(error)),
+                    }
                 }
                 Request::Close => self.close(event_loop),
             }

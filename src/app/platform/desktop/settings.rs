@@ -30,6 +30,11 @@ pub(crate) fn has_copy(folder: &Path, number: usize) -> bool {
     folder.join(format!("{number}.toml")).exists()
 }
 
+/// Returns the time of the last change of a copy, if it is known.
+pub(crate) fn modified(file: &Path) -> Option<std::time::SystemTime> {
+    std::fs::metadata(file).and_then(|file| file.modified()).ok()
+}
+
 /// Locks the file with this number in `folder`, which is created if it does not exist; `None` if another window has
 /// locked it.
 pub(crate) fn lock(folder: &Path, number: usize) -> std::io::Result<Option<CopyPlace>> {

@@ -29,6 +29,11 @@ pub(crate) fn has_copy(_: &Path, _: usize) -> bool {
     false
 }
 
+/// Returns the time of the last change of a copy: it is not known.
+pub(crate) fn modified(_: &Path) -> Option<std::time::SystemTime> {
+    None
+}
+
 /// Returns the item of an earlier visit with this number, and beyond them a new one. Visits in other tabs that have
 /// unsaved edits count as earlier ones.
 pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<CopyPlace>> {
