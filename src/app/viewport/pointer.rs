@@ -350,7 +350,9 @@ impl Pointer {
         let mut camera = targets.camera;
         let mut look = CameraMove::None;
         // Two fingers move the view, whatever is under them.
-        let drag = fingers.unwrap_or_else(|| response.drag_delta());
+        // A click whose pointer moves by a few points does not move the view.
+        let is_drag = ui.input(|i| i.pointer.is_decidedly_dragging());
+        let drag = fingers.unwrap_or(if is_drag { response.drag_delta() } else { Vec2::ZERO });
         if drag != Vec2::ZERO && !self.holds() {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
             look = CameraMove::To(camera);
