@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::{Kinematics, Loads, Matrix, MouseSpring, NodalProbe, Supports, System, SystemError};
 use crate::element::{ElementLoops, MatrixSum, Sums, Tangent, UNIT};
 use crate::material::Lame;
-use crate::scene::{Load, Material, Pulse, Scene, Support};
+use crate::scene::{Load, Material, Pulse, Scene};
 use crate::state::State;
 
 /// Discrete problem of a scene.
@@ -18,7 +18,6 @@ pub struct Problem {
     /// Loads as in the scene, to detect changes.
     scene_loads: Vec<Load>,
     loads: Loads,
-    scene_supports: Vec<Support>,
     supports: Supports,
     probes: Vec<NodalProbe>,
     mouse_spring: Option<MouseSpring>,
@@ -101,7 +100,6 @@ impl Problem {
             material: scene.material,
             scene_loads: scene.loads.clone(),
             loads: Loads::new(&scene.loads, &scene.material, &system)?,
-            scene_supports: scene.supports.clone(),
             supports: Supports::new(&scene.supports, &scene.material, &system)?,
             probes: NodalProbe::of(&scene.probes, &system)?,
             system,
@@ -109,8 +107,8 @@ impl Problem {
         })
     }
 
-    /// Changes to another scene, checking and recomputing only what differs `before`. A mouse spring stays attached if the
-    /// mesh is the same.
+    /// Changes from the scene `before` to another one, checking and recomputing only what differs. A mouse spring stays
+    /// attached if the mesh is the same.
     ///
     /// # Errors
     /// Same errors as [`Self::new`]; the problem is then unchanged.
@@ -127,7 +125,7 @@ impl Problem {
         } else {
             Some(Loads::new(&scene.loads, &scene.material, &system)?)
         };
-        let supports = if same_system && self.scene_supports == scene.supports {
+        let supports = if same_system && before.supports == scene.supports {
             None
         } else {
             Some(Supports::new(&scene.supports, &scene.material, &system)?)
@@ -149,7 +147,6 @@ impl Problem {
             self.loads = loads;
         }
         if let Some(supports) = supports {
-            self.scene_supports.clone_from(&scene.supports);
             self.supports = supports;
         } else if change == Change::Stiffness {
             self.supports.set_stiffness(&scene.material, &system);
