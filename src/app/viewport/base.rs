@@ -4,8 +4,8 @@
 use crate::app::interface::*;
 use crate::app::viewport::arrow::point_of_application;
 use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
-use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
+use crate::app::viewport::{handle, probe};
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
@@ -51,8 +51,7 @@ pub(crate) struct HotBase {
 
 /// Returns the base that a press at `pointer` grabs.
 pub(crate) fn near(bases: &[Base], pointer: Pos2) -> Option<&Base> {
-    let near = bases.iter().map(|base| (base.at.distance(pointer), base)).filter(|(distance, _)| *distance <= NEAR);
-    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, base)| base)
+    handle::nearest(bases, NEAR, |base| base.at.distance(pointer))
 }
 
 /// Drawn body with the objects of its scene.

@@ -102,9 +102,10 @@ pub(crate) fn of_shaft(handles: &[Handle], pointer: Pos2) -> Option<&Handle> {
     })
 }
 
-fn nearest(handles: &[Handle], near: f32, distance: impl Fn(&Handle) -> f32) -> Option<&Handle> {
-    let near = handles.iter().map(|handle| (distance(handle), handle)).filter(|(d, _)| *d <= near);
-    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, handle)| handle)
+/// Returns the item at the smallest distance from the pointer, if it is at most `near`, points.
+pub(crate) fn nearest<T>(items: &[T], near: f32, distance: impl Fn(&T) -> f32) -> Option<&T> {
+    let near = items.iter().map(|item| (distance(item), item)).filter(|(d, _)| *d <= near);
+    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, item)| item)
 }
 
 /// Grabbed handle, and the pointer's movement since then.
