@@ -198,7 +198,7 @@ fn a_body_swings_about_its_point() {
     }
 }
 
-/// That of an edge is refused, as `tests/golden/texts.txt` shows.
+/// The key `acts_on` of an edge is refused, as `tests/golden/texts.txt` shows.
 #[test]
 fn scene_files_have_the_point_of_a_support() {
     let scene = on_two_points([[3.4, 0.1], [8.1, -0.3]], Vector2::new(0.0, -300.0));
