@@ -264,32 +264,27 @@ impl Scene {
             (None, None) => return Err(Invalid::new("beam", "expected [beam] or [mesh], got neither")),
             (Some(_), Some(_)) => return Err(Invalid::new("mesh", "expected [beam] or [mesh], got both")),
         }
-        check(&self.table()?)?;
+        check(&toml::Table::try_from(self).map_err(unwritten)?)?;
         self.beam.as_ref().map_or(Ok(()), Beam::validate)?;
         self.validate_choices()
     }
 
-    /// Checks as [`Self::validate`], but not the geometry, nor the lists that are equal in a valid scene; for a scene on an
-    /// existing mesh.
+    /// Checks all but the geometry and the members that are equal in a valid scene; for a scene on an existing mesh.
     pub(crate) fn validate_all_but_geometry(&self, valid: Option<&Self>) -> Result<(), Invalid> {
-        let mut part = Self { beam: None, mesh: None, ..self.clone() };
-        if let Some(valid) = valid {
-            if part.supports == valid.supports {
-                part.supports.clear();
-            }
-            if part.loads == valid.loads {
-                part.loads.clear();
-            }
-            if part.probes == valid.probes {
-                part.probes.clear();
-            }
+        let mut changed = toml::Table::new();
+        macro_rules! compare {
+            ($($key:literal: $member:ident,)*) => {
+                $(if valid.is_none_or(|valid| valid.$member != self.$member) {
+                    changed.insert($key.to_owned(), toml::Value::try_from(&self.$member).map_err(unwritten)?);
+                })*
+            };
         }
-        check(&part.table()?)?;
+        compare! {
+            "name": name, "about": about, "analysis": analysis, "material": material, "support": supports, "load": loads,
+            "probe": probes, "section": sections, "solver": solver, "dynamics": dynamics, "start": start,
+        }
+        check(&changed)?;
         self.validate_choices()
-    }
-
-    fn table(&self) -> Result<toml::Table, Invalid> {
-        toml::Table::try_from(self).map_err(|error| Invalid::new("scene", error.to_string()))
     }
 
     /// Checks everything but the kinds and ranges of [`keys::KEYS`].
@@ -326,6 +321,11 @@ impl Scene {
         refuse_if(!dynamic && !is_default(&self.dynamics), "dynamics", message)?;
         refuse_if(!dynamic && !is_default(&self.start), "start", message)
     }
+}
+
+/// Returns the error of a scene with a value that no scene file can have.
+fn unwritten(error: toml::ser::Error) -> Invalid {
+    Invalid::new("scene", error.to_string())
 }
 
 /// Returns the error of a key if `refused` is `true`.

@@ -17,12 +17,12 @@ fn collect<'a>(
 ) {
     tables.push((table, parent, place.to_owned()));
     for key in keys_of(parent) {
-        let place = format!("{place}{}.", name_of(key));
-        match table.get(name_of(key)) {
-            Some(Value::Table(table)) => collect(table, key.path, &place, tables),
+        let name = name_of(key);
+        match table.get(name) {
+            Some(Value::Table(table)) => collect(table, key.path, &format!("{place}{name}."), tables),
             Some(Value::Array(items)) => {
                 let inner = items.iter().enumerate().filter_map(|(i, item)| Some((i, item.as_table()?)));
-                inner.for_each(|(i, table)| collect(table, key.path, &format!("{place}{i}."), tables));
+                inner.for_each(|(i, table)| collect(table, key.path, &format!("{place}{name}.{i}."), tables));
             }
             _ => {}
         }
@@ -39,17 +39,16 @@ pub(crate) fn check(scene: &Table) -> Result<(), Invalid> {
     collect(scene, "", "", &mut tables);
     let mut values = tables.iter().flat_map(|(table, parent, place)| table.iter().map(move |v| (v, *parent, place)));
     values.try_for_each(|((name, value), parent, place)| {
-        let place = format!("{place}{name}");
-        let path = if parent.is_empty() { name.clone() } else { format!("{parent}.{name}") };
-        let Some(key) = KEYS.iter().find(|key| key.path == path) else {
+        let invalid = |message: Sentence| Invalid::new(format!("{place}{name}"), message);
+        let Some(key) = keys_of(parent).find(|key| name_of(key) == name) else {
             let known: Vec<&str> = keys_of(parent).map(name_of).collect();
-            return Err(Invalid::new(place, format!("unknown key, expected one of {}", known.join(", "))));
+            return Err(invalid(format!("unknown key, expected one of {}", known.join(", ")).into()));
         };
         let checked = match expected(key, value) {
             Some(expected) => Err(format!("expected {expected}, got {}", shown(value)).into()),
             None => check_range(key.kind, value),
         };
-        checked.map_err(|message| Invalid::new(place, message))
+        checked.map_err(invalid)
     })
 }
 
@@ -137,14 +136,11 @@ fn shown(value: &Value) -> String {
 
 /// Returns the keys of a table by its place, which is empty for the scene.
 pub(crate) fn keys_of(path: &str) -> impl Iterator<Item = &'static Key> {
-    let inside = move |key: &'static Key| match key.path.strip_prefix(path) {
-        Some(rest) if path.is_empty() => Some(rest),
-        rest => rest?.strip_prefix('.'),
-    };
-    KEYS.iter().filter(move |key| inside(key).is_some_and(|name| !name.contains('.')))
+    let start = if path.is_empty() { 0 } else { path.len() + 1 };
+    KEYS.iter().filter(move |key| key.name_at == start && key.path.starts_with(path))
 }
 
 /// Returns the name of a key in its table.
 pub(crate) fn name_of(key: &Key) -> &'static str {
-    key.path.rsplit('.').next().unwrap_or_default()
+    &key.path[key.name_at..]
 }
