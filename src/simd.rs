@@ -62,6 +62,14 @@ pub(crate) fn gather(all: &[Vector2<f64>], [a, b, c, d]: [u32; LANES]) -> Vector
     side_by_side([all[a as usize], all[b as usize], all[c as usize], all[d as usize]])
 }
 
+/// Packs the vectors of the nodes of several elements, one element per lane.
+#[inline(always)]
+pub(crate) fn gather_nodes<const N: usize>(all: &[Vector2<f64>], nodes: &[[u32; LANES]; N]) -> [Vector2<Lanes>; N] {
+    let mut own = [zero_vector(); N];
+    own.iter_mut().zip(nodes).for_each(|(own, nodes)| *own = gather(all, *nodes));
+    own
+}
+
 /// Returns the sum over the first `count` lanes.
 #[inline(always)]
 pub(crate) fn sum_of_lanes(values: Lanes, count: usize) -> f64 {

@@ -14,7 +14,7 @@ use super::{
 use crate::displacement::Compensated;
 use crate::material::Lame;
 use crate::rotation::Rotation;
-use crate::simd::{LANES, Lanes, apply, gather, lane, matrix_lane, one_plus, sum_of_lanes, zero_vector};
+use crate::simd::{LANES, Lanes, apply, gather_nodes, lane, matrix_lane, one_plus, sum_of_lanes, zero_vector};
 
 /// Elements with `N` nodes and `Q` quadrature points.
 #[derive(Debug)]
@@ -245,7 +245,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     fn smallest_area_ratio(&self, u: &[Vector2<f64>]) -> f64 {
         let mut smallest = Lanes::splat(f64::INFINITY);
         for ((_, nodes), points) in self.nodes.batches().zip(&self.points) {
-            let u = nodes.map(|nodes| gather(u, nodes));
+            let u = gather_nodes(u, nodes);
             for point in points {
                 let f = one_plus(&point.displacement_gradient(&u));
                 smallest = smallest.simd_min(f.m11 * f.m22 - f.m12 * f.m21);
@@ -256,7 +256,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
 
     fn visit_strains(&self, _: Lame, u: &[Vector2<f64>], r: &[Rotation], visit: &mut StrainVisitor<'_>) {
         for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
-            let u = nodes.map(|nodes| gather(u, nodes));
+            let u = gather_nodes(u, nodes);
             let seen: [_; Q] = std::array::from_fn(|q| {
                 let h = points[q].displacement_gradient(&u);
                 (h, warped_strain(rotations_at(r, numbers.points(Q, q)), &h))
