@@ -64,12 +64,14 @@ pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
     LoadScale::smooth(usual, (SHARE * side).clamp(low, high).min(LOW_SHARE * side))
 }
 
-/// Returns the distance from a point to the border of a rectangle along a unit vector, points; infinite for a point
-/// outside.
-fn room(rect: Rect, from: Pos2, direction: Vec2) -> f64 {
-    if !rect.contains(from) {
+/// Returns the distance along a unit vector from a point to the border of a view without its `margin`, points; infinite for
+/// a point outside the view, and for a view of less than its margins.
+fn room(view: Rect, margin: Vec2, from: Pos2, direction: Vec2) -> f64 {
+    let rect = view.shrink2(margin);
+    if !(view.contains(from) && rect.is_positive()) {
         return f64::INFINITY;
     }
+    let from = rect.clamp(from);
     let along = |from: f32, direction: f32, [low, high]: [f32; 2]| match direction {
         d if d > 0.0 => f64::from((high - from) / d),
         d if d < 0.0 => f64::from((low - from) / d),
@@ -150,12 +152,7 @@ pub(crate) struct ForceArrows<'a> {
 impl ForceArrows<'_> {
     /// Returns the arrows of all forces that act at the current time; their tips are in the view if their bases are.
     pub(crate) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
-        let whole = self.whole_arrows(projection).into_iter();
-        let within = whole.map(|arrow| {
-            let room = room(projection.rect.shrink2(LABEL), arrow.from, arrow.direction);
-            Arrow { vector: arrow.direction * arrow.vector.length().min((room as f32).max(STUB as f32)), ..arrow }
-        });
-        within.collect()
+        shortened(self.whole_arrows(projection), |arrow| room(projection.rect, LABEL, arrow.from, arrow.direction))
     }
 
     /// Returns the arrows of all forces that act at the current time, each long enough to be dragged, also out of the view.
@@ -170,15 +167,25 @@ impl ForceArrows<'_> {
             let (magnitude, degrees) = polar_form(*force);
             let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
             let direction = vec2(x as f32, -y as f32);
-            let whole = WHOLE * scale.opening;
-            let border = BORDER.min(LOW_SHARE as f32 * projection.rect.size());
-            let longest = whole.max(room(projection.rect.shrink2(border), from, direction));
-            let vector = direction * scale.length(magnitude).min(longest).max(STUB) as f32;
+            let vector = direction * scale.length(magnitude).max(STUB) as f32;
             let arrow = Arrow { load, from, vector, direction, scale, magnitude, largest };
             (arrow.from.is_finite() && arrow.vector.is_finite()).then_some(arrow)
         });
-        arrows.collect()
+        let border = BORDER.min(LOW_SHARE as f32 * projection.rect.size());
+        let longest = WHOLE * scale.opening;
+        shortened(arrows.collect(), |arrow| longest.max(room(projection.rect, border, arrow.from, arrow.direction)))
     }
+}
+
+/// Shortens all arrows by the factor of the one that is longest relative to its `room`, so that the arrow of a larger force
+/// stays the longer one.
+fn shortened(mut arrows: Vec<Arrow>, room: impl Fn(&Arrow) -> f64) -> Vec<Arrow> {
+    let factor = |arrow: &Arrow| room(arrow).max(STUB) / f64::from(arrow.vector.length());
+    let factor = arrows.iter().map(factor).fold(1.0, f64::min) as f32;
+    for arrow in &mut arrows {
+        arrow.vector = arrow.direction * (factor * arrow.vector.length()).max(STUB as f32);
+    }
+    arrows
 }
 
 /// Returns `true` if a load is drawn; a pulse is drawn only while it acts.
@@ -368,6 +375,21 @@ mod tests {
             let rate = (scale.load(scale.opening + 1.0) - scale.load(scale.opening - 1.0)) / (2.0 * 3e4);
             assert!((0.01..=0.0201).contains(&rate), "{side}: {rate}");
         }
+    }
+
+    /// An arrow that has little room shortens the others too.
+    #[test]
+    fn the_arrow_of_a_larger_force_is_the_longer_one() {
+        let (from, direction, scale) = (Pos2::ZERO, vec2(0.0, 1.0), scale(1e3, LARGE));
+        let arrow = |magnitude: f64| {
+            let vector = direction * scale.length(magnitude) as f32;
+            Arrow { load: 0, from, vector, direction, scale, magnitude, largest: 1e6 }
+        };
+        let arrows = shortened(vec![arrow(2e3), arrow(1e3)], |arrow| if arrow.magnitude > 1e3 { 60.0 } else { 200.0 });
+        let [large, small] = [0, 1].map(|i| arrows[i].vector.length());
+        assert!((large - 60.0).abs() < 1e-3 && (large / small - 2.0).abs() < 1e-3, "{large} {small}");
+        // The force under the tip is that of the whole length.
+        assert_eq!(arrows[0].dragged(Vec2::ZERO, false), (2e3, DOWN));
     }
 
     /// The label does not cover the arrow, whatever the direction and length.
