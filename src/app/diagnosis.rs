@@ -169,7 +169,7 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
     match error.map(error_level) {
         Some(0) => palette.good,
         Some(1) => palette.warning,
-        Some(_) => palette.error,
+        Some(_) => palette.large,
         None => palette.secondary,
     }
 }
@@ -264,17 +264,28 @@ fn runs_away(input: &Readout<'_>) -> bool {
     is_accepted && is_warped && rho(input).is_some_and(|rho| rho > 1.0)
 }
 
-/// Describes the equilibrium that is drawn in place of one that was not found: its load, and the load that was asked for; or
-/// its method, if the loads are equal.
+/// Describes the equilibrium that is drawn in place of one that was not found: its load, and the load that was asked for, with
+/// their directions if these differ; or its method, if the loads are equal.
 pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
-    match (load_text(drawn), load_text(wanted)) {
-        (Some(own), Some(asked)) if own != asked => {
+    /// Smallest difference of two directions that a person sees, rad.
+    const TURNED: f64 = 0.02;
+    let loads = only_load(drawn).zip(only_load(wanted));
+    let are_turned = loads.is_some_and(|((own, _), (asked, _))| own.angle(&asked) > TURNED);
+    let text = |(load, unit): (Vector2<f64>, &str)| match engineering(three_digits(load.norm()), unit) {
+        size if are_turned => {
+            let angle = format!("{:.0}°", load.y.atan2(load.x).to_degrees());
+            fill!("%{load} towards %{angle}", load = size, angle)
+        }
+        size => size,
+    };
+    match loads.map(|(own, asked)| [own, asked].map(text)) {
+        Some([own, asked]) if own != asked => {
             fill!("equilibrium at %{load}; %{wanted} not reached", load = own, wanted = asked)
         }
         _ if drawn.solver.method != wanted.solver.method => {
             fill!("equilibrium under %{method}", method = tr(drawn.solver.method.id()))
         }
-        _ => tr("last equilibrium").to_owned(),
+        _ => tr("equilibrium of an earlier load").to_owned(),
     }
 }
 
@@ -283,18 +294,22 @@ pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
     input.session.fallback().map(|drawn| equilibrium_text(drawn.scene(), input.scene))
 }
 
-/// Returns the magnitude of a scene's only load, of several zeros the first; `None` if it has no load or several, or
-/// moves a support.
+/// Returns the magnitude of a scene's only load.
 pub(crate) fn load_text(scene: &Scene) -> Option<String> {
-    let magnitude = |load: &Load| match *load {
-        Load::Force { force: [x, y], .. } => (x.hypot(y), "N"),
-        Load::Gravity { acceleration: [x, y], .. } => (x.hypot(y), "m/s²"),
-        Load::Moment { moment, .. } => (moment.abs(), "N m"),
+    only_load(scene).map(|(load, unit)| engineering(three_digits(load.norm()), unit))
+}
+
+/// Returns a scene's only load with its unit, a moment along x, of several zeros the first; `None` if it has no load or
+/// several, or moves a support.
+fn only_load(scene: &Scene) -> Option<(Vector2<f64>, &'static str)> {
+    let vector = |load: &Load| match *load {
+        Load::Force { force, .. } => (force.into(), "N"),
+        Load::Gravity { acceleration, .. } => (acceleration.into(), "m/s²"),
+        Load::Moment { moment, .. } => (Vector2::new(moment, 0.0), "N m"),
     };
-    let mut loads = scene.loads.iter().map(magnitude).filter(|(value, _)| *value > 0.0);
-    let (value, unit) = loads.next().or_else(|| scene.loads.first().map(magnitude))?;
-    let is_only = loads.next().is_none() && !scene.supports.iter().any(Support::moves);
-    is_only.then(|| engineering(three_digits(value), unit))
+    let mut loads = scene.loads.iter().map(vector).filter(|(load, _)| *load != Vector2::zeros());
+    let only = loads.next().or_else(|| scene.loads.first().map(vector));
+    only.filter(|_| loads.next().is_none() && !scene.supports.iter().any(Support::moves))
 }
 
 /// Limit of an explicit integrator.
@@ -407,10 +422,13 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         Remedy { text, offer: tr("Use newton").to_owned(), action }
     };
     if !simulation.status().is_success() {
-        let text = rho(input).filter(|&rho| rho > 1.0).map_or_else(
-            || fill!("The %{method} iteration does not converge.", method = tr(scene.solver.method.id())),
-            |rho| fill!("Does not converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
-        );
+        let text = match rho(input) {
+            Some(rho) if rho > 1.0 => fill!("Does not converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
+            Some(rho) if scene.solver.method == MethodKind::Warped => {
+                fill!("Does not converge from rest, though ρ = %{rho} < 1.", rho = rho_number(rho))
+            }
+            _ => fill!("The %{method} iteration does not converge.", method = tr(scene.solver.method.id())),
+        };
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }
     // Loading from rest would lead to an unstable equilibrium if the path buckles.

@@ -90,7 +90,10 @@ fn numbers_beside_the_last_equilibrium_are_its_own() {
     ui.state_mut().solve();
     ui.run();
     ui.expect(&["ρ 4.9 at 176 kN"]);
-    assert!(!ui.says("last equilibrium"), "it is said once");
+    assert!(!ui.says("equilibrium of an earlier load"), "it is said once");
+    ui.type_into("Direction", "-60");
+    assert!(ui.says("equilibrium at 30 kN towards -90°; 176 kN towards -60° not reached"));
+    ui.type_into("Direction", "-90");
     ui.click("Use newton");
     assert!(!ui.says("not reached") && *ui.simulation().status() == Status::Converged);
     assert_ne!(details(&ui), before);

@@ -161,7 +161,7 @@ impl SectionPlot {
         let reason = match cuts {
             Some(cuts) if cuts.has_failed => "the computation ended unexpectedly",
             Some(_) => "No section has been added.",
-            None => "Sections are computed after the solve.",
+            None => "Sections are being computed.",
         };
         let show_plot = |ui: &mut Ui| match &drawn {
             Some(Ok(drawn)) => figure::plot(ui, "sections", drawn),

@@ -79,7 +79,7 @@ pub(super) fn show(
             ui.add(Label::new(about).wrap());
         }
         if panel.view.mode == Mode::Compare {
-            ui.small(tr("Each pane has its own method, element and mesh."));
+            ui.small(tr("Panes with a method, element or mesh of their own keep it."));
         }
         ui.add_space(4.0);
         solver(ui, panel);

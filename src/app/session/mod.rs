@@ -925,6 +925,9 @@ pub(crate) fn object_name(key: &str) -> String {
 /// Returns the reason for which an edit was refused, in the words of the panel.
 fn refusal(error: SimulationError) -> Sentence {
     match error {
+        SimulationError::System(SystemError::Scene(invalid)) if invalid.key == "support" => {
+            sentence!("the body could move freely: supports must hold it along x, along y and against rotation")
+        }
         SimulationError::System(SystemError::Scene(invalid)) => {
             Sentence::located(object_name(&invalid.key), invalid.message.clone())
         }

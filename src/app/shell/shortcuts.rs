@@ -76,10 +76,10 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];
 
-/// Returns the actions of the keys pressed in this frame; none while text is edited. Space belongs to the control with
+/// Returns the actions of the keys pressed in this frame; none while text is edited or a list is open. Space belongs to the control with
 /// the focus, if there is one.
 pub(crate) fn actions(ctx: &Context) -> Vec<Action> {
-    if ctx.text_edit_focused() {
+    if ctx.text_edit_focused() || ctx.any_popup_open() {
         return Vec::new();
     }
     let focused = ctx.memory(|memory| memory.focused().is_some());
@@ -104,7 +104,7 @@ pub const FOCUS_KEYS: &[(&str, &str)] = &[
 
 /// Actions of the pointer, and their descriptions.
 pub const MOUSE: &[(&str, &str)] = &[
-    ("Drag an arrow's tip", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
+    ("Drag an arrow", "Set a force or a moment; Shift: snap to 15°, or to a round moment"),
     (
         "Drag the base of an object",
         "Move a force, a support, a probe or a section along the body; the ends of a section turn it",
@@ -114,13 +114,13 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Drag the background, two fingers", "Move the view"),
     ("Hover over the body", "Values under the pointer; click to pin them"),
     ("Scroll, pinch", "Zoom at the pointer"),
-    ("Double click", "Fit the view; on an arrow's tip, a slider or a number: reset its value"),
+    ("Double click", "Fit the view; on an arrow, a slider or a number: reset its value"),
     ("Drop a file", "Open it"),
 ];
 
 /// Headings of the groups of rows, each with the first row of its group.
 const GROUPS: [(&str, &str); 6] = [
-    ("Drag an arrow's tip", "Mouse, and the control with the focus"),
+    ("Drag an arrow", "Mouse, and the control with the focus"),
     ("Space", "Run"),
     ("F", "View"),
     ("L", "Drawers and modes"),

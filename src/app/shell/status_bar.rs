@@ -25,6 +25,8 @@ struct BarNumber {
     word: Cow<'static, str>,
     tip: String,
     color: Color32,
+    /// `true` if the remark needs attention, as it does beside a number that needs it.
+    is_doubtful: bool,
     /// Ratio of the number to its limit, drawn as a bar with the limit in its middle.
     ratio: Option<f64>,
 }
@@ -32,7 +34,7 @@ struct BarNumber {
 impl BarNumber {
     /// Returns a number without remark and bar.
     fn new(name: &'static str, value: String, tip: impl Into<String>, color: Color32) -> Self {
-        Self { name, value, word: Cow::default(), tip: tip.into(), color, ratio: None }
+        Self { name, value, word: Cow::default(), tip: tip.into(), color, is_doubtful: false, ratio: None }
     }
 }
 
@@ -90,11 +92,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let is_without_reference = is_without_reference(input);
     let is_doubtful = doubt.is_some();
     let is_late = input.session.live().is_some_and(|live| live.is_late(input.shown));
-    let color = match error_color(palette, errors.bound) {
-        _ if is_late => palette.secondary,
-        color if is_doubtful && color == palette.good => palette.warning,
-        color => color,
-    };
+    let color = if is_late { palette.secondary } else { error_color(palette, errors.bound) };
     let of_reference = error_tip(input.reference, input.reference_failure);
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
     let error = BarNumber {
@@ -112,6 +110,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
                 fill!("computing the reference: %{percent} %", percent).into()
             }),
         },
+        is_doubtful,
         ..BarNumber::new(
             ERROR,
             error_text(errors.own, errors.bound, input.session.live().is_some()),
@@ -190,9 +189,11 @@ impl Texts {
     fn of(ui: &Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Self {
         let painter = ui.painter();
         let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
-        // A remark about a number that needs attention needs it too.
-        let is_marked = [palette.warning, palette.error].contains(&entry.color);
-        let remark_color = if is_marked { entry.color } else { palette.secondary };
+        let remark_color = match [palette.warning, palette.large, palette.error].contains(&entry.color) {
+            true => entry.color,
+            false if entry.is_doubtful => palette.warning,
+            false => palette.secondary,
+        };
         let number = painter.layout_no_wrap(entry.value.clone(), FontId::proportional(HEADLINE), entry.color);
         Self {
             title: small(tr(entry.name), palette.secondary),
@@ -219,7 +220,7 @@ impl Texts {
 fn number(ui: &mut Ui, palette: &Palette, texts: Texts, slot: Option<f32>) {
     let remark_width = texts.remark_width();
     let size = vec2(texts.width() + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
-    let Texts { entry: BarNumber { name, value, word, tip, color, ratio }, title, number, number_width, remark } =
+    let Texts { entry: BarNumber { name, value, word, tip, color, ratio, .. }, title, number, number_width, remark } =
         texts;
     let remark = remark.filter(|_| slot.is_some());
     let word = if remark.is_some() { word.as_ref() } else { "" };

@@ -47,6 +47,14 @@ pub(crate) struct Overlay<'a> {
     pub legends: Option<Legends<'a>>,
 }
 
+impl Overlay<'_> {
+    /// Returns the scene by whose method the drawn body is named; a body at rest in place of another one is not a result.
+    fn named(&self) -> &Scene {
+        let is_at_rest = self.body.positions == self.body.system.mesh().nodes();
+        self.wanted.filter(|_| is_at_rest).unwrap_or(self.body.scene)
+    }
+}
+
 /// Content of the line key and the colour bar.
 pub(crate) struct Legends<'a> {
     /// Scene of the reference solution.
@@ -77,15 +85,40 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         labels.taken.extend(key(painter, rect, overlay, legends, &palette));
         labels.taken.extend(legend(painter, rect, overlay, legends, &palette));
     }
-    on_body(&mut labels, rect, overlay);
+    let outline = body_outline(&Projection { camera: overlay.camera, rect }, overlay);
+    on_body(&mut labels, rect, overlay, &outline);
     if overlay.legends.is_some() {
         scale_bar(painter, rect, &overlay.camera, &palette);
     }
     pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay);
     if let Some((note, color)) = overlay.note {
-        let (below, beside) = if overlay.legends.is_some() { (46.0, 48.0) } else { (8.0, 24.0) };
-        labels.add(rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP, note, color, rect.width() - beside);
+        let (below, above, beside) = if overlay.legends.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
+        let places = [
+            (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
+            (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
+        ];
+        let (at, anchor) = beside_body(&labels, &outline, note, &places);
+        labels.add(at, anchor, note, color, rect.width() - beside);
     }
+}
+
+/// Returns the frames of the sides of the drawn body.
+fn body_outline(projection: &Projection, overlay: &Overlay<'_>) -> Vec<Rect> {
+    let place = |&point| projection.point(overlay.geometry.point(point, &|n: u32| overlay.body.positions[n as usize]));
+    let lines = overlay.geometry.outline.iter().map(|line| line.iter().map(place).collect::<Vec<Pos2>>());
+    lines
+        .flat_map(|line| line.windows(2).map(|ends| Rect::from_two_pos(ends[0], ends[1])).collect::<Vec<_>>())
+        .collect()
+}
+
+/// Returns the first of several places at which a text does not cross the body's outline, else the first one.
+fn beside_body(labels: &Labels<'_>, outline: &[Rect], text: &str, places: &[(Pos2, Align2)]) -> (Pos2, Align2) {
+    let size = labels.painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::WHITE).size();
+    let is_free = |(at, anchor): &&(Pos2, Align2)| {
+        let frame = anchor.anchor_size(*at, size).expand(4.0);
+        !outline.iter().any(|side| side.intersects(frame))
+    };
+    *places.iter().find(is_free).unwrap_or(&places[0])
 }
 
 /// Dims the body in `rect`, which is not the state that was asked for.
@@ -129,7 +162,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
         draw(&|n| drawn(n, u), Stroke::new(1.5, color));
     }
     if !overlay.apart {
-        draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.body.scene)));
+        draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
     }
     for line in overlay.exact.iter().filter(|_| overlay.live != Some(true)) {
         // A background stroke keeps the line visible over the body.
@@ -142,7 +175,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
 }
 
 /// Paints supports, loads, probes and sections.
-fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
+fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, outline: &[Rect]) {
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let projection = Projection { camera: overlay.camera, rect };
     if let Some(edge) = &overlay.options.edge {
@@ -169,7 +202,7 @@ fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
         loads(labels, &projection, overlay, &palette);
         weights(labels, rect, overlay, &palette);
         moved_supports(labels, &projection, overlay, &palette);
-        probes(labels, &projection, overlay);
+        probes(labels, &projection, overlay, outline);
         sections(labels, &projection, overlay, &palette);
     }
 }
@@ -244,15 +277,20 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
 }
 
 /// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
-fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
+fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, outline: &[Rect]) {
     const RADIUS: f32 = 3.5;
+    /// Distances, points, by which a label moves down to a place beside the body.
+    const SHIFTS: [f32; 9] = [0.0, -8.0, 28.0, -16.0, 36.0, -24.0, 44.0, -32.0, 52.0];
     let (mesh, color) = (overlay.body.system.mesh(), labels.visuals.strong_text_color());
     let drawn = |at: [f64; 2]| probe::place(mesh, overlay.body.positions, mesh.locate(at.into())?);
     for own in &overlay.body.scene.probes {
         let Place::At(at) = own.place else { continue };
         let Some(at) = drawn(at).map(|at| projection.point(at)) else { continue };
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
-        labels.add(at + vec2(8.0, -4.0), Align2::LEFT_BOTTOM, tr(&own.name), color, 160.0);
+        // A label inside a thin body would hide it.
+        let places = SHIFTS.map(|shift| (at + vec2(8.0, -4.0 + shift), Align2::LEFT_BOTTOM));
+        let (at, anchor) = beside_body(labels, outline, tr(&own.name), &places);
+        labels.add(at, anchor, tr(&own.name), color, 160.0);
     }
 }
 
@@ -577,14 +615,14 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, legends: &Legends<'
     };
     let Errors { own, bound, linear, .. } = legends.errors;
     let own = match overlay.body.scene.analysis {
-        Analysis::Static => values(overlay.body.scene.solver.method.id(), [own, bound], legends.areas[0]),
+        Analysis::Static => values(overlay.named().solver.method.id(), [own, bound], legends.areas[0]),
         Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], legends.areas[0]),
     };
     let mut lines = Vec::new();
     if overlay.magnification != 1.0 {
         lines.push((palette.text, None, magnified(overlay.magnification)));
     }
-    lines.push((palette.solution(overlay.body.scene), Some(LegendMark::Line), own));
+    lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
     for companion in &overlay.playback.companions {
         lines.push((
             palette.integrator(companion.integrator),

@@ -36,6 +36,8 @@ pub(crate) struct Palette {
     pub good: Color32,
     pub warning: Color32,
     pub error: Color32,
+    /// An error above 5 %, as in How far; `error` is a failure.
+    pub large: Color32,
     /// Background of error messages.
     pub error_chip: Color32,
     /// Outline of the reference solution (`exact`), and of the body at rest (`rest`).
@@ -68,6 +70,7 @@ const DARK: Palette = Palette {
     good: rgb(0x7CDB9A),
     warning: rgb(0xF2C14E),
     error: rgb(0xFF8A80),
+    large: rgb(0xFF9F5A),
     error_chip: rgb(0x44282C),
     exact: rgb(0x4FD1C5),
     rest: rgb(0x6E7784),
@@ -92,6 +95,7 @@ const LIGHT: Palette = Palette {
     good: rgb(0x0B6B35),
     warning: rgb(0x7A5000),
     error: rgb(0xA31B1B),
+    large: rgb(0x9A3F00),
     error_chip: rgb(0xFBE3E1),
     exact: rgb(0x007D73),
     rest: rgb(0x7E8793),
@@ -272,6 +276,7 @@ mod tests {
                 ("good", p.good),
                 ("warning", p.warning),
                 ("error", p.error),
+                ("large", p.large),
                 ("accent", p.accent),
                 ("load", p.load),
                 ("hand", p.mouse_spring),

@@ -277,23 +277,25 @@ fn settings(
             if ui.button(tr("Measure on this machine")).on_hover_text(tr(tip)).clicked() {
                 actions.push(Action::Measure(true));
             }
+            let mut tip = String::new();
             let (warning, failure) = (Some(ui.visuals().warn_fg_color), Some(ui.visuals().error_fg_color));
             let (text, color) = match (budget.error, budget.study) {
                 (Some(error), _) => (said(error), failure),
-                (None, None) => (tr("Not measured yet: about a minute.").to_owned(), None),
+                (None, None) => (tr("Not measured yet.").to_owned(), None),
                 (None, Some(_)) if !budget.current => (tr("The body or its load has changed since.").to_owned(), warning),
                 (None, Some(study)) if study.is_partial => {
                     (tr("Cancelled: not everything has been measured.").to_owned(), warning)
                 }
                 (None, Some(study)) => {
-                    let against = fill!("Error against %{reference}.", reference = said(&study.reference));
+                    let parts = tr("Errors: mesh, iteration and theory added up.").to_owned();
                     let coarse = tr("Coarse meshes only: `warpbeam study` measures all.");
-                    (if moves { format!("{coarse} {against}") } else { against }, None)
+                    tip = fill!("Error against %{reference}.", reference = said(&study.reference));
+                    (if moves { format!("{coarse} {parts}") } else { parts }, None)
                 }
             };
             let text = RichText::new(text).small();
             let text = color.map_or(text.clone(), |color| text.color(color));
-            ui.add(egui::Label::new(text).truncate());
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(tip);
         }
     });
     let time = NumberField::new("Time ≤", limits::BUDGET_MS, 1e-3..=1e3).logarithmic(1e-3).tip(
@@ -313,7 +315,7 @@ fn settings(
         let apply = apply
             .on_hover_text(tr("Use the fastest setting that meets both limits, and whose iteration converges"))
             .on_disabled_hover_text(tr(match (budget.study, budget.current) {
-                (None, _) => "Not measured yet: about a minute.",
+                (None, _) => "Not measured yet.",
                 (Some(_), true) => "No measured setting meets both limits",
                 (Some(_), false) => "The body or its load has changed since.",
             }));

@@ -34,7 +34,7 @@ pub(crate) fn show(
             ui.weak(match fact.failure(scene) {
                 Some(reason) => said(reason),
                 None if looked_for => tr("No load curve: in linear theory it is a straight line.").to_owned(),
-                None => tr("The load curve is computed after the solve.").to_owned(),
+                None => tr("The load curve is being computed.").to_owned(),
             });
         });
         return;
@@ -65,7 +65,7 @@ pub(crate) fn show(
     };
     let area = figure::beside(ui, |ui| figure::plot(ui, "load curve", &drawn), show_table);
     if !looked_for {
-        let text = "Curve before the last change; the new one is computed after the solve.";
+        let text = "Curve before the last change; the new one is being computed.";
         let at = area.center_top() + egui::vec2(0.0, 10.0);
         let color = ui.visuals().weak_text_color();
         boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, area.width());
