@@ -131,6 +131,11 @@ impl Cut {
     }
 }
 
+/// Interpolates a nodal field.
+pub(super) fn mean(nodal: &[Vector2<f64>], weights: &[(u32, f64)]) -> Vector2<f64> {
+    weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
+}
+
 /// Returns the two points in which a line crosses the outline of an element, in the order of the tangent; `None` if the
 /// element's nodes are on one side.
 fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
@@ -147,8 +152,7 @@ fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
                 .zip(lagrange(rest.len(), xi))
                 .map(|(&node, (weight, _))| (node, weight))
                 .collect();
-            let at: Vector2<f64> = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
-            CutPoint { along: side.along(at), weights }
+            CutPoint { along: side.along(mean(mesh.nodes(), &weights)), weights }
         };
         side.crossings(&rest).into_iter().map(point).collect::<Vec<_>>()
     });

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
 
-use super::cut::{Cut, Side};
+use super::cut::{Cut, Side, mean};
 use crate::assembly::{NodeWeights, Problem};
 use crate::element::{Lame, integrate_side, side_weights};
 use crate::mesh::{MaterialPoint, Mesh};
@@ -105,11 +105,6 @@ pub(super) fn beyond_nodes(
         }
     }
     sum
-}
-
-/// Interpolates a nodal field.
-fn mean(nodal: &[Vector2<f64>], weights: &[(u32, f64)]) -> Vector2<f64> {
-    weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
 }
 
 impl PlacedMesh<'_> {

@@ -28,7 +28,7 @@ use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 use crate::step::warped_stress;
 use crate::stress::NodalStress;
-use cut::{Cut, CutPoint};
+use cut::{Cut, mean};
 pub use load::Wrench;
 pub(crate) use load::{MotionBalance, NodalBalance};
 use load::{PlacedMesh, beyond_nodes};
@@ -147,17 +147,14 @@ impl Section {
             Kinematics::Linear => mesh.nodes(),
             Kinematics::Corotated => &moved,
         };
-        let mean = |of: &[Vector2<f64>], point: &CutPoint| -> Vector2<f64> {
-            point.weights.iter().map(|&(node, weight)| of[node as usize] * weight).sum()
-        };
         let [Some(first), Some(last)] = [cut.points.first(), cut.points.last()] else {
             return Err(SectionError::Missed);
         };
         let mut section = Self {
             line,
-            rest: [first, last].map(|point| mean(mesh.nodes(), point)),
-            ends: [first, last].map(|point| mean(&moved, point)),
-            axis: [first, last].map(|point| mean(positions, point)),
+            rest: [first, last].map(|point| mean(mesh.nodes(), &point.weights)),
+            ends: [first, last].map(|point| mean(&moved, &point.weights)),
+            axis: [first, last].map(|point| mean(positions, &point.weights)),
             force: Vector2::zeros(),
             forces: SectionForces::default(),
             stress_forces: SectionForces::default(),
@@ -172,7 +169,7 @@ impl Section {
         section.force = sum.force;
         section.forces = section.components(sum);
         if let Some(nodal) = nodal {
-            section.add_stress(&cut, nodal, problem, |point| mean(positions, point));
+            section.add_stress(&cut, nodal, problem, positions);
         }
         let forces = section.forces;
         let is_finite = [forces.normal, forces.shear, forces.moment].iter().all(|v| v.is_finite());
@@ -200,14 +197,8 @@ impl Section {
         SectionForces { normal: force.dot(&self.normal()), shear: force.dot(&self.tangent()), moment }
     }
 
-    /// Sets the stresses along the cut, and their forces.
-    fn add_stress(
-        &mut self,
-        cut: &Cut,
-        nodal: &NodalStress,
-        problem: &Problem,
-        position: impl Fn(&CutPoint) -> Vector2<f64>,
-    ) {
+    /// Sets the stresses along the cut, and their forces; `positions` are those of the nodes that arms refer to, m.
+    fn add_stress(&mut self, cut: &Cut, nodal: &NodalStress, problem: &Problem, positions: &[Vector2<f64>]) {
         let (middle, tangent, normal) = (self.middle(), self.tangent(), self.normal());
         let (material, mesh) = (problem.material(), problem.system().mesh());
         let is_normal = problem.system().beam().is_none_or(|beam| self.is_normal_to_axis(beam));
@@ -215,12 +206,12 @@ impl Section {
         // Arm and traction per length, stress times thickness, at the point before; `None` after an undefined stress.
         let mut before: Option<(Vector2<f64>, [Vector2<f64>; 2])> = None;
         for point in &cut.points {
-            let at = position(point);
+            let at = mean(positions, &point.weights);
             let along = tangent.dot(&(at - middle));
             let local = nodal.mean(&point.weights);
             let stress = local.cauchy(material, nodal.kinematics()).map(|stress| stress.plane);
             self.points.push(SectionPoint {
-                rest: point.weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum(),
+                rest: mean(mesh.nodes(), &point.weights),
                 along,
                 stress: stress.map(|stress| [normal, tangent].map(|axis| axis.dot(&(stress * normal)))),
                 beam: is_normal.then(|| self.beam_stress(material.thickness, along)),
