@@ -240,28 +240,18 @@ impl Mesh {
     /// Returns the number of parts that share no nodes, and the part of every node; `u32::MAX` for nodes without an
     /// element.
     pub(crate) fn parts(&self) -> (usize, Vec<u32>) {
-        // Union-find: every node points towards the first node of its part.
-        fn first(of: &mut [u32], mut node: u32) -> u32 {
-            while of[node as usize] != node {
-                let next = of[of[node as usize] as usize];
-                of[node as usize] = next;
-                node = next;
-            }
-            node
-        }
-        let mut of: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        let mut joined = Joined::new(self.nodes.len());
         let mut used = vec![false; self.nodes.len()];
         for nodes in self.elements() {
             for &node in nodes {
                 used[node as usize] = true;
-                let (a, b) = (first(&mut of, nodes[0]), first(&mut of, node));
-                of[a.max(b) as usize] = a.min(b);
+                joined.join(nodes[0] as usize, node as usize);
             }
         }
         let mut parts = 0;
-        let mut part_of = vec![u32::MAX; of.len()];
-        for node in (0..of.len()).filter(|&node| used[node]) {
-            let first = first(&mut of, node as u32) as usize;
+        let mut part_of = vec![u32::MAX; used.len()];
+        for node in (0..used.len()).filter(|&node| used[node]) {
+            let first = joined.first(node);
             // The first node of a part has its smallest number, so it is visited first.
             if first == node {
                 part_of[node] = parts;
@@ -283,27 +273,17 @@ impl Mesh {
             return None;
         }
         let mut of_side: HashMap<[u32; 2], usize> = HashMap::new();
-        let mut part: Vec<usize> = (0..self.element_count()).collect();
-        fn first(part: &mut [usize], mut element: usize) -> usize {
-            while part[element] != element {
-                part[element] = part[part[element]];
-                element = part[element];
-            }
-            element
-        }
+        let mut joined = Joined::new(self.element_count());
         for (element, nodes) in self.elements().enumerate() {
             for side in self.sides(nodes) {
-                if let Some(other) = of_side.insert(side.key(), element) {
-                    let (a, b) = (first(&mut part, element), first(&mut part, other));
-                    part[a.max(b)] = a.min(b);
-                }
+                of_side.insert(side.key(), element).into_iter().for_each(|other| joined.join(element, other));
             }
         }
         let mut numbers: HashMap<usize, u32> = HashMap::new();
         let mut of_node = vec![Vec::new(); self.nodes.len()];
         for (element, nodes) in self.elements().enumerate() {
             let next = numbers.len() as u32;
-            let number = *numbers.entry(first(&mut part, element)).or_insert(next);
+            let number = *numbers.entry(joined.first(element)).or_insert(next);
             for &node in nodes {
                 let parts: &mut Vec<u32> = &mut of_node[node as usize];
                 if !parts.contains(&number) {
@@ -414,6 +394,29 @@ impl Mesh {
     /// Returns the registry entry of the mesh's element type.
     pub(crate) fn entry(&self) -> &'static ElementType {
         self.element.entry()
+    }
+}
+
+/// Parts of joined members (union-find): each member points towards the first one of its part.
+struct Joined(Vec<usize>);
+
+impl Joined {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// Returns the first member of a member's part.
+    fn first(&mut self, mut member: usize) -> usize {
+        while self.0[member] != member {
+            self.0[member] = self.0[self.0[member]];
+            member = self.0[member];
+        }
+        member
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.first(a), self.first(b));
+        self.0[a.max(b)] = a.min(b);
     }
 }
 
