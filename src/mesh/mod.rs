@@ -391,6 +391,32 @@ impl Mesh {
         outer(self.elements().flat_map(|nodes| self.sides(nodes)).collect())
     }
 
+    /// Returns `true` for every node on the outline.
+    pub(crate) fn nodes_on_outline(&self) -> Vec<bool> {
+        let mut is_outer = vec![false; self.nodes.len()];
+        self.outline().iter().flat_map(Segment::nodes).for_each(|&node| is_outer[node as usize] = true);
+        is_outer
+    }
+
+    /// Returns the sides, each with its ends and a value, as closed lines of these values.
+    pub(crate) fn closed_lines<T>(sides: impl IntoIterator<Item = ([u32; 2], T)>) -> Vec<Vec<T>> {
+        let mut from: BTreeMap<u32, Vec<(u32, T)>> = BTreeMap::new();
+        sides.into_iter().for_each(|([start, end], value)| from.entry(start).or_default().push((end, value)));
+        let mut lines = Vec::new();
+        while let Some((&first, _)) = from.first_key_value() {
+            let (mut line, mut corner) = (Vec::new(), first);
+            while let Some((end, value)) = from.get_mut(&corner).and_then(Vec::pop) {
+                if from[&corner].is_empty() {
+                    from.remove(&corner);
+                }
+                line.push(value);
+                corner = end;
+            }
+            lines.push(line);
+        }
+        lines
+    }
+
     /// Returns the registry entry of the mesh's element type.
     pub(crate) fn entry(&self) -> &'static ElementType {
         self.element.entry()

@@ -141,14 +141,10 @@ impl<'a> Patches<'a> {
                 next[node as usize] += 1;
             }
         }
-        let mut outer = vec![false; nodes];
-        for side in mesh.outline() {
-            side.nodes().iter().for_each(|&node| outer[node as usize] = true);
-        }
         let shapes: Vec<Vec<f64>> = entry.points.iter().map(|p| (entry.shape)(p.at)).collect();
         let place = |own: &[u32], shape: &[f64]| own.iter().zip(shape).map(|(&n, w)| mesh.node(n) * *w).sum();
         let points = mesh.elements().flat_map(|own| shapes.iter().map(move |shape| place(own, shape))).collect();
-        Self { mesh, around, starts, outer, points, degree: entry.degree().min(2) }
+        Self { mesh, around, starts, outer: mesh.nodes_on_outline(), points, degree: entry.degree().min(2) }
     }
 
     fn around(&self, node: u32) -> &[u32] {

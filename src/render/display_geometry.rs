@@ -1,6 +1,6 @@
 //! Display geometry of a mesh: points, triangles and lines for all element types; curved sides become polylines.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 
 use nalgebra::Vector2;
 
@@ -46,8 +46,8 @@ impl DisplayGeometry {
         let mut drawing = Self { stride, pieces, point_weights, boundary: mesh.outline(), ..Self::default() };
         let boundary: HashSet<_> = drawing.boundary.iter().map(Segment::key).collect();
         let mut drawn = HashSet::new();
-        // Boundary sides by their first corner: each with its end corner and its points.
-        let mut around: BTreeMap<u32, Vec<(u32, Vec<u32>)>> = BTreeMap::new();
+        // Boundary sides, each with its points.
+        let mut around = Vec::new();
         for nodes in mesh.elements() {
             let first_triangle = drawing.triangles.len() as u32;
             let first = drawing.add(&pattern, nodes);
@@ -60,24 +60,11 @@ impl DisplayGeometry {
                     drawing.triangles_of_lines.extend(triangles_of_lines.iter().map(|t| first_triangle + t));
                 }
                 if boundary.contains(&side.key()) {
-                    let [from, to] = side.ends();
-                    around.entry(from).or_default().push((to, points));
+                    around.push((side.ends(), points));
                 }
             }
         }
-        while let Some((&first, _)) = around.first_key_value() {
-            let mut line = Vec::new();
-            let mut corner = first;
-            while let Some(sides) = around.get_mut(&corner) {
-                let Some((next, points)) = sides.pop() else { break };
-                if sides.is_empty() {
-                    around.remove(&corner);
-                }
-                line.extend(points);
-                corner = next;
-            }
-            drawing.outline.push(line);
-        }
+        drawing.outline = Mesh::closed_lines(around).into_iter().map(|line| line.concat()).collect();
         drawing
     }
 

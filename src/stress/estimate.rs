@@ -4,7 +4,6 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{NodalStress, visit_points};
 use crate::assembly::{Kinematics, Problem};
-use crate::mesh::Mesh;
 use crate::rotation::Rotation;
 use crate::state::State;
 
@@ -39,18 +38,16 @@ pub struct ErrorEstimate {
 impl ErrorEstimate {
     /// Computes the estimate for a state and its recovered stresses.
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
-        let mut result = Self::default();
-        result.update(problem, state, nodal);
-        result
-    }
-
-    fn update(&mut self, problem: &Problem, state: &State, nodal: &NodalStress) {
         let mesh = problem.system().mesh();
         let entry = mesh.element().entry();
         let moduli = problem.material().membrane();
         let elements = problem.system().elements();
         let per_element = entry.points.len();
         let one_rotation = elements.rotation_count() < elements.point_count();
+        let is_outer = mesh.nodes_on_outline();
+        if one_rotation && mesh.connectivity().iter().all(|&node| is_outer[node as usize]) {
+            return Self::default();
+        }
         let mut strains = Vec::with_capacity(elements.point_count());
         visit_points(problem, state, &mut |_, local| strains.push(local.strain));
         let rule: Vec<_> = entry
@@ -60,7 +57,7 @@ impl ErrorEstimate {
             .collect();
         let (mut error, mut energy, mut area) = (0.0, 0.0, 0.0);
         let mut weighted = Vec::new();
-        self.elements.clear();
+        let mut densities = Vec::with_capacity(mesh.element_count());
         for (e, (own, strains)) in mesh.elements().zip(strains.chunks_exact(per_element)).enumerate() {
             let (mut own_error, mut own_area) = (0.0, 0.0);
             // Linear theory turns no stress.
@@ -84,27 +81,14 @@ impl ErrorEstimate {
             }
             error += own_error;
             area += own_area;
-            self.elements.push(own_error / own_area);
+            densities.push(own_error / own_area);
         }
         let whole = energy + error;
         let known = whole > 0.0 && whole.is_finite();
         let percent = |share: f64| if known { 100.0 * (share / whole).sqrt() } else { 0.0 };
-        if one_rotation && is_a_single_row(mesh) {
-            (self.percent, self.elements) = (None, Vec::new());
-            return;
-        }
-        self.percent = known.then(|| percent(error));
-        self.elements.iter_mut().for_each(|density| *density = percent(*density * area));
+        let elements = densities.into_iter().map(|density| percent(density * area)).collect();
+        Self { percent: known.then(|| percent(error)), elements }
     }
-}
-
-/// Returns `true` if every node is on the outline.
-fn is_a_single_row(mesh: &Mesh) -> bool {
-    let mut inner = vec![true; mesh.nodes().len()];
-    for side in mesh.outline() {
-        side.nodes().iter().for_each(|&node| inner[node as usize] = false);
-    }
-    mesh.connectivity().iter().all(|&node| !inner[node as usize])
 }
 
 /// Returns the fraction of its stress that an element misses by having one rotation: 3 φ², φ the angle from it to the

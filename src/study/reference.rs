@@ -2,7 +2,6 @@
 //! reference is the exact beam ([`crate::exact_beam`]) if solutions on fine meshes confirm it, else the finest of
 //! these.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -361,23 +360,9 @@ fn has_straight_sides(mesh: &Mesh) -> bool {
 /// Returns the closed outlines of a body at rest and in its state, m, node by node.
 fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
     let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    let mut sides: BTreeMap<u32, Vec<Segment>> = BTreeMap::new();
-    for side in mesh.outline() {
-        sides.entry(side.ends()[0]).or_default().push(side);
-    }
-    let [mut rest, mut current] = [Vec::new(), Vec::new()];
-    while let Some((&first, _)) = sides.first_key_value() {
-        let (mut line, mut corner) = (Vec::new(), first);
-        while let Some(own) = sides.get_mut(&corner) {
-            let Some(side) = own.pop() else { break };
-            if own.is_empty() {
-                sides.remove(&corner);
-            }
-            line.extend(side.nodes());
-            corner = side.ends()[1];
-        }
-        rest.push(line.iter().map(|&n| mesh.node(n)).collect());
-        current.push(line.iter().map(|&n| mesh.node(n) + u[n as usize]).collect());
-    }
-    [rest, current]
+    let lines = Mesh::closed_lines(mesh.outline().into_iter().map(|side| (side.ends(), side)));
+    let placed = |place: &dyn Fn(&u32) -> Vector2<f64>| {
+        lines.iter().map(|line| line.iter().flat_map(Segment::nodes).map(place).collect()).collect()
+    };
+    [placed(&|&n| mesh.node(n)), placed(&|&n| mesh.node(n) + u[n as usize])]
 }
