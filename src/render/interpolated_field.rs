@@ -1,10 +1,9 @@
 //! Field of a state in the form in which it is displayed: components that are interpolated over every element.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
 use crate::assembly::Kinematics;
 use crate::mesh::{MaterialPoint, Mesh};
-use crate::rotation::Rotation;
 use crate::scene::Material;
 use crate::simulation::{Field, PointValues, Simulation};
 use crate::stress::{Local, NodalStress, RecoveryScratch, visit_points};
@@ -38,20 +37,12 @@ impl Field {
 
     /// Returns the value of interpolated components. The shader `mesh.wgsl` computes the same at every pixel.
     pub(crate) fn of_components(self, c: Components, material: &Material, kinematics: Kinematics) -> Option<f64> {
-        let [x, y, xy, cos, sin] = c;
+        let [x, y, ..] = c;
         if self.is_of_elements() {
             return x.is_finite().then_some(x);
         }
-        let length = cos.hypot(sin);
-        let rotation = if length > 0.0 { Rotation { c: cos / length, s: sin / length } } else { Rotation::IDENTITY };
-        let local = Local { strain: Matrix2::new(x, xy, xy, y), rotation };
-        self.of_vector([x, y].into()).or_else(|| self.of(&local, material, kinematics))
+        self.of_vector([x, y].into()).or_else(|| self.of(&Local::of_components(c), material, kinematics))
     }
-}
-
-/// Returns the components of strain and rotation.
-fn components_of(Local { strain, rotation }: &Local) -> Components {
-    [strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]
 }
 
 /// Field of a state. Its components are interpolated over every element, and its value at a point is computed from
@@ -126,10 +117,10 @@ impl InterpolatedField {
             self.components.extend(state.displacement().iter().map(|u| [u.x, u.y, 0.0, 0.0, 0.0]));
         } else if values == PointValues::Recovered {
             self.nodal.update(problem, state, kinematics, &mut self.scratch);
-            self.components.extend(self.nodal.nodes().iter().map(components_of));
+            self.components.extend(self.nodal.nodes().iter().map(Local::components));
         } else {
             let components = &mut self.components;
-            visit_points(problem, state, &mut |_, local| components.push(components_of(&local)));
+            visit_points(problem, state, &mut |_, local| components.push(local.components()));
         }
         let magnitudes = self.components.iter().flat_map(|own| &own[..3]).map(|c| c.abs());
         self.largest_component = magnitudes.fold(0.0, f64::max);

@@ -76,6 +76,20 @@ pub struct Local {
 }
 
 impl Local {
+    /// Returns ε₁₁, ε₂₂, ε₁₂ and the cosine and sine of the rotation, which are recovered and interpolated.
+    pub(crate) fn components(&self) -> [f64; 5] {
+        let Self { strain, rotation } = self;
+        [strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]
+    }
+
+    /// Returns the strain and the rotation of [`Self::components`]; interpolated cosines and sines are normalized.
+    pub(crate) fn of_components([xx, yy, xy, c, s]: [f64; 5]) -> Self {
+        let length = c.hypot(s);
+        let is_normal = length > 0.0 && length.is_finite();
+        let rotation = if is_normal { Rotation { c: c / length, s: s / length } } else { Rotation::IDENTITY };
+        Self { strain: Matrix2::new(xx, xy, xy, yy), rotation }
+    }
+
     /// Returns the mean strain and rotation of values with weights that sum to 1.
     pub(crate) fn mean(weighted: impl Iterator<Item = (Self, f64)>) -> Self {
         let (mut strain, mut turn) = (Matrix2::zeros(), Vector2::zeros());
@@ -195,20 +209,10 @@ impl NodalStress {
     ) {
         (self.material, self.kinematics) = (*problem.material(), kinematics);
         at_points.clear();
-        visit_points(problem, state, &mut |_, Local { strain, rotation }| {
-            at_points.push([strain.m11, strain.m22, strain.m12, rotation.c, rotation.s]);
-        });
+        visit_points(problem, state, &mut |_, local| at_points.push(local.components()));
         problem.system().recovery().recover(at_points, nodal);
         self.nodes.clear();
-        self.nodes.extend(nodal.iter().map(|&[xx, yy, xy, c, s]| {
-            let length = c.hypot(s);
-            let rotation = if length > 0.0 && length.is_finite() {
-                Rotation { c: c / length, s: s / length }
-            } else {
-                Rotation::IDENTITY
-            };
-            Local { strain: Matrix2::new(xx, xy, xy, yy), rotation }
-        }));
+        self.nodes.extend(nodal.iter().copied().map(Local::of_components));
     }
 
     /// Returns strain and rotation at every node.
