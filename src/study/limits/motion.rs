@@ -102,34 +102,31 @@ impl<'a> Motions<'a> {
     /// intervals has the samples of the reference: its error is the sum of those of the mesh, the time steps and the
     /// reference, as in [`ErrorSplit::bound`](crate::study::ErrorSplit::bound). Of others only convergence is found.
     fn solve(&self, integrator: IntegratorKind, factor: f64, observe: Observer<'_>) -> Result<LimitPoint, StudyError> {
-        let power = self.steps().into_iter().find(|(_, own)| *own == factor).map(|(power, _)| power);
-        let exponent = power.unwrap_or(0);
-        let [apart, steps] = [exponent, -exponent].map(|exponent| 1_u32 << exponent.max(0));
-        let samples = match power {
-            Some(_) => {
-                let Samples { interval, count } = self.samples;
-                Samples { interval: interval * f64::from(apart), count: count / apart }
-            }
-            None => {
-                let interval = factor * self.scene.dynamics.time_step;
-                Samples { interval, count: (self.samples.duration() / interval).ceil() as u32 }
-            }
+        let run = |samples: Samples, steps: u32, each: &mut dyn FnMut(&Simulation)| {
+            let mut scene = self.scene.clone();
+            (scene.dynamics.integrator, scene.dynamics.time_step) = (integrator, samples.interval / f64::from(steps));
+            let mut simulation = Simulation::with_system(&scene, self.system.clone())?;
+            simulation.keep_ledger(false);
+            let path = path(&mut simulation, samples, steps, observe, each)?;
+            Ok::<_, StudyError>((path, !matches!(simulation.status(), Status::Stopped(_))))
         };
-        let mut scene = self.scene.clone();
-        (scene.dynamics.integrator, scene.dynamics.time_step) = (integrator, samples.interval / f64::from(steps));
-        let mut simulation = Simulation::with_system(&scene, self.system.clone())?;
-        simulation.keep_ledger(false);
-        let (mut max_strain, mut inverted_elements) = (0.0_f64, 0);
-        let path = path(&mut simulation, samples, steps, observe, &mut |simulation| {
-            if power.is_some() {
-                let deformation = Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress());
-                max_strain = max_strain.max(deformation.max_strain);
-                inverted_elements = inverted_elements.max(deformation.inverted_elements);
-            }
-        })?;
-        let converges = !matches!(simulation.status(), Status::Stopped(_));
-        if !converges || power.is_none() {
+        let Some((power, _)) = self.steps().into_iter().find(|(_, own)| *own == factor) else {
+            let interval = factor * self.scene.dynamics.time_step;
+            let count = (self.samples.duration() / interval).ceil() as u32;
+            let (_, converges) = run(Samples { interval, count }, 1, &mut |_| {})?;
             return Ok(LimitPoint { factor, converges, ..LimitPoint::default() });
+        };
+        let [apart, steps] = [power, -power].map(|exponent| 1_u32 << exponent.max(0));
+        let Samples { interval, count } = self.samples;
+        let samples = Samples { interval: interval * f64::from(apart), count: count / apart };
+        let (mut max_strain, mut inverted_elements) = (0.0_f64, 0);
+        let (path, converges) = run(samples, steps, &mut |simulation| {
+            let deformation = Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress());
+            max_strain = max_strain.max(deformation.max_strain);
+            inverted_elements = inverted_elements.max(deformation.inverted_elements);
+        })?;
+        if !converges {
+            return Ok(LimitPoint { factor, ..LimitPoint::default() });
         }
         let every = apart as usize;
         let exact: Vec<_> = self.exact.iter().skip(every - 1).step_by(every).copied().collect();
