@@ -9,7 +9,7 @@ use warpbeam::Simulation;
 use warpbeam::format;
 use warpbeam::scene::{Analysis, Source, open, registry};
 use warpbeam::study::motion::MotionReference;
-use warpbeam::study::{Effort, Extent, Reference, StudyError};
+use warpbeam::study::{Extent, Reference, StudyError};
 
 /// Number of timed rounds; the median is printed.
 const ROUNDS: usize = 5;
@@ -37,7 +37,7 @@ fn main() {
                 }
                 Err(error) => (error.to_string(), None),
             },
-            _ => match Reference::find(&scene, Some(&simulation), Effort::Bounded, go_on) {
+            _ => match Reference::find(&scene, Some(&simulation), Extent::Quick, go_on) {
                 Ok(found) => match found.first() {
                     Some(first) => {
                         (format!("{}, {} unknowns", first.source, found.unknowns), Some(first.own_error_percent))

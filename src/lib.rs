@@ -188,7 +188,7 @@ pub use simulation::{Moment, Motion};
 // Measure errors and time.
 pub use progress::{Observer, Progress};
 pub use study::{
-    Demand, Effort, ErrorSplit, Extent, Measurement, MovedPoint, ProbeReference, Reference, ReferenceSource, Setting,
-    Stepping, Study, StudyError,
+    Demand, ErrorSplit, Extent, Measurement, MovedPoint, ProbeReference, Reference, ReferenceSource, Setting, Stepping,
+    Study, StudyError,
 };
 pub use timings::Timings;

@@ -11,7 +11,7 @@ use crate::app::{AdapterArgs, RecordOptions, ShotOptions};
 use crate::scene::keys::range;
 use crate::scene::limits::{BUDGET_MS, COORDINATE, ROTATION};
 use crate::scene::units::within;
-use crate::study::Effort;
+use crate::study::Extent;
 
 const EXIT_CODES: &str = "Exit codes: 0 done (converged, or accepted after solver.accept_after iterations), \
 1 did not converge, was interrupted, or gained more than 10 % of the energy put in from its integrator \
@@ -141,7 +141,7 @@ pub(super) struct SolveArgs {
     /// Reference solution against which errors are measured. `bounded`: meshes of up to about 10,000 unknowns, a second
     /// or two; `full`: meshes fine enough for an error of 0.01 %; `none`: no reference solution and no errors.
     #[arg(long, value_enum, default_value_t)]
-    pub reference: ReferenceEffort,
+    pub reference: ReferenceExtent,
     /// Certify the result, whatever the size of the scene: stability, spectral radius ρ of the warped iteration, and
     /// jumps on the load path to it.
     #[arg(long)]
@@ -153,7 +153,7 @@ pub(super) struct SolveArgs {
 
 /// Cost allowed for a reference solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum ReferenceEffort {
+pub(super) enum ReferenceExtent {
     None,
     #[default]
     Bounded,
@@ -161,12 +161,12 @@ pub(super) enum ReferenceEffort {
 }
 
 impl SolveArgs {
-    /// Returns the effort for the reference solution; `None` for no reference.
-    pub fn effort(&self) -> Option<Effort> {
+    /// Returns the extent of the search for the reference solution; `None` for no reference.
+    pub fn extent(&self) -> Option<Extent> {
         match self.reference {
-            ReferenceEffort::None => None,
-            ReferenceEffort::Bounded => Some(Effort::Bounded),
-            ReferenceEffort::Full => Some(Effort::Full),
+            ReferenceExtent::None => None,
+            ReferenceExtent::Bounded => Some(Extent::Quick),
+            ReferenceExtent::Full => Some(Extent::Full),
         }
     }
 }

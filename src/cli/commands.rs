@@ -19,8 +19,8 @@ use crate::stress::{inversion_warning, strain_warning};
 use crate::study::extremes::{self, Case, Entry, motion, rest};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
-    Claim, Demand, Effort, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError,
-    Tuning, moved_points, parallel, path_chart,
+    Claim, Demand, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError, Tuning,
+    moved_points, parallel, path_chart,
 };
 use crate::timings::Timings;
 
@@ -28,12 +28,12 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
     // Report a wrong file name before solving.
     let format = args.out.as_deref().map(Format::of).transpose()?;
-    let effort = args.effort();
+    let extent = args.extent();
     let SolveArgs { scene, json, out, certificate, no_certificate, .. } = args;
     let source = scene::Source::from(scene);
     let (scene, mut simulation) = simulate(&source)?;
     let fits = |option, given| check_fit((&source, &scene), (option, given), false, "it is about equilibria");
-    fits("--reference full", effort == Some(Effort::Full))?;
+    fits("--reference full", extent == Some(Extent::Full))?;
     fits("--certificate", certificate)?;
     // A line that misses the body is refused before the solve.
     sections_of(&source, &simulation)?;
@@ -80,10 +80,10 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let sought = Instant::now();
     // A state that is not the one asked for has no error.
     let is_elsewhere = path.is_some_and(|path| path.elsewhere.is_some());
-    let reference = effort
+    let reference = extent
         .filter(|_| is_static && status.is_success() && !is_elsewhere)
         .filter(|_| !watch.is_cancelled() && !scene.probes.is_empty())
-        .map(|effort| Reference::find(&scene, Some(&simulation), effort, &|progress| watch.observe(progress)));
+        .map(|extent| Reference::find(&scene, Some(&simulation), extent, &|progress| watch.observe(progress)));
     let reference_time = sought.elapsed();
     let interrupted = watch.is_cancelled();
     drop(watch);

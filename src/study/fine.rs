@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use super::StudyError;
 use super::convergence::remaining_error;
-use super::progress::check;
+use super::progress::{Extent, check};
 use super::reference::{MovedPoint, Reference, is_unstable, probes_of};
 use crate::assembly::{Forces, System};
 use crate::element::ElementType;
@@ -20,17 +20,7 @@ use crate::sentence::sentence;
 use crate::simulation::{Simulation, SimulationError, Status};
 use crate::state::{largest, largest_distance};
 
-/// Cost allowed for a reference solution.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// Meshes of at most about 10,000 unknowns, and the work of about 30 solves on them: a second or two.
-    #[default]
-    Bounded,
-    /// Meshes fine enough for an error of 0.01 %, with up to 700,000 unknowns.
-    Full,
-}
-
-/// Largest number of unknowns of a mesh, of a bounded and of a full effort.
+/// Largest number of unknowns of a mesh, of a quick and of a full search.
 const MAX_UNKNOWNS: [usize; 2] = [10_000, 700_000];
 /// Largest sum of unknowns over all solves.
 const MAX_WORK: [f64; 2] = [5e5, f64::INFINITY];
@@ -63,7 +53,7 @@ const FARTHER_FOLD: f64 = 1.5;
 const TOLERANCE: f64 = 1e-11;
 
 impl Reference {
-    /// Computes the reference solution of a scene at bounded cost.
+    /// Computes the reference solution of a scene by a quick search.
     ///
     /// ```
     /// use warpbeam::{ProbeReference, Reference, ReferenceSource, Scene, Simulation};
@@ -83,7 +73,7 @@ impl Reference {
     /// # Errors
     /// Same errors as [`Self::find`].
     pub fn of(scene: &Scene) -> Result<Self, StudyError> {
-        Self::find(scene, None, Effort::Bounded, &|_| ControlFlow::Continue(()))
+        Self::find(scene, None, Extent::Quick, &|_| ControlFlow::Continue(()))
     }
 
     /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
@@ -91,14 +81,14 @@ impl Reference {
     ///
     /// ```
     /// use std::ops::ControlFlow;
-    /// use warpbeam::{Effort, MovedPoint, Observer, Progress, Reference, Scene, Sentence};
+    /// use warpbeam::{Extent, MovedPoint, Observer, Progress, Reference, Scene, Sentence};
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
     /// let observe: Observer<'_> = &|Progress { fraction, now }| {
     ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
     ///     ControlFlow::Continue(()) // `Break` cancels
     /// };
-    /// let reference = Reference::find(&scene, None, Effort::Bounded, observe)?;
+    /// let reference = Reference::find(&scene, None, Extent::Quick, observe)?;
     /// for MovedPoint { key, distance, .. } in &reference.moved {
     ///     println!("{key} acts on a node {distance} m away");
     /// }
@@ -112,7 +102,7 @@ impl Reference {
     pub fn find(
         scene: &Scene,
         near: Option<&Simulation>,
-        effort: Effort,
+        extent: Extent,
         observe: Observer<'_>,
     ) -> Result<Self, StudyError> {
         match near {
@@ -129,7 +119,7 @@ impl Reference {
         if near.is_some_and(|near| is_unstable(near, true)) {
             return Err(StudyError::Unstable);
         }
-        match on_fine_meshes(scene, near, effort, observe) {
+        match on_fine_meshes(scene, near, extent, observe) {
             Err(StudyError::NoReference) => Self::of_slender(scene).ok_or(StudyError::NoReference),
             found => found,
         }
@@ -140,12 +130,12 @@ impl Reference {
 fn on_fine_meshes(
     original: &Scene,
     near: Option<&Simulation>,
-    effort: Effort,
+    extent: Extent,
     observe: Observer<'_>,
 ) -> Result<Reference, StudyError> {
     let mut scene = prepared(original);
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
-    let (mut meshes, moved) = Meshes::of(&mut scene, near, effort)?;
+    let (mut meshes, moved) = Meshes::of(&mut scene, near, extent)?;
     let has_point = scene.acts_on_points();
     let mut work = 0.0;
     let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
@@ -157,16 +147,16 @@ fn on_fine_meshes(
         if let Some(start) = &start {
             simulation.start_from(start).map_err(|_| StudyError::NoReference)?;
         }
-        let mut status = solve(&mut simulation, effort, &mut work, observe)?;
+        let mut status = solve(&mut simulation, extent, &mut work, observe)?;
         if status == Status::Converged && start.as_ref().is_some_and(|start| is_far(start, &simulation)) {
             // Near a critical load, the coarser solution may lead to another equilibrium.
             simulation.reset();
-            status = solve(&mut simulation, effort, &mut work, observe)?;
+            status = solve(&mut simulation, extent, &mut work, observe)?;
         }
         if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
-            work -= FOLD_SHARE * MAX_WORK[effort as usize];
-            status = solve(&mut simulation, effort, &mut work, observe)?;
+            work -= FOLD_SHARE * extent.pick(MAX_WORK);
+            status = solve(&mut simulation, extent, &mut work, observe)?;
         }
         let converged = match status {
             Status::Converged => true,
@@ -188,10 +178,10 @@ fn on_fine_meshes(
             // continuous problem.
             return Err(StudyError::NoReference);
         }
-        let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, effort);
+        let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, extent);
         let next = 4 * unknowns;
         let next_fits =
-            next <= MAX_UNKNOWNS[effort as usize] && work + MIN_SOLVES_LEFT * next as f64 <= MAX_WORK[effort as usize];
+            next <= extent.pick(MAX_UNKNOWNS) && work + MIN_SOLVES_LEFT * next as f64 <= extent.pick(MAX_WORK);
         let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
         if converged {
             finest = Some(simulation);
@@ -273,26 +263,26 @@ pub(super) fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Op
 }
 
 /// Returns `true` if the errors of all probes with significant displacement are small enough to stop the search.
-fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, effort: Effort) -> bool {
+fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, extent: Extent) -> bool {
     /// Displacement relative to the largest of all probes below which a probe is ignored.
     const LITTLE: f64 = 0.01;
     let Some(last) = solutions.last() else { return false };
     let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let counts = last.iter().zip(errors(solutions, has_point)).filter(|(u, _)| u.norm() > LITTLE * largest);
-    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= GOOD_ENOUGH[effort as usize] * u.norm()))
+    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= extent.pick(GOOD_ENOUGH) * u.norm()))
 }
 
 /// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
 fn solve(
     simulation: &mut Simulation,
-    effort: Effort,
+    extent: Extent,
     work: &mut f64,
     observe: Observer<'_>,
 ) -> Result<Status, StudyError> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
-    let fraction = (unknowns as f64 / MAX_UNKNOWNS[effort as usize] as f64).min(1.0);
-    while *simulation.status() == Status::Running && *work <= MAX_WORK[effort as usize] {
+    let fraction = (unknowns as f64 / extent.pick(MAX_UNKNOWNS) as f64).min(1.0);
+    while *simulation.status() == Status::Running && *work <= extent.pick(MAX_WORK) {
         check(observe(Progress { fraction, now: Some(&now) }))?;
         let before = simulation.iterations();
         simulation.step();
@@ -314,7 +304,7 @@ impl Meshes {
     pub(super) fn of(
         scene: &mut Scene,
         near: Option<&Simulation>,
-        effort: Effort,
+        extent: Extent,
     ) -> Result<(Self, Vec<MovedPoint>), StudyError> {
         if let Some(beam) = scene.beam.clone() {
             let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
@@ -326,7 +316,7 @@ impl Meshes {
         let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
         // A mesh given by the caller is kept.
         let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-        if 4 * unknowns_of(&own, element.entry()) > MAX_UNKNOWNS[effort as usize] {
+        if 4 * unknowns_of(&own, element.entry()) > extent.pick(MAX_UNKNOWNS) {
             return Err(StudyError::TooFine { elements: own.element_count() });
         }
         // The same nodes are used for the scene's points on every mesh, including the scene's own.
@@ -432,7 +422,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
-    let nodes = 0.5 * MAX_UNKNOWNS[Effort::Bounded as usize] as f64;
+    let nodes = 0.5 * Extent::Quick.pick(MAX_UNKNOWNS) as f64;
     let cells = |short: f64, extra: usize| {
         (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
     };

@@ -1,7 +1,8 @@
 //! Reference solution that follows a dragged load: fine solutions on a few small meshes, each of which goes on from its own
 //! last state.
 
-use super::fine::{Effort, Meshes, errors, prepared};
+use super::fine::{Meshes, errors, prepared};
+use super::progress::Extent;
 use super::reference::{MovedPoint, Reference, probes_of};
 use crate::scene::{Load, MethodKind, Scene, SolverSettings};
 use crate::simulation::{Simulation, Status};
@@ -32,7 +33,7 @@ impl LiveReference {
     /// Makes the meshes of a scene at rest; `None` if they are too large for a drag.
     pub(crate) fn new(scene: &Scene) -> Option<Self> {
         let mut own = prepared(scene);
-        let (mut meshes, moved) = Meshes::of(&mut own, None, Effort::Bounded).ok()?;
+        let (mut meshes, moved) = Meshes::of(&mut own, None, Extent::Quick).ok()?;
         let mut levels = Vec::new();
         loop {
             let level = Simulation::with_mesh(&own, meshes.mesh().ok()?).ok()?;

@@ -1,7 +1,7 @@
 //! Measurement of the settings of a body at rest. A solve starts from rest, which is the hardest case; data computed once
 //! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
 
-use super::fine::{Effort, finest_element};
+use super::fine::finest_element;
 use super::motion::{self, MotionReference};
 use super::parallel;
 use super::progress::{Extent, StudyError, check};
@@ -106,7 +106,7 @@ impl Study {
 
 /// Returns a study of a scene at rest with its reference solution and no measurements.
 pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Study, StudyError> {
-    Study::begin(scene, StudyReference::Rest(Reference::find(scene, None, Effort::Bounded, observe)?))
+    Study::begin(scene, StudyReference::Rest(Reference::find(scene, None, Extent::Quick, observe)?))
 }
 
 /// Measures every method on a mesh. A cancelled measurement leaves the study unchanged.

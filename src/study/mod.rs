@@ -30,7 +30,7 @@ pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub(crate) use claim::driven_texts;
 pub use claim::{Claim, floor_text, rho_text};
 pub use colors::color;
-pub use fine::{Effort, moved_points};
+pub use fine::moved_points;
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;
 pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};

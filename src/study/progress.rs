@@ -91,17 +91,19 @@ impl StudyError {
     }
 }
 
-/// Extent of a study.
+/// Extent of a study, or of the search for a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
-    /// Coarser meshes only.
+    /// Of a study: coarser meshes only. Of a reference: meshes of at most about 10,000 unknowns, and the work of about 30
+    /// solves on them: a second or two.
     Quick,
-    /// Meshes of up to about five thousand unknowns.
+    /// Of a study: meshes of up to about five thousand unknowns. Of a reference: meshes fine enough for an error of 0.01 %,
+    /// with up to 700,000 unknowns.
     Full,
 }
 
 impl Extent {
-    /// Returns the value of a quick study or the one of a full study.
+    /// Returns the value of a quick study or search, or that of a full one.
     pub(super) fn pick<T>(self, [quick, full]: [T; 2]) -> T {
         if self == Self::Full { full } else { quick }
     }

@@ -96,7 +96,7 @@ fn independent(scene: &Scene, nodes: f64, coarser: Option<&Simulation>) -> Optio
 fn compare(seed: u64) -> Option<(f64, f64, Option<String>)> {
     let scene = random::scene(seed);
     let own = ended(&scene);
-    let first = Reference::find(&scene, Some(&own), Effort::Bounded, &go_on).ok()?.first()?;
+    let first = Reference::find(&scene, Some(&own), Extent::Quick, &go_on).ok()?.first()?;
     let coarse = independent(&scene, 5e3, None)?;
     let fine = independent(&scene, 14e3, Some(&coarse))?.probe("probe").unwrap();
     let claimed = first.error_percent(&own.solution().probes[0]).unwrap();

@@ -16,7 +16,7 @@ use crate::format::number;
 use crate::scene::{DynamicsSettings, SolverSettings};
 use crate::study::limits::MethodLimits;
 use crate::study::{
-    Effort, Extent, LiveReference, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError,
+    Extent, LiveReference, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError,
     time_from_rest, time_of_motion,
 };
 
@@ -32,7 +32,7 @@ pub(crate) enum Curve {
 facts! {
     /// Reference solution that errors are measured against.
     ReferenceFact by without_settings = "reference": Reference, |scene, observe, _| {
-        found(Reference::find(scene, None, Effort::Bounded, observe))
+        found(Reference::find(scene, None, Extent::Quick, observe))
     };
     /// Load–displacement curve.
     CurveFact = "curve": Curve, |scene, observe, _| curve(scene, observe);

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::parallel::{self, lock};
-use super::progress::{StudyError, check};
+use super::progress::{Extent, StudyError, check};
 use super::reference::{first_probe, system_of};
-use super::{Effort, ProbeReference, Reference, Setting};
+use super::{ProbeReference, Reference, Setting};
 use crate::assembly::System;
 use crate::exact_beam::error_percent;
 use crate::format::{engineering, number, percent, three_digits};
@@ -594,7 +594,7 @@ impl Sweep<'_> {
         if let Some(known) = self.known(factor) {
             return Ok(known.probe);
         }
-        let found = match Reference::find(&at(self.scene, factor), None, Effort::Bounded, observe) {
+        let found = match Reference::find(&at(self.scene, factor), None, Extent::Quick, observe) {
             Err(StudyError::Cancelled) => return Err(StudyError::Cancelled),
             found => found.ok(),
         };

@@ -3,7 +3,7 @@
 use super::Learn;
 use crate::app::interface::*;
 use crate::simulation::probe_results;
-use crate::study::Effort;
+use crate::study::Extent;
 
 /// Error of an element on the scene's cells.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,7 +17,7 @@ pub(crate) struct ElementError {
 
 /// Returns the errors of all elements that the scene's cells can have, each at its own equilibrium.
 pub(super) fn errors(scene: &Scene, observe: Observer<'_>) -> Option<Vec<ElementError>> {
-    let reference = Reference::find(scene, None, Effort::Bounded, observe).ok()?.first()?;
+    let reference = Reference::find(scene, None, Extent::Quick, observe).ok()?.first()?;
     let error = |element: ElementKind| {
         let mut scene = scene.clone();
         scene.set_element(element);
