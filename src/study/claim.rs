@@ -2,15 +2,13 @@
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
 use super::load_path::{LoadPath, PathEnd, PathSummary};
+use super::prelude::*;
 use super::ranking::Tuning;
 use super::reference::Reference;
 use super::trade::{Measurement, Study};
 use super::{Departure, LoadCurve};
-use crate::format::{engineering, number, percent, three_digits, two_digits};
 use crate::method::{Bifurcation, Drive, Jump, PathEndReason};
-use crate::scene::{MethodKind, Scene};
-use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{Simulation, Status, probe_results};
+use crate::simulation::probe_results;
 
 /// Statement of a result, with the numbers that prove it.
 ///

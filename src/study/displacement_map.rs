@@ -1,9 +1,8 @@
 //! Displacement of a reference solution at every point of the body.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 
-use crate::mesh::Mesh;
-use crate::simulation::Simulation;
+use super::prelude::*;
 
 /// Displacement that is linear over triangles.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -1,10 +1,7 @@
 //! A plot over linear axes: lines and marks, a table of present values, and both as CSV.
 
-use nalgebra::Vector2;
-
+use super::prelude::*;
 use crate::export::csv_field;
-use crate::scene::{Analysis, Load, MethodKind, Scene};
-use crate::sentence::{Sentence, sentence};
 
 /// A quantity that every point of a figure has.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,21 +3,15 @@
 use std::cmp::Reverse;
 use std::ops::ControlFlow;
 
-use nalgebra::Vector2;
-
-use super::StudyError;
 use super::convergence::remaining_error;
-use super::progress::{Extent, check};
+use super::prelude::*;
 use super::reference::{MovedPoint, Reference, is_unstable, probes_of};
-use crate::assembly::{Forces, System};
+use crate::assembly::Forces;
 use crate::element::ElementType;
-use crate::mesh::{Mesh, bent, straightened};
+use crate::mesh::{bent, straightened};
 use crate::method::{Workspace, is_stable};
-use crate::progress::{Observer, Progress};
 use crate::rotation::Rotation;
-use crate::scene::{Analysis, Beam, ElementKind, Load, MethodKind, Place, Scene};
-use crate::sentence::sentence;
-use crate::simulation::{Simulation, SimulationError, Status};
+use crate::scene::Beam;
 use crate::state::{largest, largest_distance};
 
 /// Largest number of unknowns of a mesh, of a quick and of a full search.

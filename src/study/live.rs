@@ -2,10 +2,9 @@
 //! last state.
 
 use super::fine::{Meshes, errors, prepared};
-use super::progress::Extent;
+use super::prelude::*;
 use super::reference::{MovedPoint, Reference, probes_of};
-use crate::scene::{Load, MethodKind, Scene, SolverSettings};
-use crate::simulation::{Simulation, Status};
+use crate::scene::SolverSettings;
 
 /// Largest number of unknowns of a mesh.
 const MAX_UNKNOWNS: usize = 3500;

@@ -1,12 +1,7 @@
 //! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
 
-use nalgebra::Vector2;
-
-use crate::exact_beam::{ExactBeam, PathPoint, error_percent};
-use crate::method::METHODS;
-use crate::progress::{Observer, Progress};
-use crate::scene::{MethodKind, Place, Scene};
-use crate::simulation::{Simulation, Status};
+use super::prelude::*;
+use crate::exact_beam::{ExactBeam, PathPoint};
 
 /// Load factor with its deflections.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]

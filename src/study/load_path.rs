@@ -3,21 +3,17 @@
 
 use std::ops::ControlFlow;
 
-use nalgebra::Vector2;
-
+use super::prelude::*;
 use crate::assembly::{Forces, Kinematics, Problem};
 use crate::continuation::ContinuationPoint;
 use crate::method::{
     Bifurcation, Drive, Jump, PathEndReason, PathFollower, PathPart, PathProgress, StaticEquations, Workspace,
     support_stiffness,
 };
-use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, MethodKind, Place, Scene, Support};
-use crate::sentence::sentence;
-use crate::simulation::{Deformation, Equilibrium, Simulation, Status, SupportReaction, supports_power};
+use crate::scene::Support;
+use crate::simulation::{Equilibrium, SupportReaction, supports_power};
 use crate::state::{State, largest, largest_distance};
 use crate::stress::LAW_HOLDS;
-use crate::timings::Timings;
 
 /// Equilibrium on the path.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -3,17 +3,10 @@
 
 use super::fine::finest_element;
 use super::motion::{self, MotionReference};
-use super::parallel;
-use super::progress::{Extent, StudyError, check};
+use super::prelude::*;
 use super::reference::{Reference, first_probe};
-use super::setting::{Setting, mesh_text};
 use super::timing::times_from_rest;
 use super::trade::{Measurement, Meshed, Study, StudyReference};
-use crate::method::METHODS;
-use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, MethodKind, Scene};
-use crate::sentence::sentence;
-use crate::simulation::{Simulation, Status};
 
 /// Fraction of a study's time spent before timing starts.
 const ENDS_SHARE: f64 = 0.1;

@@ -16,6 +16,7 @@ mod measure;
 pub mod motion;
 pub(crate) mod parallel;
 pub mod path_chart;
+mod prelude;
 mod progress;
 mod ranking;
 mod reference;

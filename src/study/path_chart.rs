@@ -1,12 +1,8 @@
 //! A load path as a figure: unstable branches are dashed, a jump is dotted.
 
-use nalgebra::Vector2;
-
 use super::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
+use super::prelude::*;
 use super::{LoadPath, PathState, support_text};
-use crate::format::number;
-use crate::scene::{MethodKind, Place, Scene};
-use crate::sentence::{Sentence, sentence};
 
 /// The pair of quantities that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]

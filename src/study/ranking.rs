@@ -2,11 +2,8 @@
 //! accuracy and time. Errors are measured against a reference solution with an error of its own.
 
 use super::measure::{begin, measure, meshed, meshes};
-use super::progress::{Extent, StudyError};
+use super::prelude::*;
 use super::trade::{Measurement, Study, StudyReference};
-use crate::progress::{Observer, Progress};
-use crate::scene::Scene;
-use crate::sentence::sentence;
 
 /// Requirements for a solve; `None` for no requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,19 +2,13 @@
 //! reference is the exact beam ([`crate::exact_beam`]) if solutions on fine meshes confirm it, else the finest of
 //! these.
 
-use std::sync::Arc;
-
-use nalgebra::Vector2;
-
-use super::StudyError;
 use super::displacement_map::DisplacementMap;
-use crate::assembly::System;
-use crate::exact_beam::{ExactBeam, error_percent};
-use crate::format::{engineering, engineering_pair, number, two_digits};
-use crate::mesh::{Mesh, Segment};
-use crate::scene::{Place, Probe, Scene};
-use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{Equilibrium, ProbeResult, Simulation, SimulationError, Status};
+use super::prelude::*;
+use crate::exact_beam::ExactBeam;
+use crate::format::engineering_pair;
+use crate::mesh::Segment;
+use crate::scene::Probe;
+use crate::simulation::{Equilibrium, ProbeResult};
 
 /// Origin of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -4,13 +4,9 @@ use std::fmt::Write as _;
 
 use super::claim::Claim;
 use super::motion::{MotionReference, REAL_TIME};
+use super::prelude::*;
 use super::ranking::Tuning;
-use super::setting::{Setting, Stepping, mesh_text, step_text};
 use super::trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
-use crate::dynamics::INTEGRATORS;
-use crate::format::{count, number, percent};
-use crate::method::METHODS;
-use crate::scene::{ElementKind, MethodKind};
 
 /// Columns of the table of a body at rest, and of a motion.
 const COLUMNS: [&str; 2] = [

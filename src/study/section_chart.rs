@@ -2,11 +2,9 @@
 
 use super::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, Mark};
 use super::path_chart::Render;
-use crate::format::{Context, engineering, three_digits};
-use crate::scene::Scene;
+use super::prelude::*;
+use crate::format::Context;
 use crate::section::{Section, SectionForces};
-use crate::sentence::sentence;
-use crate::simulation::Simulation;
 
 /// Component of section forces.
 #[derive(Clone, Copy, Debug)]

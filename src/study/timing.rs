@@ -2,16 +2,11 @@
 
 use std::sync::Mutex;
 
-use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use web_time::{Duration, Instant};
 
-use super::parallel::lock;
+use super::prelude::*;
 use super::reference::first_probe;
-use crate::progress::{Observer, Progress};
-use crate::scene::Scene;
-use crate::simulation::{Simulation, Status};
-use crate::timings::Timings;
 
 /// Repetitions that warm up caches, branch predictors and clocks.
 const WARM_UP: usize = 2;

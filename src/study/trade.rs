@@ -1,20 +1,10 @@
 //! Speed–accuracy study: error against time for every element, mesh, method and number of iterations, of a motion also for
 //! every integrator and time step, on this machine.
 
-use std::sync::Arc;
-
-use nalgebra::Vector2;
-
 use super::motion::MotionReference;
-use super::progress::StudyError;
+use super::prelude::*;
 use super::reference::{Reference, system_of};
-use super::setting::Setting;
-use crate::assembly::System;
 use crate::dynamics::Counts;
-use crate::progress::{Observer, Progress};
-use crate::scene::{MethodKind, Scene};
-use crate::sentence::{Sentence, displayed};
-use crate::timings::Timings;
 
 /// Error of a result and its parts: distances of the first probe's displacement, percent of the reference's; of a motion,
 /// largest distances of its path, percent of the size of the reference's path. The total is at most the sum of the parts.

@@ -1,11 +1,9 @@
 //! Stability atlas of motions: every integrator at extremes of stiffness, time step and weight.
 
-use super::super::Extent;
 use super::{AtlasSeries, Case, Entry, Outcome, labels, outcome_table};
-use crate::dynamics::{Counts, INTEGRATORS};
-use crate::format::{count, number};
-use crate::scene::{ElementKind, IntegratorKind, Material, Scene};
-use crate::simulation::{Simulation, SimulationError};
+use crate::dynamics::Counts;
+use crate::scene::Material;
+use crate::study::prelude::*;
 
 /// Case: a beam of 1 m × 0.1 m, clamped at one end, is released from horizontal and falls under its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]

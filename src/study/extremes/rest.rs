@@ -1,16 +1,11 @@
 //! Stability atlas of bodies at rest: every method at extremes of load, stiffness, Poisson ratio, slenderness and
 //! element shape, on mesh files, and from extreme initial states.
 
-use nalgebra::Vector2;
-
-use super::super::Extent;
 use super::{AtlasSeries, Case, Entry, Outcome, counts, labels, outcome_table, text_table};
-use crate::format::number;
-use crate::mesh::Mesh;
-use crate::method::METHODS;
 use crate::rotation::Rotation;
-use crate::scene::{Axis, ElementKind, Material, MethodKind, Plane, Scene, Source, open};
-use crate::simulation::{Simulation, SimulationError, Solution};
+use crate::scene::{Axis, Material, Plane, Source, open};
+use crate::simulation::Solution;
+use crate::study::prelude::*;
 
 /// Difference from a cantilever with rectangular cells that starts at rest and is loaded at its tip. Fixed nodes always
 /// start at rest.

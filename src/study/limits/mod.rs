@@ -3,25 +3,15 @@
 //! which time step. Loads are tried from small to large; each stated end lies between two of them that differ by at most
 //! one percent.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
-use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::figure::LoadAxis;
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
-use super::parallel::{self, lock};
-use super::progress::{Extent, StudyError, check};
+use super::prelude::*;
 use super::reference::{first_probe, system_of};
-use super::{ProbeReference, Reference, Setting};
-use crate::assembly::System;
-use crate::exact_beam::error_percent;
-use crate::format::{engineering, number, percent, three_digits};
-use crate::method::METHODS;
-use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, MethodKind, Scene};
-use crate::sentence::{Sentence, sentence};
-use crate::simulation::{Deformation, Simulation};
+use super::{ProbeReference, Reference};
 use crate::stress::LAW_HOLDS;
 
 mod motion;

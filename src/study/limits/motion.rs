@@ -1,21 +1,12 @@
 //! Limits of the integrators of a motion: each with time steps of powers of two, from short to long, compared with the
 //! reference.
 
-use std::sync::{Arc, Mutex};
-
-use nalgebra::Vector2;
+use std::sync::Mutex;
 
 use super::{LimitPoint, MethodLimits, Property, Strip, Sweep};
-use crate::assembly::System;
-use crate::progress::{Observer, Progress};
-use crate::scene::{IntegratorKind, MethodKind, Scene};
-use crate::sentence::sentence;
-use crate::simulation::{Deformation, Simulation, Status};
 use crate::study::motion::{MotionReference, REFERENCE_STEPS, Samples, fine_path, path};
-use crate::study::parallel::{self, lock};
-use crate::study::progress::{Extent, StudyError};
+use crate::study::prelude::*;
 use crate::study::reference::system_of;
-use crate::study::{Setting, Stepping};
 
 /// Powers of two of the shortest and the longest time step, relative to the scene's.
 const POWERS: [i32; 2] = [-4, 3];

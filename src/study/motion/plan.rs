@@ -4,13 +4,9 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use crate::assembly::{Mass, Problem};
-use crate::dynamics::{INTEGRATORS, IntegratorEntry, lowest_frequency};
-use crate::method::METHODS;
-use crate::scene::{ElementKind, MethodKind, Scene};
-use crate::simulation::SimulationError;
-use crate::study::progress::{Extent, StudyError};
+use crate::dynamics::{IntegratorEntry, lowest_frequency};
+use crate::study::prelude::*;
 use crate::study::reference::system_of;
-use crate::study::setting::{Setting, Stepping};
 
 // Values of a quick and of a full study.
 

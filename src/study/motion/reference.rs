@@ -1,21 +1,9 @@
 //! Reference path of a motion: energy–momentum method with short steps on a fine mesh.
 
-use std::sync::Arc;
-
-use nalgebra::Vector2;
-
 use super::plan::{REFERENCE_MESH, REFERENCE_STEPS, Samples, cells, nodes_of_shape, slenderness};
-use crate::assembly::System;
-use crate::format::percent;
-use crate::progress::{Observer, Progress};
-use crate::scene::{Analysis, ElementKind, IntegratorKind, Scene};
-use crate::sentence::{Sentence, displayed, sentence};
-use crate::simulation::{Simulation, SimulationError, Status};
 use crate::study::fine::finest_element;
-use crate::study::parallel;
-use crate::study::progress::{Extent, StudyError, check};
+use crate::study::prelude::*;
 use crate::study::reference::{first_probe, system_of};
-use crate::study::setting::{Setting, mesh_text, step_text};
 
 /// Reference path of the first probe.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
