@@ -87,9 +87,8 @@ impl Recovery {
 /// Mesh data needed to build patches.
 struct Patches<'a> {
     mesh: &'a Mesh,
-    /// Elements around every node, and the index of each node's first one.
-    around: Vec<u32>,
-    starts: Vec<u32>,
+    /// Elements around every node.
+    around: Vec<Vec<u32>>,
     /// `true` for nodes on the outline.
     outer: Vec<bool>,
     /// Position of every quadrature point, m.
@@ -125,30 +124,14 @@ const MAX_RINGS: u32 = 3;
 impl<'a> Patches<'a> {
     fn new(mesh: &'a Mesh) -> Self {
         let entry = mesh.entry();
-        let nodes = mesh.nodes().len();
-        let mut starts = vec![0; nodes + 1];
-        for &node in mesh.connectivity() {
-            starts[node as usize + 1] += 1;
-        }
-        for node in 0..nodes {
-            starts[node + 1] += starts[node];
-        }
-        let mut next = starts.clone();
-        let mut around = vec![0; mesh.connectivity().len()];
+        let mut around = vec![Vec::new(); mesh.nodes().len()];
         for (element, own) in (0..).zip(mesh.elements()) {
-            for &node in own {
-                around[next[node as usize] as usize] = element;
-                next[node as usize] += 1;
-            }
+            own.iter().for_each(|&node| around[node as usize].push(element));
         }
         let shapes: Vec<Vec<f64>> = entry.points.iter().map(|p| (entry.shape)(p.at)).collect();
         let place = |own: &[u32], shape: &[f64]| own.iter().zip(shape).map(|(&n, w)| mesh.node(n) * *w).sum();
         let points = mesh.elements().flat_map(|own| shapes.iter().map(move |shape| place(own, shape))).collect();
-        Self { mesh, around, starts, outer: mesh.nodes_on_outline(), points, degree: entry.degree().min(2) }
-    }
-
-    fn around(&self, node: u32) -> &[u32] {
-        &self.around[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
+        Self { mesh, around, outer: mesh.nodes_on_outline(), points, degree: entry.degree().min(2) }
     }
 
     /// Adds the elements around a patch to it; returns `false` if there are none.
@@ -158,7 +141,7 @@ impl<'a> Patches<'a> {
         let before = patch.len();
         for i in 0..before {
             let own = &self.mesh.connectivity()[patch[i] as usize * stride..][..corners];
-            own.iter().for_each(|&node| patch.extend(self.around(node)));
+            own.iter().for_each(|&node| patch.extend(&self.around[node as usize]));
         }
         patch.sort_unstable();
         patch.dedup();
@@ -168,7 +151,7 @@ impl<'a> Patches<'a> {
     /// Fits the polynomial around a corner.
     fn fit(&self, corner: u32, fit: &mut Fit) {
         let per_element = self.mesh.entry().points.len() as u32;
-        let mut patch = self.around(corner).to_vec();
+        let mut patch = self.around[corner as usize].clone();
         let mut rings = 1;
         let spare = if self.outer[corner as usize] { MIN_POINTS_PER_TERM_OUTSIDE } else { MIN_POINTS_PER_TERM };
         let needed = ((self.degree + 1) * (self.degree + 2) / 2) as f64 * spare;
