@@ -18,9 +18,38 @@ struct OutlinePiece {
 }
 
 impl Mesh {
-    /// Returns `true` if a body with its nodes at `positions` passes through itself; `outline` is [`Self::outline`].
+    /// Returns `true` if a body with its nodes at `positions` passes through itself: two segments of a slightly smaller
+    /// outline without a common node cross; `outline` is [`Self::outline`]. Sweep along the longer side of the body: the
+    /// segments are sorted, and only those that overlap along this axis are compared.
     pub(crate) fn passes_through_itself(&self, outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
-        crosses_itself(outline, &moved_inwards(self, positions))
+        let positions = moved_inwards(self, positions);
+        let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+        let (low, high) = positions.iter().fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
+        let size = high - low;
+        if !(size.x.is_finite() && size.y.is_finite()) {
+            return false;
+        }
+        let axis = usize::from(size.y > size.x);
+        let mut pieces: Vec<OutlinePiece> = outline
+            .iter()
+            .flat_map(|side| side.nodes().windows(2))
+            .filter_map(|nodes| {
+                let nodes = [*nodes.first()?, *nodes.last()?];
+                let ends = [*positions.get(nodes[0] as usize)?, *positions.get(nodes[1] as usize)?];
+                let (a, b) = (ends[0][axis], ends[1][axis]);
+                Some(OutlinePiece { nodes, ends, from: a.min(b), to: a.max(b) })
+            })
+            .collect();
+        pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let mut open: Vec<&OutlinePiece> = Vec::new();
+        for piece in &pieces {
+            open.retain(|other| other.to >= piece.from);
+            if open.iter().any(|other| other.crosses(piece)) {
+                return true;
+            }
+            open.push(piece);
+        }
+        false
     }
 }
 
@@ -36,38 +65,6 @@ fn moved_inwards(mesh: &Mesh, positions: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
     }
     let own = positions.iter().zip(middles);
     own.map(|(x, (sum, count))| if count > 0.0 { x + (sum / count - x) * INWARDS } else { *x }).collect()
-}
-
-/// Returns `true` if two segments of the outline without a common node cross. Sweep along the longer side of the body:
-/// the segments are sorted, and only those that overlap along this axis are compared.
-fn crosses_itself(outline: &[Segment], positions: &[Vector2<f64>]) -> bool {
-    let start = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
-    let (low, high) = positions.iter().fold(start, |(low, high), x| (low.inf(x), high.sup(x)));
-    let size = high - low;
-    if !(size.x.is_finite() && size.y.is_finite()) {
-        return false;
-    }
-    let axis = usize::from(size.y > size.x);
-    let mut pieces: Vec<OutlinePiece> = outline
-        .iter()
-        .flat_map(|side| side.nodes().windows(2))
-        .filter_map(|nodes| {
-            let nodes = [*nodes.first()?, *nodes.last()?];
-            let ends = [*positions.get(nodes[0] as usize)?, *positions.get(nodes[1] as usize)?];
-            let (a, b) = (ends[0][axis], ends[1][axis]);
-            Some(OutlinePiece { nodes, ends, from: a.min(b), to: a.max(b) })
-        })
-        .collect();
-    pieces.sort_by(|a, b| a.from.total_cmp(&b.from));
-    let mut open: Vec<&OutlinePiece> = Vec::new();
-    for piece in &pieces {
-        open.retain(|other| other.to >= piece.from);
-        if open.iter().any(|other| other.crosses(piece)) {
-            return true;
-        }
-        open.push(piece);
-    }
-    false
 }
 
 impl OutlinePiece {
