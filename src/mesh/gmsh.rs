@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::refine::OnSides;
 use super::{Mesh, MeshError, Segment, side_key};
 use crate::element::cell::{SQUARE, TRIANGLE};
 use crate::element::{ELEMENTS, ElementType};
@@ -404,7 +405,7 @@ impl File {
         })?;
         // Only nodes of elements are read; other nodes in the file would be unconnected.
         let mut builder =
-            Builder { tags: &self.nodes, numbers: HashMap::new(), between: HashMap::new(), nodes: Vec::new() };
+            Builder { tags: &self.nodes, numbers: HashMap::new(), between: OnSides::default(), nodes: Vec::new() };
         let mut connectivity = Vec::with_capacity(entry.nodes.len() * self.elements.len());
         for (line, own, tags) in &self.elements {
             let missing =
@@ -443,8 +444,7 @@ impl File {
 struct Builder<'a> {
     tags: &'a HashMap<u64, Vector2<f64>>,
     numbers: HashMap<u64, u32>,
-    /// By the ends of their side, and its part between them and the end of the larger number.
-    between: HashMap<([u32; 2], i64), u32>,
+    between: OnSides,
     nodes: Vec<Vector2<f64>>,
 }
 
@@ -463,8 +463,6 @@ impl Builder<'_> {
     /// Returns the node at `at` in an element of the file that has none there, adding it if necessary. The error is the
     /// tag of a missing corner node.
     fn between(&mut self, element: &ElementType, tags: &[u64], at: [f64; 2]) -> Result<u32, u64> {
-        /// Parts of a side in which distances along it are told apart.
-        const PARTS: f64 = 1024.0;
         let weights = (element.cell.corner_weights)(at);
         let mut ends = Vec::new();
         let mut place = Vector2::zeros();
@@ -478,11 +476,7 @@ impl Builder<'_> {
             (self.nodes.len() - 1) as u32
         };
         Ok(match ends[..] {
-            [(a, of_a), (b, of_b)] => {
-                let weight = if a < b { of_a } else { of_b };
-                let parts = (weight * PARTS).round() as i64;
-                *self.between.entry((side_key([a, b]), parts)).or_insert_with(add)
-            }
+            [(a, _), (b, of_b)] => *self.between.0.entry(OnSides::key([a, b], of_b)).or_insert_with(add),
             _ => add(),
         })
     }
@@ -504,7 +498,7 @@ mod tests {
     #[test]
     fn two_elements_share_every_node_between_the_ends_of_a_side() {
         let tags = [(7, [0.0, 0.0]), (5, [3.0, 0.0]), (6, [0.0, 3.0])].map(|(tag, at)| (tag, Vector2::from(at))).into();
-        let (numbers, between) = (HashMap::new(), HashMap::new());
+        let (numbers, between) = (HashMap::new(), OnSides::default());
         let mut builder = Builder { tags: &tags, numbers, between, nodes: Vec::new() };
         let t3 = ElementKind::T3.entry();
         let mut number = |tags: &[u64], along: f64| builder.between(t3, tags, [along / 3.0, 0.0]).unwrap();

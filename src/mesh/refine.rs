@@ -44,10 +44,10 @@ fn ends(entry: &ElementType, side: &[usize]) -> [Vector2<f64>; 2] {
 /// New nodes on sides, by the side's ends and the distance from the end with the smaller number: the same for both
 /// elements.
 #[derive(Default)]
-struct OnSides(HashMap<([u32; 2], u32), u32>);
+pub(super) struct OnSides(pub HashMap<([u32; 2], u32), u32>);
 
 impl OnSides {
-    fn key(ends: [u32; 2], t: f64) -> ([u32; 2], u32) {
+    pub fn key(ends: [u32; 2], t: f64) -> ([u32; 2], u32) {
         // Distances are multiples of a small power of ½.
         const UNITS: f64 = 1024.0;
         let key = side_key(ends);
