@@ -240,18 +240,18 @@ impl Mesh {
     /// Returns the number of parts that share no nodes, and the part of every node; `u32::MAX` for nodes without an
     /// element.
     pub(crate) fn parts(&self) -> (usize, Vec<u32>) {
-        let mut joined = Joined::new(self.nodes.len());
+        let mut of: Vec<usize> = (0..self.nodes.len()).collect();
         let mut used = vec![false; self.nodes.len()];
         for nodes in self.elements() {
             for &node in nodes {
                 used[node as usize] = true;
-                joined.join(nodes[0] as usize, node as usize);
+                join(&mut of, nodes[0] as usize, node as usize);
             }
         }
         let mut parts = 0;
         let mut part_of = vec![u32::MAX; used.len()];
         for node in (0..used.len()).filter(|&node| used[node]) {
-            let first = joined.first(node);
+            let first = first(&mut of, node);
             // The first node of a part has its smallest number, so it is visited first.
             if first == node {
                 part_of[node] = parts;
@@ -273,17 +273,19 @@ impl Mesh {
             return None;
         }
         let mut of_side: HashMap<[u32; 2], usize> = HashMap::new();
-        let mut joined = Joined::new(self.element_count());
+        let mut of: Vec<usize> = (0..self.element_count()).collect();
         for (element, nodes) in self.elements().enumerate() {
             for side in self.sides(nodes) {
-                of_side.insert(side.key(), element).into_iter().for_each(|other| joined.join(element, other));
+                if let Some(other) = of_side.insert(side.key(), element) {
+                    join(&mut of, element, other);
+                }
             }
         }
         let mut numbers: HashMap<usize, u32> = HashMap::new();
         let mut of_node = vec![Vec::new(); self.nodes.len()];
         for (element, nodes) in self.elements().enumerate() {
             let next = numbers.len() as u32;
-            let number = *numbers.entry(joined.first(element)).or_insert(next);
+            let number = *numbers.entry(first(&mut of, element)).or_insert(next);
             for &node in nodes {
                 let parts: &mut Vec<u32> = &mut of_node[node as usize];
                 if !parts.contains(&number) {
@@ -352,10 +354,7 @@ impl Mesh {
 
     /// Returns the nodes of a named edge, each once; `None` if there is no such edge.
     pub fn edge_nodes(&self, name: &str) -> Option<Vec<u32>> {
-        let mut nodes: Vec<u32> = self.edges.get(name)?.iter().flat_map(|s| s.nodes().to_vec()).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        Some(nodes)
+        Some(unique(self.edges.get(name)?.iter().flat_map(Segment::nodes).copied()))
     }
 
     /// Returns the node nearest to a rest position; the first of several at the same distance.
@@ -423,27 +422,27 @@ impl Mesh {
     }
 }
 
-/// Parts of joined members (union-find): each member points towards the first one of its part.
-struct Joined(Vec<usize>);
-
-impl Joined {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
+/// Returns the first member of a member's part (union-find): each member points towards the first one of its part.
+fn first(of: &mut [usize], mut member: usize) -> usize {
+    while of[member] != member {
+        of[member] = of[of[member]];
+        member = of[member];
     }
+    member
+}
 
-    /// Returns the first member of a member's part.
-    fn first(&mut self, mut member: usize) -> usize {
-        while self.0[member] != member {
-            self.0[member] = self.0[self.0[member]];
-            member = self.0[member];
-        }
-        member
-    }
+/// Joins the parts of two members.
+fn join(of: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (first(of, a), first(of, b));
+    of[a.max(b)] = a.min(b);
+}
 
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.first(a), self.first(b));
-        self.0[a.max(b)] = a.min(b);
-    }
+/// Returns numbers in their order, each once.
+fn unique(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut numbers: Vec<u32> = numbers.collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
 }
 
 /// Returns the sides that occur once.

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Mesh, Segment};
+use super::{Mesh, Segment, unique};
 use crate::format::{number, six_digits};
 use crate::sentence::{Sentence, sentence};
 
@@ -25,9 +25,7 @@ impl Mesh {
         let near = lengths.fold(COINCIDENT * (high - low).norm(), |near, length| near.min(OF_SHORTEST * length));
         // Along an oblique axis few nodes have about the same place.
         let along = |x: Vector2<f64>| 1f64.cos() * x.x + 1f64.sin() * x.y;
-        let mut nodes: Vec<u32> = outline.iter().flat_map(|side| side.nodes().to_vec()).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let nodes = unique(outline.iter().flat_map(Segment::nodes).copied());
         let mut nodes: Vec<(f64, u32)> = nodes.into_iter().map(|n| (along(self.node(n)), n)).collect();
         nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
         // The nodes between two places along the axis.
@@ -39,13 +37,12 @@ impl Mesh {
             let (x, s) = (self.node(node), along(self.node(node)));
             between(s - near, s + near).any(|other| other < node && (self.node(other) - x).norm() <= near)
         };
-        let doubles = nodes.iter().map(|(_, n)| *n).filter(|n| is_double(*n)).collect();
+        let doubles = nodes.iter().map(|(_, n)| *n).filter(|n| is_double(*n));
         let hanging = outline.iter().flat_map(|side| {
             let [a, b] = side.ends().map(|n| along(self.node(n)));
             let margin = HANGING.sqrt() * (self.node(side.ends()[1]) - self.node(side.ends()[0])).norm();
             between(a.min(b) - margin, a.max(b) + margin).filter(|n| self.hangs_on(side, *n, near)).collect::<Vec<_>>()
         });
-        let hanging = hanging.collect();
         let doubles = self.first_of(doubles).map(|[n, x, y]| {
             sentence!(
                 "nodes that lie on others without being joined to them: %{n}, the first at (%{x}, %{y}) m; the body is cut there, and `Coherence Mesh` in Gmsh joins them",
@@ -80,9 +77,8 @@ impl Mesh {
     }
 
     /// Returns the count of nodes, and the place of the one with the smallest number.
-    fn first_of(&self, mut nodes: Vec<u32>) -> Option<[String; 3]> {
-        nodes.sort_unstable();
-        nodes.dedup();
+    fn first_of(&self, nodes: impl Iterator<Item = u32>) -> Option<[String; 3]> {
+        let nodes = unique(nodes);
         let first = self.node(*nodes.first()?);
         Some([nodes.len().to_string(), number(six_digits(first.x)), number(six_digits(first.y))])
     }
