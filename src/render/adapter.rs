@@ -267,14 +267,6 @@ fn backend_names(backends: wgpu::Backends) -> String {
     names.join(", ")
 }
 
-/// Returns a description of an adapter, which marks software rendering.
-pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
-    match info.device_type {
-        wgpu::DeviceType::Cpu => format!("software rendering ({}, {})", info.name, info.backend),
-        _ => format!("{} ({})", info.name, info.backend),
-    }
-}
-
 impl Gpu {
     /// Creates a device on this adapter, and tries the pipelines of the body with it.
     pub(crate) async fn usable(adapter: wgpu::Adapter) -> Result<Self, String> {

@@ -131,7 +131,11 @@ impl Gpu {
 
     /// Returns a description of the adapter, which marks software rendering.
     pub fn describe(&self) -> String {
-        adapter::describe(&self.adapter.get_info())
+        let wgpu::AdapterInfo { name, backend, device_type, .. } = self.adapter.get_info();
+        match device_type {
+            wgpu::DeviceType::Cpu => format!("software rendering ({name}, {backend})"),
+            _ => format!("{name} ({backend})"),
+        }
     }
 
     /// Creates a texture to draw into, which is sampled or copied from afterwards.
