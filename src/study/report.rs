@@ -128,7 +128,7 @@ impl Study {
         for percent in [10.0, 1.0, 0.1] {
             let claim = Claim::of_study(self, percent);
             let _ = writeln!(text, "{claim}");
-            if claim.id != "not_known" {
+            if self.own_error_percent < percent {
                 details(text, percent);
             }
         }
@@ -180,7 +180,7 @@ impl Study {
                 let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
             }
         });
-        if Claim::of_study(self, 1.0).id == "not_known" {
+        if self.own_error_percent >= 1.0 {
             text.push('\n');
             return;
         }
@@ -256,10 +256,11 @@ impl Study {
 
     /// Adds the settings without an error, and the reason.
     fn add_unfinished(&self, text: &mut String) {
-        for (ending, label) in
-            [("stopped", "stopped before the end"), ("cut_short", "stopped early: too many steps to the end")]
+        for (is_cut_short, label) in
+            [(false, "stopped before the end"), (true, "stopped early: too many steps to the end")]
         {
-            let those: Vec<_> = self.motions().filter(|(m, ..)| m.ending() == ending).collect();
+            let of_label = |motion: &MotionFigures| motion.is_cut_short == is_cut_short;
+            let those: Vec<_> = self.motions().filter(|(m, _, motion)| !m.converged && of_label(motion)).collect();
             if !those.is_empty() {
                 let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
             }
