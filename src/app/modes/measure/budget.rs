@@ -8,7 +8,6 @@ use egui_plot::{
 use crate::app::diagnosis::drift_text;
 use crate::app::interface::*;
 use crate::app::language::bound_percent;
-use crate::app::session::Session;
 use crate::app::session::clock::FRAMES;
 use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
