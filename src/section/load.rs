@@ -14,13 +14,6 @@ use crate::element::{Lame, integrate_side, side_weights};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::scene::{Load, Place, Pulse};
 
-/// Body in its current positions.
-pub(super) struct PlacedMesh<'a> {
-    pub mesh: &'a Mesh,
-    /// Current positions of the nodes, m: those of rest in linear theory.
-    pub positions: &'a [Vector2<f64>],
-}
-
 /// Force and moment about a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Wrench {
@@ -63,21 +56,22 @@ pub(crate) struct MotionBalance {
 }
 
 /// Returns the loads, the reactions and the inertia of the part of a body in front of a cut, minus those of the nodes in
-/// front: force, N, and moment about `middle`, N m.
+/// front: force, N, and moment about `middle`, N m, with the nodes at `positions`: those of rest in linear theory.
 pub(super) fn beyond_nodes(
     problem: &Problem,
-    shape: &PlacedMesh<'_>,
+    positions: &[Vector2<f64>],
     cut: &Cut,
     (balance, time): (&NodalBalance<'_>, f64),
     middle: Vector2<f64>,
 ) -> Wrench {
-    let mut sum = Wrench::default();
+    let mesh = problem.system().mesh();
+    let mut beyond = BeyondNodes { mesh, positions, cut, middle, sum: Wrench::default() };
     for (support, force) in problem.supports().point_forces(&balance.residual) {
         let Place::At(at) = support.place else { continue };
-        shape.add_point_load(cut, (at, support.width), force, middle, &mut sum);
+        beyond.add_point_load((at, support.width), force);
     }
     if let Some(spring) = problem.mouse_spring() {
-        shape.add_material_load(cut, spring.point(), balance.mouse_spring, middle, &mut sum);
+        beyond.add_material_load(spring.point(), balance.mouse_spring);
     }
     let factor = |pulse: &Option<Pulse>| balance.load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(time));
     let mut gravity = Vector2::zeros();
@@ -85,11 +79,10 @@ pub(super) fn beyond_nodes(
         match load {
             Load::Gravity { acceleration, pulse } => gravity += Vector2::from(*acceleration) * factor(pulse),
             Load::Force { place: Place::Edge(name), force, pulse, .. } => {
-                shape.add_edge_load(cut, name, Vector2::from(*force) * factor(pulse), middle, &mut sum);
+                beyond.add_edge_load(name, Vector2::from(*force) * factor(pulse));
             }
             Load::Force { place: Place::At(at), at_point: true, width, force, pulse } => {
-                let force = Vector2::from(*force) * factor(pulse);
-                shape.add_point_load(cut, (*at, *width), force, middle, &mut sum);
+                beyond.add_point_load((*at, *width), Vector2::from(*force) * factor(pulse));
             }
             _ => {}
         }
@@ -98,25 +91,42 @@ pub(super) fn beyond_nodes(
     if gravity != Vector2::zeros() || acceleration.is_some() {
         let density = problem.material().area_density();
         for &element in &cut.elements {
-            shape.add_body_force(element, cut.side(), middle, &mut sum, |weights| {
+            beyond.add_body_force(element, |weights| {
                 let inertia = acceleration.map_or_else(Vector2::zeros, |acceleration| mean(acceleration, weights));
                 (gravity - inertia) * density
             });
         }
     }
-    sum
+    beyond.sum
 }
 
-impl PlacedMesh<'_> {
+/// Sum of the forces on the part of a body in front of a cut, minus those on the nodes in front.
+struct BeyondNodes<'a> {
+    mesh: &'a Mesh,
+    /// Current positions of the nodes, m.
+    positions: &'a [Vector2<f64>],
+    cut: &'a Cut,
+    /// Point that moments refer to, m.
+    middle: Vector2<f64>,
+    sum: Wrench,
+}
+
+impl BeyondNodes<'_> {
+    /// Adds a force, N, at an interpolated point.
+    fn add(&mut self, weights: &[(u32, f64)], force: Vector2<f64>) {
+        self.sum.add(mean(self.positions, weights) - self.middle, force);
+    }
+
+    /// Subtracts the parts of a force, N, on these nodes, as far as they are in front.
+    fn subtract(&mut self, weights: &[(u32, f64)], force: Vector2<f64>) {
+        let side = self.cut.side();
+        for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(self.mesh.node(*node))) {
+            self.sum.add(self.positions[node as usize] - self.middle, force * -weight);
+        }
+    }
+
     /// Adds a force per area, N/m², on the part of an element in front, minus that on its nodes in front.
-    fn add_body_force(
-        &self,
-        element: usize,
-        side: Side,
-        middle: Vector2<f64>,
-        sum: &mut Wrench,
-        per_area: impl Fn(&[(u32, f64)]) -> Vector2<f64>,
-    ) {
+    fn add_body_force(&mut self, element: usize, per_area: impl Fn(&[(u32, f64)]) -> Vector2<f64>) {
         let (mesh, entry) = (self.mesh, self.mesh.entry());
         let Some(nodes) = mesh.elements().nth(element) else { return };
         let rest: Vec<Vector2<f64>> = nodes.iter().map(|&node| mesh.node(node)).collect();
@@ -127,60 +137,41 @@ impl PlacedMesh<'_> {
         };
         for point in entry.mass_points {
             let (weights, force) = at_place(point.at, point.weight);
-            for (node, weight) in weights.into_iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
-                sum.add(self.positions[node as usize] - middle, force * -weight);
-            }
+            self.subtract(&weights, force);
         }
-        for line in outline_in_front(mesh, element, &rest, side) {
+        for line in outline_in_front(mesh, element, &rest, self.cut.side()) {
             visit_fan(&line, &mut |place, area| {
                 let (weights, force) = at_place(place.into(), area);
-                sum.add(mean(self.positions, &weights) - middle, force);
+                self.add(&weights, force);
             });
         }
     }
 
     /// Adds the force, N, around a place, over a width, m, as [`Self::add_material_load`] does.
-    fn add_point_load(
-        &self,
-        cut: &Cut,
-        (at, width): ([f64; 2], f64),
-        force: Vector2<f64>,
-        middle: Vector2<f64>,
-        sum: &mut Wrench,
-    ) {
-        let is_near = cut.elements.iter().any(|&element| self.mesh.is_near(element, at.into(), width));
+    fn add_point_load(&mut self, (at, width): ([f64; 2], f64), force: Vector2<f64>) {
+        let is_near = self.cut.elements.iter().any(|&element| self.mesh.is_near(element, at.into(), width));
         for (point, share) in is_near.then(|| self.mesh.points_over(at.into(), width)).flatten().into_iter().flatten() {
-            self.add_material_load(cut, point, force * share, middle, sum);
+            self.add_material_load(point, force * share);
         }
     }
 
     /// Adds the force, N, at a point inside an element of the cut if the point is in front, minus its parts on the nodes
     /// in front.
-    fn add_material_load(
-        &self,
-        cut: &Cut,
-        point: MaterialPoint,
-        force: Vector2<f64>,
-        middle: Vector2<f64>,
-        sum: &mut Wrench,
-    ) {
-        let (mesh, side) = (self.mesh, cut.side());
-        if !cut.elements.contains(&point.element) {
+    fn add_material_load(&mut self, point: MaterialPoint, force: Vector2<f64>) {
+        if !self.cut.elements.contains(&point.element) {
             return;
         }
-        let Some(weights) = mesh.weights(point) else { return };
-        for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(mesh.node(*node))) {
-            sum.add(self.positions[node as usize] - middle, force * -weight);
-        }
-        if side.is_in_front(mean(mesh.nodes(), &weights)) {
-            sum.add(mean(self.positions, &weights) - middle, force);
+        let Some(weights) = self.mesh.weights(point) else { return };
+        self.subtract(&weights, force);
+        if self.cut.side().is_in_front(mean(self.mesh.nodes(), &weights)) {
+            self.add(&weights, force);
         }
     }
 
     /// Adds the part of an edge's total load, N, in front, minus that of its nodes in front, on the sides of the cut's
     /// elements.
-    fn add_edge_load(&self, cut: &Cut, name: &str, total: Vector2<f64>, middle: Vector2<f64>, sum: &mut Wrench) {
-        let mesh = self.mesh;
+    fn add_edge_load(&mut self, name: &str, total: Vector2<f64>) {
+        let (mesh, cut) = (self.mesh, self.cut);
         let Some(segments) = mesh.edges().get(name) else { return };
         let rest = |nodes: &[u32]| -> Vec<Vector2<f64>> { nodes.iter().map(|&node| mesh.node(node)).collect() };
         let length: f64 = segments.iter().flat_map(|segment| side_weights(&rest(segment.nodes()))).sum();
@@ -190,11 +181,8 @@ impl PlacedMesh<'_> {
         let side = cut.side();
         for segment in segments.iter().filter(|segment| crossed.contains(&segment.key())) {
             let nodes = rest(segment.nodes());
-            for ((&node, at), share) in segment.nodes().iter().zip(&nodes).zip(side_weights(&nodes)) {
-                if side.is_in_front(*at) {
-                    sum.add(self.positions[node as usize] - middle, per_length * -share);
-                }
-            }
+            let shares: NodeWeights = segment.nodes().iter().copied().zip(side_weights(&nodes)).collect();
+            self.subtract(&shares, per_length);
             let mut ends = vec![-1.0];
             ends.extend(side.crossings(&nodes));
             ends.push(1.0);
@@ -203,7 +191,7 @@ impl PlacedMesh<'_> {
                 if is_in_front {
                     integrate_side(&nodes, [part[0], part[1]], |shape, length| {
                         let weights: NodeWeights = segment.nodes().iter().copied().zip(shape.iter().copied()).collect();
-                        sum.add(mean(self.positions, &weights) - middle, per_length * length);
+                        self.add(&weights, per_length * length);
                     });
                 }
                 is_in_front = !is_in_front;

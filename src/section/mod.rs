@@ -30,8 +30,8 @@ use crate::step::warped_stress;
 use crate::stress::NodalStress;
 use cut::{Cut, mean};
 pub use load::Wrench;
+use load::beyond_nodes;
 pub(crate) use load::{MotionBalance, NodalBalance};
-use load::{PlacedMesh, beyond_nodes};
 
 /// Reason why a line has no section.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -161,8 +161,7 @@ impl Section {
             points: Vec::new(),
         };
         let middle = section.middle();
-        let shape = PlacedMesh { mesh, positions };
-        let mut sum = beyond_nodes(problem, &shape, &cut, (balance, state.time()), middle);
+        let mut sum = beyond_nodes(problem, positions, &cut, (balance, state.time()), middle);
         for (node, force) in element_forces(problem, state, balance.motion.as_ref(), &cut) {
             sum.add(positions[node as usize] - middle, force);
         }
