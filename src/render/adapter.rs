@@ -111,7 +111,9 @@ where
         for backends in groups {
             let found = self.find(backends).await;
             if found.is_empty() {
-                failures.add(backend_names(backends), "no adapter found");
+                // The names are those in `WGPU_BACKEND`.
+                let names: Vec<_> = backends.iter_names().map(|(name, _)| name.to_lowercase()).collect();
+                failures.add(names.join(", "), "no adapter found");
             }
             let (slow, fast): (Vec<_>, Vec<_>) = found.into_iter().partition(Candidate::is_software);
             software.extend(slow);
@@ -259,12 +261,6 @@ async fn backends() -> Vec<wgpu::Backends> {
 async fn backends() -> Vec<wgpu::Backends> {
     let has_webgpu = wgpu::util::is_browser_webgpu_supported().await;
     vec![if has_webgpu { wgpu::Backends::BROWSER_WEBGPU } else { wgpu::Backends::GL }]
-}
-
-/// Returns the names of backends as in `WGPU_BACKEND`.
-fn backend_names(backends: wgpu::Backends) -> String {
-    let names: Vec<_> = backends.iter_names().map(|(name, _)| name.to_lowercase()).collect();
-    names.join(", ")
 }
 
 impl Gpu {

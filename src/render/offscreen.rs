@@ -44,13 +44,9 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, Rende
     let mapped = slice.get_mapped_range().map_err(|e| failed(e.to_string()))?;
     let mut rgba: Vec<u8> =
         mapped.chunks_exact(padded_row as usize).flat_map(|line| &line[..row as usize]).copied().collect();
-    to_rgba(texture.format(), &mut rgba);
-    Ok(Picture { size: [width, height], rgba })
-}
-
-/// Converts pixels of a texture to RGBA: those of a window can be BGRA.
-fn to_rgba(format: wgpu::TextureFormat, pixels: &mut [u8]) {
-    if matches!(format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
-        pixels.as_chunks_mut().0.iter_mut().for_each(|pixel: &mut [u8; 4]| pixel.swap(0, 2));
+    // Pixels of a window can be BGRA.
+    if matches!(texture.format(), wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb) {
+        rgba.as_chunks_mut().0.iter_mut().for_each(|pixel: &mut [u8; 4]| pixel.swap(0, 2));
     }
+    Ok(Picture { size: [width, height], rgba })
 }
