@@ -64,7 +64,11 @@ impl Ledger {
     }
 
     fn measure(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
-        self.kinetic = kinetic_energy(mass, inertia, state);
+        self.kinetic = 0.5
+            * match inertia {
+                Inertia::Consistent => mass.energy_product(&state.velocity),
+                Inertia::Lumped => state.velocity.iter().zip(mass.lumped()).map(|(v, m)| m * v.norm_squared()).sum(),
+            };
         self.elastic = problem.elastic_energy(state);
         self.potential = problem.loads().potential(state, 1.0);
         self.largest_kinetic = self.largest_kinetic.max(self.kinetic);
@@ -169,14 +173,6 @@ impl Ledger {
                 percent
             )
         })
-    }
-}
-
-/// Returns ½ v M v, J.
-fn kinetic_energy(mass: &Mass, inertia: Inertia, state: &State) -> f64 {
-    0.5 * match inertia {
-        Inertia::Consistent => mass.energy_product(&state.velocity),
-        Inertia::Lumped => state.velocity.iter().zip(mass.lumped()).map(|(v, m)| m * v.norm_squared()).sum(),
     }
 }
 

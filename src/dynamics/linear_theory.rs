@@ -144,11 +144,6 @@ impl LinearTheory {
     pub fn invalidate(&mut self) {
         *self = Self { scratch: self.scratch.take(), ..Self::default() };
     }
-
-    /// Resets everything, for another system.
-    pub fn invalidate_system(&mut self) {
-        *self = Self::default();
-    }
 }
 
 /// Returns the largest rotation of a part of the body that is within the requested error, rad.

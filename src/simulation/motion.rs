@@ -168,7 +168,7 @@ impl TimeStepping {
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
-            self.linear.invalidate_system();
+            self.linear = LinearTheory::default();
         }
         if change == Change::Unknowns || mass_changes {
             self.mass = Mass::new(problem.system(), scene.material.area_density());
