@@ -337,9 +337,8 @@ fn nodal_data(text: &mut String, simulation: &Simulation) {
         "stress (Cauchy) [Pa]",
         stresses.as_ref().map(|s| s.iter().map(|s| s.rows()).collect()),
     );
-    let mut values = Vec::new();
-    Field::VonMises.nodal_values(&nodal, &mut values);
-    let values = values.into_iter().map(|v| v.map(|v| [v])).collect();
+    let von_mises = |local| Field::VonMises.of(local, nodal.material(), nodal.kinematics());
+    let values = nodal.nodes().iter().map(|local| Some([von_mises(local)?])).collect();
     data_array(text, "Float64", &title(Field::VonMises), values);
     let numbers = (0..mesh.nodes().len() as u32).map(|n| mesh.node_name(n).map_or(-1, |tag| tag as i64));
     data_array(text, "Int64", "node", Some(numbers.map(|n| [n]).collect()));

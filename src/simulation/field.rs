@@ -164,14 +164,6 @@ impl Field {
         visit_points(problem, state, &mut |_, local| values.push(self.of(&local, material, kinematics)));
     }
 
-    /// Computes the field at every node; all values are `None` for fields of elements and of the displacement.
-    #[doc(hidden)]
-    pub fn nodal_values(self, nodal: &NodalStress, values: &mut Vec<Option<f64>>) {
-        values.clear();
-        let (material, kinematics) = (nodal.material(), nodal.kinematics());
-        values.extend(nodal.nodes().iter().map(|local| self.of(local, material, kinematics)));
-    }
-
     /// Returns the value for a displacement, m, or for its distance from that of the reference; `None` for other fields.
     pub(crate) fn of_vector(self, u: Vector2<f64>) -> Option<f64> {
         let value = match self {

@@ -605,8 +605,7 @@ impl Simulation {
     /// Returns the stress results: the largest stress, those at the probes, and the estimated mesh error.
     #[doc(hidden)]
     pub fn stress_result(&self) -> StressResult {
-        let nodal = self.nodal_stress();
-        StressResult::of(&self.body.problem, &nodal, &self.mesh_error(&nodal))
+        StressResult::of(&self.body.problem, &self.body.state, &self.nodal_stress())
     }
 
     /// Returns the displacement of a probe, m, the mean over its edge; `None` if there is no such probe.

@@ -214,8 +214,8 @@ pub struct StressResult {
 }
 
 impl StressResult {
-    /// Computes the results from recovered stresses.
-    pub fn of(problem: &Problem, nodal: &NodalStress, error: &ErrorEstimate) -> Self {
+    /// Computes the results of a state from its recovered stresses.
+    pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
         let (mesh, material) = (problem.system().mesh(), nodal.material());
         let probes = problem.probes().iter().map(|probe| {
             let local = nodal.mean(&probe.weights);
@@ -237,7 +237,7 @@ impl StressResult {
                 at: mesh.nodes()[node as usize],
             }),
             probes: probes.collect(),
-            mesh_error_percent: error.percent,
+            mesh_error_percent: ErrorEstimate::of(problem, state, nodal).percent,
         }
     }
 }

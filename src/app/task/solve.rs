@@ -94,8 +94,7 @@ impl Quality {
             return;
         }
         let nodal = simulation.nodal_stress();
-        let error = simulation.mesh_error(&nodal);
-        self.stress = StressResult::of(simulation.problem(), &nodal, &error);
+        self.stress = StressResult::of(simulation.problem(), simulation.state(), &nodal);
         self.deformation = Deformation::of(simulation.problem(), simulation.state(), &nodal);
         self.elements = simulation.mesh().element_count();
         self.of = Some((simulation.displacement().to_vec(), *simulation.problem().material()));
