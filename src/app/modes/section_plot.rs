@@ -28,18 +28,15 @@ struct Cuts {
 impl Cuts {
     fn of(simulation: &Simulation) -> Self {
         let (own, along) = (simulation.scene_sections(), simulation.diagram_sections().unwrap_or_default());
-        Self::new(simulation, own, along)
+        let all: Vec<Section> = own.iter().flatten().chain(&along).cloned().collect();
+        let contexts = section_chart::contexts(&all, simulation);
+        Self { has_failed: false, contexts, own, along, ..Self::failed(simulation) }
     }
 
-    fn new(simulation: &Simulation, own: Vec<Result<Section, SectionError>>, along: Vec<Section>) -> Self {
-        let all: Vec<Section> = own.iter().flatten().chain(&along).cloned().collect();
-        Self {
-            contexts: section_chart::contexts(&all, simulation),
-            own,
-            along,
-            has_failed: false,
-            of: (simulation.state().clone(), simulation.scene().clone()),
-        }
+    /// Returns the result of a computation that ended unexpectedly.
+    fn failed(simulation: &Simulation) -> Self {
+        let of = (simulation.state().clone(), simulation.scene().clone());
+        Self { of, has_failed: true, own: Vec::new(), along: Vec::new(), contexts: Default::default() }
     }
 
     fn is_of(&self, simulation: &Simulation) -> bool {
@@ -98,9 +95,7 @@ impl SectionPlot {
                 Update::None | Update::Progress(()) => return true,
                 Update::Done(cuts) => self.cuts = Some(*cuts),
                 // The same computation would end in the same way.
-                Update::Died => {
-                    self.cuts = Some(Cuts { has_failed: true, ..Cuts::new(simulation, Vec::new(), Vec::new()) });
-                }
+                Update::Died => self.cuts = Some(Cuts::failed(simulation)),
             }
             self.computing = None;
         }
@@ -174,9 +169,7 @@ impl SectionPlot {
             }
             ui.horizontal_wrapped(|ui| {
                 let is_numbered = offered.contains(&SectionFigure::Stress(1, 0));
-                let texts = offered.iter().map(|figure| figure.text(is_numbered));
-                let texts = offered.iter().zip(texts).map(|(figure, (word, tip))| (*figure, word, tip));
-                self.shown = options(ui, texts, shown).or(self.shown);
+                self.shown = options(ui, offered.iter().map(|figure| figure.option(is_numbered)), shown).or(self.shown);
                 if has_none {
                     let tip = "Adds a section through the middle of the body; the context menu of the body adds one at a point";
                     if ui.button(tr("Add a section")).on_hover_text(tr(tip)).clicked() {
@@ -197,17 +190,17 @@ impl SectionPlot {
 }
 
 impl SectionFigure {
-    /// Returns the words of the choice and a description; stresses are numbered if there are several.
-    fn text(self, is_numbered: bool) -> (String, &'static str) {
+    /// Returns the figure with the words of the choice and a description; stresses are numbered if there are several.
+    fn option(self, is_numbered: bool) -> (Self, String, &'static str) {
         match self {
             Self::Stress(i, component) => {
                 let symbol = STRESSES.get(component).map_or("", |(symbol, ..)| symbol);
                 let tip = "Stress along the section, recovered and of beam theory";
-                (if is_numbered { format!("{symbol} {}", i + 1) } else { symbol.to_owned() }, tip)
+                (self, if is_numbered { format!("{symbol} {}", i + 1) } else { symbol.to_owned() }, tip)
             }
             Self::Along(i) => {
                 let symbol = COMPONENTS.get(i).map_or("", |component| component.symbol);
-                (symbol.to_owned(), "Along the beam, in sections normal to its axis; the slope of M is \u{2212}V")
+                (self, symbol.to_owned(), "Along the beam, in sections normal to its axis; the slope of M is \u{2212}V")
             }
         }
     }
