@@ -40,7 +40,7 @@ pub use shell::lab::{Lab, Request};
 pub use shell::settings::Settings;
 #[doc(hidden)]
 pub use shell::shortcuts::{FOCUS_KEYS, MOUSE};
-pub use view_options::Magnification;
+pub use view_options::{Magnification, MeasureTab};
 #[cfg(target_arch = "wasm32")]
 pub use window::page::open_page;
 pub use window::{Display, NoDisplay, opens_in_background, run};

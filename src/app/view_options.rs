@@ -10,7 +10,7 @@ use crate::study::path_chart::Ordinate;
 
 /// Mode of the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Mode {
+pub enum Mode {
     /// Body, load and results.
     #[default]
     Explore,
@@ -24,7 +24,7 @@ pub(crate) enum Mode {
 
 /// Tab of [`Mode::Measure`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum MeasureTab {
+pub enum MeasureTab {
     /// Loads up to which each method and element holds; of a motion, time steps.
     #[default]
     HowFar,
@@ -71,7 +71,7 @@ pub(crate) const MODES: [(Mode, &str, &str); 4] = [
 
 /// Plot of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum MotionPlot {
+pub enum MotionPlot {
     /// Energy by kind.
     #[default]
     Energy,
@@ -101,7 +101,7 @@ pub(crate) enum Toggle {
 /// Plot area under the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Drawer {
+pub enum Drawer {
     /// Energy and tip of a motion.
     Motion,
     /// Stress along the sections of the scene, and N, V and M along its beam.
@@ -162,7 +162,7 @@ impl Magnification {
 
 /// Display options of the body, the plots and the bars.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ViewOptions {
+pub struct ViewOptions {
     pub field: Field,
     /// Fixed limits of the colour map; `None` means the limits of the current values.
     pub fixed_range: Option<[f64; 2]>,
@@ -272,7 +272,7 @@ impl ViewOptions {
     }
 
     /// Colours the body with `field`; a fixed colour range is dropped if the field changes.
-    pub(crate) fn color_with(&mut self, field: Field) {
+    pub fn color_with(&mut self, field: Field) {
         if self.field != field {
             // A range of stresses holds for another stress, not for a strain, and not for one with a sign.
             if self.field.unit() != field.unit() || self.field.has_sign() != field.has_sign() {

@@ -51,8 +51,8 @@ fn project(camera: &Camera, rect: egui::Rect, p: Vector2<f64>) -> [f64; 2] {
 fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab(id);
-    lab.set_panel(false);
-    lab.set_outlines(false);
+    let view = &mut lab.desk.view;
+    (view.bars, view.rest_outline, view.ghost, view.exact) = (false, false, false, false);
     lab.solve();
     let picture = picture(&gpu, &mut lab, [900, 600], 1.0, egui::Theme::Dark).unwrap();
     let (camera, rect) = (lab.camera(), lab.view_rect());

@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 /// Returns a window that solves everything in the background; every frame is checked.
 fn open(id: &str) -> Ui {
     let mut lab = lab_of(id, scene(id));
-    lab.set_most_unknowns(0);
+    lab.desk.session.set_most_unknowns(0);
     let mut ui = Ui(Harness::builder().with_size(SIZE).with_max_steps(400).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));
@@ -28,7 +28,7 @@ fn open(id: &str) -> Ui {
 
 /// Runs frames until no background solve is left.
 fn settle(ui: &mut Ui) {
-    wait(ui, |lab| !lab.is_working() && !lab.iterates());
+    wait(ui, |lab| !lab.desk.session.is_working() && !lab.iterates());
 }
 
 fn wait(ui: &mut Ui, holds: impl Fn(&Lab) -> bool) {
@@ -54,7 +54,7 @@ fn body(lab: &Lab) -> Vec<Vector2<f64>> {
 fn is_of_one_state(lab: &Lab, before: &[Vector2<f64>]) {
     let simulation = lab.simulation();
     assert_eq!(simulation.displacement().len(), simulation.system().mesh().nodes().len());
-    if let Some(linear) = lab.linear() {
+    if let Some(linear) = lab.desk.session.linear() {
         assert_eq!(linear.scene().loads, simulation.scene().loads, "the linear outline is of another load");
         assert!(Arc::ptr_eq(linear.system(), simulation.system()), "the linear outline is of another mesh");
     }
@@ -147,7 +147,7 @@ fn cancel_restores_the_state_before_the_edit() {
     let tips = ui.state().arrow_tips();
     ui.state_mut().set_scene(large()).unwrap();
     ui.step();
-    assert!(ui.state().is_working());
+    assert!(ui.state().desk.session.is_working());
     assert_eq!(*ui.scene(), large(), "controls show what is wanted");
     assert_eq!(*ui.simulation().scene(), before.0, "the picture stays");
     assert_eq!(ui.state().arrow_tips(), tips, "the arrow is of another load than the body");
@@ -163,7 +163,7 @@ fn cancel_restores_the_state_before_the_edit() {
     let before = seen(&ui);
     ui.state_mut().set_scene(before.0.clone().with_cells(300, 30)).unwrap();
     wait(&mut ui, |lab| lab.simulation().scene() != &before.0);
-    if ui.state().is_working() {
+    if ui.state().desk.session.is_working() {
         ui.key_press(Key::Escape);
         settle(&mut ui);
         assert!(seen(&ui) == before);
@@ -215,7 +215,7 @@ fn a_refused_scene_is_reported_and_nothing_is_changed() {
 fn a_dropped_lab_ends_its_background_solve() {
     let scene = scene_with("cantilever", &["beam.cells=[200,20]", "solver.method=warped"]);
     let mut lab = lab_of("cantilever", scene.clone());
-    lab.set_most_unknowns(0);
+    lab.desk.session.set_most_unknowns(0);
     lab.solve();
     let system = Arc::downgrade(lab.simulation().system());
     let mut heavy = scene;
@@ -223,7 +223,7 @@ fn a_dropped_lab_ends_its_background_solve() {
     heavy.solver.tolerance = 1e-14;
     heavy.solver.max_iterations = 100_000;
     lab.set_scene(heavy).unwrap();
-    assert!(lab.is_working());
+    assert!(lab.desk.session.is_working());
     drop(lab);
     while system.upgrade().is_some() {
         std::thread::yield_now();
@@ -234,12 +234,12 @@ fn a_dropped_lab_ends_its_background_solve() {
 #[test]
 fn solve_waits_for_the_worker() {
     let mut lab = lab_of("cantilever", scene("cantilever"));
-    lab.set_most_unknowns(0);
+    lab.desk.session.set_most_unknowns(0);
     let fine = scene("cantilever").with_cells(24, 3);
     for scene in [fine.clone(), fine.with_method(MethodKind::Newton)] {
         lab.set_scene(scene).unwrap();
         lab.solve();
-        assert!(!lab.is_working());
+        assert!(!lab.desk.session.is_working());
         is_solve(&lab);
     }
 }

@@ -185,7 +185,7 @@ fn panes_magnify_the_displacement() {
 
 /// Magnifies the bodies, checks where they are drawn, and returns the factor that is shown once.
 fn magnified(ui: &mut Ui, magnification: Magnification) -> f64 {
-    ui.state_mut().magnify(magnification);
+    ui.state_mut().desk.view.magnification = magnification;
     ui.run_steps(60);
     let texts = beginning(ui, "displacement × ");
     let [(_, text)] = texts.as_slice() else { panic!("{texts:?}: {:?}", ui.texts()) };

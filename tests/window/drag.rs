@@ -33,14 +33,14 @@ fn number(text: &str) -> f64 {
 fn every_frame_of_a_drag_is_an_equilibrium() {
     for id in ["article", "cantilever", "bridge", "cook", "incline"] {
         let mut ui = open(id);
-        ui.state_mut().set_frame_work(Duration::from_secs(20));
+        ui.state_mut().desk.session.frame_work = Duration::from_secs(20);
         unfold(&mut ui, "stable");
         for method in [MethodKind::Warped, MethodKind::Newton, MethodKind::Linear] {
             ui.state_mut().set_scene(scene(id).with_method(method)).unwrap();
             ui.run();
             let is_small = ui.simulation().system().dofs() <= 2000;
             settle(&mut ui);
-            wait(&mut ui, "the live reference", |lab| !lab.is_following());
+            wait(&mut ui, "the live reference", |lab| !lab.desk.session.is_following());
             let is_shown = |name: &str| !text(&Shown::labels(&ui), name).contains('\u{2013}');
             // The time of a long solve is that of the last rest.
             let (has_error, has_time) = (is_small && is_shown("ERROR "), is_shown("TIME "));
@@ -83,7 +83,7 @@ fn every_frame_of_a_drag_is_an_equilibrium() {
                 if position % 50 != 20 {
                     continue;
                 }
-                wait(&mut ui, "the live reference", |lab| !lab.is_following());
+                wait(&mut ui, "the live reference", |lab| !lab.desk.session.is_following());
                 ui.step();
                 let (shown, json) = (Shown::labels(&ui), solve(ui.scene()));
                 let stress = &json["max_von_mises"];
@@ -117,7 +117,7 @@ fn a_dragged_body_stays_in_view() {
     let cases = (0..320).map(|case| (ids[case % 5], sizes[case / 5 % 4], case / 20));
     for case @ (id, size, direction) in sampled(cases, 19) {
         let mut lab = lab_of(id, scene(id));
-        lab.set_frame_work(Duration::from_secs(20));
+        lab.desk.session.frame_work = Duration::from_secs(20);
         let mut ui = window(size, lab);
         ui.run();
         let (tip, way) = (ui.tip(), Vec2::angled(std::f32::consts::TAU * direction as f32 / 16.0));

@@ -10,7 +10,7 @@ const SETS: &[&str] = &["beam.element=t3", "beam.cells=[80,8]", "load.0.force=[0
 
 /// Returns a solved scene with its load curve.
 fn with_curve(scene: Scene) -> Ui {
-    open_with(SIZE, "scene", scene, &|lab| lab.show_curve())
+    open_with(SIZE, "scene", scene, &|lab| lab.show_tab(MeasureTab::LoadCurve))
 }
 
 #[test]

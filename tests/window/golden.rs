@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use crate::common::pictures::{difference, lab, read_png};
 use egui::{Key, Theme};
-use warpbeam::app::{Lab, Language, Picture, parse_panes, picture};
+use warpbeam::app::{Lab, Language, MeasureTab, Picture, parse_panes, picture};
 use warpbeam::render::Gpu;
 
 /// Size of the window in pixels, wide enough for the panel.
@@ -74,7 +74,7 @@ fn explore_and_measure() {
     ui.run_steps(3);
     golden("budget", ui.state_mut(), &[DARK], &[TIME]);
     let mut limits = lab("article");
-    limits.show_limits();
+    limits.show_tab(MeasureTab::HowFar);
     limits.solve();
     golden("limits", &mut limits, &[DARK, LIGHT], &[TIME]);
 }

@@ -149,7 +149,7 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
 fn companions_return_to_the_same_moment() {
     let mut ui = open("swing");
     for kind in [IntegratorKind::ImplicitEuler, IntegratorKind::EnergyMomentum] {
-        ui.state_mut().compare_with(kind);
+        ui.state_mut().desk.session.toggle_companion(kind);
         ui.run_steps(20);
     }
     key(&mut ui, Key::E);

@@ -212,7 +212,7 @@ fn rows_of_the_load_curve_have_the_numbers_of_solve() {
     for id in ["cantilever", "elastica"] {
         let scene = scene(id);
         let mut lab = lab_of(id, scene.clone());
-        lab.show_curve();
+        lab.show_tab(MeasureTab::LoadCurve);
         lab.solve();
         let shown = Shown::in_view(&open_of(lab));
         for method in [MethodKind::Linear, MethodKind::Warped, MethodKind::Newton] {
@@ -308,7 +308,7 @@ fn settings_have_the_errors_of_study() {
 fn strips_have_the_words_of_limits() {
     let text = stdout(&warpbeam(&["limits", "article"]));
     let mut lab = lab_of("article", scene("article"));
-    lab.show_limits();
+    lab.show_tab(MeasureTab::HowFar);
     lab.solve();
     let shown = Shown::in_view(&open_of(lab));
     let rows: Vec<&str> = text.lines().skip(3).filter(|row| !row.is_empty()).collect();

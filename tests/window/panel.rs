@@ -223,7 +223,7 @@ fn keys_that_end_a_text_edit_do_not_act_on_the_window() {
 #[test]
 fn a_fixed_range_of_colours_is_set() {
     let mut ui = open("article");
-    ui.state_mut().color_with(Field::RotationAngle);
+    ui.state_mut().desk.view.color_with(Field::RotationAngle);
     ui.fold("View: ");
     ui.click("Fixed colour range");
     ui.type_into("Lowest", "-200");
@@ -424,7 +424,7 @@ fn scrolling_zooms_to_the_pointer_and_f_fits() {
 #[test]
 fn at_rest_nothing_is_redrawn() {
     let mut ui = open("article");
-    wait(&mut ui, "the reference", |lab| !(lab.is_computing() || lab.is_following()));
+    wait(&mut ui, "the reference", |lab| !(lab.is_computing() || lab.desk.session.is_following()));
     ui.run_steps(3);
     assert!(!ui.state().iterates());
     let delay = ui.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
@@ -673,7 +673,7 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
         // The other integrators are shown beside the first one, and hidden again.
         for _ in 0..2 {
             if plot == "Tip" {
-                IntegratorKind::all().for_each(|other| ui.state_mut().compare_with(other));
+                IntegratorKind::all().for_each(|other| ui.state_mut().desk.session.toggle_companion(other));
             }
             ui.get_by_role_and_label(Role::Button, plot).click();
             ui.run_steps(2);
@@ -688,8 +688,8 @@ fn every_motion_is_shown_with_every_integrator_and_plot() {
 #[test]
 fn an_unstable_integrator_leaves_the_comparison() {
     let mut ui = window_of("swing", scene("swing"));
-    ui.state_mut().compare_with(IntegratorKind::SymplecticEuler);
-    ui.state_mut().compare_with(IntegratorKind::EnergyMomentum);
+    ui.state_mut().desk.session.toggle_companion(IntegratorKind::SymplecticEuler);
+    ui.state_mut().desk.session.toggle_companion(IntegratorKind::EnergyMomentum);
     ui.wait_until("a message", |ui| ui.says("symplectic-euler is unstable: its critical time step is"));
     assert!(!matches!(ui.simulation().status(), Status::Stopped(_)));
 }

@@ -12,7 +12,7 @@ fn positions(lab: &Lab) -> Vec<Vector2<f64>> {
 }
 
 fn magnify(ui: &mut Ui, magnification: Magnification) -> Vec<Vector2<f64>> {
-    ui.state_mut().magnify(magnification);
+    ui.state_mut().desk.view.magnification = magnification;
     ui.run();
     positions(ui.state())
 }
@@ -95,7 +95,7 @@ fn every_field_colours_the_body() {
     let at = Vector2::new(1.1, 0.3);
     let pos = ui.on_body(at);
     for field in Field::ALL {
-        ui.state_mut().color_with(field);
+        ui.state_mut().desk.view.color_with(field);
         ui.hover(pos);
         let lab = ui.state();
         let point = lab.simulation().mesh().locate(at).unwrap();
@@ -113,7 +113,7 @@ fn every_field_colours_the_body() {
         assert!((seen - wanted).abs() < 0.05 * wanted.abs() + 0.05, "{field:?}: {title} is not {value}");
     }
     assert!(ui.state().frame().range[0] >= 0.0, "the last field is a magnitude");
-    ui.state_mut().color_with(Field::StressX);
+    ui.state_mut().desk.view.color_with(Field::StressX);
     ui.run();
     let [low, high] = ui.state().frame().range;
     assert!(low == -high && high > 0.0, "a signed field has a symmetric range");
@@ -306,7 +306,7 @@ fn the_distance_to_the_reference_colours_the_body() {
     fine.solver.tolerance = 1e-10;
     let fine = solved(&fine).probe("corner").unwrap();
     let mut ui = open_solved("article", scene.clone());
-    ui.state_mut().color_with(Field::ReferenceDistance);
+    ui.state_mut().desk.view.color_with(Field::ReferenceDistance);
     ui.run();
     let name = Field::ReferenceDistance.name();
     let wanted = (ui.simulation().probe("corner").unwrap() - fine).norm();
@@ -320,7 +320,7 @@ fn the_distance_to_the_reference_colours_the_body() {
     let mut unknown = scene;
     unknown.probes.clear();
     let mut ui = open_of("article", unknown);
-    ui.state_mut().color_with(Field::ReferenceDistance);
+    ui.state_mut().desk.view.color_with(Field::ReferenceDistance);
     ui.run();
     assert!(texts(&ui).iter().any(|text| text.starts_with(&format!("{name}, m, not known"))), "{:?}", texts(&ui));
 }

@@ -79,7 +79,7 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
 fn is_default(lab: &Lab) {
     assert_eq!((lab.story(), lab.scene()), (None, &scene(DEFAULT)));
-    assert!(lab.simulation().status().is_success() && !lab.can_undo() && !lab.can_redo());
+    assert!(lab.simulation().status().is_success() && !lab.desk.session.can_undo() && !lab.desk.session.can_redo());
 }
 
 /// ρ passes 1 and `warped` ends, `newton` converges under larger loads, another element reduces the error.
@@ -104,7 +104,8 @@ fn the_numbers_of_the_window_tell_the_story() {
         if part == 1 {
             lost.push((!converges, ui.query_by_label_contains(" not reached").is_some()));
         }
-        last[part] = Some((load, [Some(lab.simulation()), lab.linear()].map(|body| body.unwrap().area_change())));
+        last[part] =
+            Some((load, [Some(lab.simulation()), lab.desk.session.linear()].map(|body| body.unwrap().area_change())));
         if part == 3 && load == usual {
             errors.push((element, error(ui)));
         }
@@ -177,7 +178,7 @@ fn the_arrow_is_handed_over() {
     ui.drop_at(tip + vec2(0.0, 30.0));
     ui.step();
     let usual = size(&scene(DEFAULT));
-    assert!(size(ui.scene()) > 1.1 * usual && ui.state().can_undo(), "{} N", size(ui.scene()));
+    assert!(size(ui.scene()) > 1.1 * usual && ui.state().desk.session.can_undo(), "{} N", size(ui.scene()));
 }
 
 #[test]

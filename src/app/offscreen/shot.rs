@@ -7,7 +7,7 @@ use crate::app::offscreen::options::ShotOptions;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::prelude::*;
 use crate::app::shell::lab::Lab;
-use crate::app::view_options::Drawer;
+use crate::app::view_options::{Drawer, MeasureTab};
 use crate::image::Picture;
 use crate::render::{FORMAT, Gpu, RenderError, read_texture};
 use crate::study::{Extent, Study, StudyError};
@@ -36,15 +36,16 @@ pub fn shot(
 ) -> Result<Shot, AppError> {
     let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
-    lab.set_panel(!options.no_panel);
     lab.set_language(options.look.language);
-    lab.color_with(options.field);
-    lab.magnify(options.magnify.unwrap_or_default());
+    let view = &mut lab.desk.view;
+    view.bars = !options.no_panel;
+    view.color_with(options.field);
+    view.magnification = options.magnify.unwrap_or_default();
     if options.curve {
-        lab.show_curve();
+        lab.show_tab(MeasureTab::LoadCurve);
     }
     if options.sections {
-        lab.show_drawer(Drawer::Section);
+        lab.desk.view.drawer = Some(Drawer::Section);
     }
     if let Some(card) = options.learn {
         lab.show_card(card.into());
@@ -57,11 +58,11 @@ pub fn shot(
         }
     }
     if options.limits {
-        lab.show_limits();
+        lab.show_tab(MeasureTab::HowFar);
     }
     if let Some(integrators) = &options.motion {
-        lab.show_drawer(Drawer::Motion);
-        integrators.iter().for_each(|&integrator| lab.compare_with(integrator));
+        lab.desk.view.drawer = Some(Drawer::Motion);
+        integrators.iter().for_each(|&integrator| lab.desk.session.toggle_companion(integrator));
     }
     if let Some(panes) = &options.compare {
         lab.show_comparison(panes);

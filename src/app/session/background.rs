@@ -40,13 +40,13 @@ pub(super) struct Before {
 
 impl Session {
     /// Sets the number of unknowns above which a model is meshed and solved in the background.
-    pub(crate) fn set_most_unknowns(&mut self, most: u64) {
+    pub fn set_most_unknowns(&mut self, most: u64) {
         self.most_unknowns = most;
         self.note_size();
     }
 
     /// Returns `true` while a model is meshed or solved in the background.
-    pub(crate) fn is_working(&self) -> bool {
+    pub fn is_working(&self) -> bool {
         self.background.solve.is_some()
     }
 

@@ -87,7 +87,7 @@ pub(crate) struct Grab {
 
 /// One model being worked on.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub struct Session {
     /// Document, and the requested scene, which differs from the simulation's only while a background solve is in progress.
     present: Version,
     undo: UndoHistory,
@@ -118,7 +118,7 @@ pub(crate) struct Session {
     is_postponed: bool,
     /// Time of the iterations of the last displayed frame.
     timings: Timings,
-    pub playback: Playback,
+    pub(crate) playback: Playback,
     /// Certification of a copy of the displayed body.
     certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Bodies drawn in place of a search that has found no equilibrium.
@@ -132,7 +132,7 @@ pub(crate) struct Session {
     /// `true` if the scene's file has changed on disk since it was read or saved.
     is_outdated: bool,
     changed: Changed,
-    pub notices: Vec<Notice>,
+    pub(crate) notices: Vec<Notice>,
 }
 
 /// Relative residual above which the iterate of a dragged body is not drawn.
@@ -190,7 +190,7 @@ impl Session {
     }
 
     /// Returns the solution of linear theory.
-    pub(crate) fn linear(&self) -> Option<&Simulation> {
+    pub fn linear(&self) -> Option<&Simulation> {
         self.model.linear.as_ref()
     }
 
@@ -266,11 +266,11 @@ impl Session {
         &self.model.residuals
     }
 
-    pub(crate) fn can_undo(&self) -> bool {
+    pub fn can_undo(&self) -> bool {
         self.undo.can_undo()
     }
 
-    pub(crate) fn can_redo(&self) -> bool {
+    pub fn can_redo(&self) -> bool {
         self.undo.can_redo()
     }
 
@@ -771,7 +771,7 @@ impl Session {
     }
 
     /// Returns `true` while the reference that follows the load is being computed.
-    pub(crate) fn is_following(&self) -> bool {
+    pub fn is_following(&self) -> bool {
         self.live.is_running()
     }
 
@@ -900,7 +900,7 @@ impl Session {
     }
 
     /// Adds the same motion under another integrator, or removes it.
-    pub(crate) fn toggle_companion(&mut self, integrator: IntegratorKind) {
+    pub fn toggle_companion(&mut self, integrator: IntegratorKind) {
         if self.is_motion() && integrator != self.present.scene.dynamics.integrator {
             self.playback.toggle(integrator, &self.model.simulation);
         }

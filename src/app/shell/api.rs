@@ -11,35 +11,9 @@ use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::render::Frame;
 use crate::simulation::SimulationError;
-use crate::state::State;
 use crate::study::Study;
 
 impl Lab {
-    /// Shows or hides the panel and the bars; without them the view fills the window or image.
-    pub fn set_panel(&mut self, shown: bool) {
-        self.desk.view.bars = shown;
-    }
-
-    /// Colours the body with a field.
-    pub fn color_with(&mut self, field: Field) {
-        self.desk.view.color_with(field);
-    }
-
-    /// Sets the factor of the drawn displacement in the mode Explore.
-    pub fn magnify(&mut self, magnification: Magnification) {
-        self.desk.view.magnification = magnification;
-    }
-
-    /// Shows the load curve in the mode Measure.
-    pub fn show_curve(&mut self) {
-        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::LoadCurve);
-    }
-
-    /// Shows the plots of the sections, or of a motion, under the body.
-    pub(crate) fn show_drawer(&mut self, drawer: Drawer) {
-        self.desk.view.drawer = Some(drawer);
-    }
-
     /// Shows card `number` of the mode Learn, from 1. The current scene is restored when the mode ends.
     pub fn show_card(&mut self, number: usize) {
         let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
@@ -60,13 +34,13 @@ impl Lab {
 
     /// Shows a speed–accuracy study in the mode Measure.
     pub fn show_study(&mut self, study: Study) {
-        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::HowFast);
+        self.show_tab(MeasureTab::HowFast);
         self.desk.measure.budget.set(self.desk.session.scene(), study);
     }
 
-    /// Shows the limits of every method and element, or of every integrator.
-    pub fn show_limits(&mut self) {
-        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, MeasureTab::HowFar);
+    /// Shows a tab of the mode Measure.
+    pub fn show_tab(&mut self, tab: MeasureTab) {
+        (self.desk.view.mode, self.desk.view.tab) = (Mode::Measure, tab);
     }
 
     /// Shows two to four panes side by side under the same load, one per setting. Does nothing for a motion.
@@ -90,31 +64,9 @@ impl Lab {
         (self.desk.measure.budget.study(), self.desk.measure.budget.runs())
     }
 
-    /// Sets the time of iterations after which a displayed frame makes no more.
-    pub fn set_frame_work(&mut self, time: Duration) {
-        self.desk.session.frame_work = time;
-    }
-
-    /// Displays a state; returns `false` if it does not fit the mesh.
-    pub(crate) fn restore(&mut self, state: &State) -> bool {
-        self.desk.session.restore(state)
-    }
-
-    /// Fixes the camera and the range of the colour map.
-    pub(crate) fn fix_view(&mut self, camera: Camera, range: [f64; 2]) {
-        self.desk.viewport.camera.set_camera(camera);
-        self.desk.view.fixed_range = Some(range);
-    }
-
     /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
     pub(crate) fn fit(&self, low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2]) -> Camera {
         self.desk.viewport.fitted(&self.content(), low, high, view)
-    }
-
-    /// Shows or hides three outlines: of the body at rest, of the linear solution and of the reference solution.
-    pub fn set_outlines(&mut self, shown: bool) {
-        let view = &mut self.desk.view;
-        (view.rest_outline, view.ghost, view.exact) = (shown, shown, shown);
     }
 
     /// Returns the scene with its edits.
@@ -123,20 +75,10 @@ impl Lab {
         self.desk.session.scene()
     }
 
-    pub(crate) fn source(&self) -> &Source {
-        &self.desk.session.document().source
-    }
-
     /// Returns the displayed simulation.
     #[must_use]
     pub fn simulation(&self) -> &Simulation {
         self.desk.session.simulation()
-    }
-
-    /// Returns the solution of linear theory, if there is one.
-    #[must_use]
-    pub fn linear(&self) -> Option<&Simulation> {
-        self.desk.session.linear()
     }
 
     /// Returns the area of the view in the window, points.
@@ -185,24 +127,6 @@ impl Lab {
         format!("{}{edited}{file} \u{2013} warpbeam", tr(&session.scene().name))
     }
 
-    /// Returns `true` while the reference that follows a dragged load is being computed.
-    #[must_use]
-    pub fn is_following(&self) -> bool {
-        self.desk.session.is_following()
-    }
-
-    /// Returns `true` if there is an edit to undo.
-    #[must_use]
-    pub fn can_undo(&self) -> bool {
-        self.desk.session.can_undo()
-    }
-
-    /// Returns `true` if there is an undone edit to redo.
-    #[must_use]
-    pub fn can_redo(&self) -> bool {
-        self.desk.session.can_redo()
-    }
-
     /// Turns the animation of the camera on, as in a window, or off, as in images.
     pub fn set_easing(&mut self, eases: bool) {
         self.desk.viewport.eases = eases;
@@ -214,17 +138,6 @@ impl Lab {
         self.desk.viewport.probe
     }
 
-    /// Sets the number of unknowns above which a model is meshed and solved in the background.
-    pub fn set_most_unknowns(&mut self, most: u64) {
-        self.desk.session.set_most_unknowns(most);
-    }
-
-    /// Returns `true` while a model is meshed or solved in the background.
-    #[must_use]
-    pub fn is_working(&self) -> bool {
-        self.desk.session.is_working()
-    }
-
     /// Changes the scene of the body, which continues from its current state if possible. A large model is set up in
     /// the background; errors of its mesh are shown later as a message.
     ///
@@ -234,11 +147,6 @@ impl Lab {
         self.desk.session.set_scene(scene)?;
         self.apply_session_changes();
         Ok(())
-    }
-
-    /// Shows the outline of the same motion under another integrator; if it is shown, hides it.
-    pub fn compare_with(&mut self, integrator: IntegratorKind) {
-        self.desk.session.toggle_companion(integrator);
     }
 
     /// Returns `true` while a displayed result of the scene is being computed in the background.

@@ -62,11 +62,11 @@ impl Lab {
         ctx.request_repaint();
         match action {
             Action::Open(_) | Action::New(_) | Action::OpenFile | Action::Close => self.depart(ctx, action),
-            Action::Reload => self.open(ctx, self.source().clone()),
+            Action::Reload => self.open(ctx, self.desk.session.document().source.clone()),
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(ctx),
-            Action::Undo if self.can_undo() => self.undo(ctx, Edit::Undo),
-            Action::Redo if self.can_redo() => self.undo(ctx, Edit::Redo),
+            Action::Undo if self.desk.session.can_undo() => self.undo(ctx, Edit::Undo),
+            Action::Redo if self.desk.session.can_redo() => self.undo(ctx, Edit::Redo),
             Action::Undo | Action::Redo => {}
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
             Action::Escape if self.desk.view.why => self.desk.view.why = false,

@@ -28,14 +28,16 @@ pub enum Request {
 
 /// Model with its view and tools. The mode Learn has a desk of its own.
 #[derive(Debug)]
-pub(super) struct Desk {
+pub struct Desk {
+    /// Model.
     pub session: Session,
-    pub viewport: BodyView,
+    pub(crate) viewport: BodyView,
+    /// Display options.
     pub view: ViewOptions,
-    pub panel: PanelState,
-    pub compare: Compare,
-    pub measure: Measure,
-    pub sections: SectionPlot,
+    pub(super) panel: PanelState,
+    pub(super) compare: Compare,
+    pub(super) measure: Measure,
+    pub(super) sections: SectionPlot,
 }
 
 impl Desk {
@@ -106,7 +108,8 @@ pub(super) enum Question {
 /// Complete content of a window.
 #[derive(Debug)]
 pub struct Lab {
-    pub(super) desk: Desk,
+    /// Desk of the scene, or of the mode Learn.
+    pub desk: Desk,
     pub(super) lesson: Option<Box<Lesson>>,
     /// Number of the last displayed card, from 0.
     pub(super) card: usize,

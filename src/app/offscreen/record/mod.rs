@@ -166,9 +166,10 @@ pub fn record(
         let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
         lab.set_language(options.look.language);
         if let Some(preview) = &preview {
-            lab.set_panel(false);
+            lab.desk.view.bars = false;
             let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
-            lab.fix_view(camera, preview.range);
+            lab.desk.viewport.camera.set_camera(camera);
+            lab.desk.view.fixed_range = Some(preview.range);
         } else {
             lab.tell_story();
         }
@@ -179,7 +180,7 @@ pub fn record(
         let mut lab = new_lab()?;
         for state in preview.iter().flat_map(|preview| &preview.samples) {
             // Cannot fail: the state belongs to the same equations.
-            if lab.restore(state) {
+            if lab.desk.session.restore(state) {
                 samples.push(draw(&mut canvas, &mut lab, 0)?);
             }
         }
