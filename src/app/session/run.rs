@@ -45,6 +45,20 @@ pub struct PaneEnd {
     pub area_change: f64,
 }
 
+/// Condition of a displayed state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Condition {
+    /// The state is a result for its load, or a motion that goes on.
+    Result,
+    /// The solve has not ended.
+    Unfinished,
+    /// The state belongs to an earlier load.
+    Outdated,
+    /// The solve from rest found no equilibrium, or, while a load is held, the one from the state before; or a motion has
+    /// stopped, or there is no model. The state is dimmed.
+    Failed,
+}
+
 /// Place where a model is solved.
 #[derive(Debug, Default)]
 enum RunPlace {
@@ -138,31 +152,33 @@ impl Run {
         self.model().is_some_and(|model| !model.simulation.is_at_rest())
     }
 
-    /// Returns `true` if the solve from rest found no equilibrium, or, while a load is held, the one from the state before;
-    /// and if a motion has stopped, or there is no model.
-    pub(crate) fn has_failed(&self) -> bool {
+    /// Returns the condition of the displayed state.
+    pub(crate) fn condition(&self) -> Condition {
         let status = self.end.as_ref().map(|end| &end.status);
         let status = status.or_else(|| Some(self.displayed()?.simulation.status()));
-        self.refused().is_some() || status.is_some_and(|status| status.failure().is_some())
-    }
-
-    /// Returns `true` if the displayed state is a result for its load, or a motion that goes on.
-    pub(crate) fn is_sound(&self) -> bool {
         let is_result = |model: &Model| {
             let ends = || self.given == self.wanted && has_ended(&model.simulation, self.most_iterations);
             self.end.is_some() || model.simulation.motion().is_some() || ends()
         };
-        self.displayed().is_some_and(is_result) && !self.has_failed()
+        if self.is_away() && !self.measures {
+            Condition::Outdated
+        } else if self.refused().is_some() || status.is_some_and(|status| status.failure().is_some()) {
+            Condition::Failed
+        } else if self.displayed().is_some_and(is_result) {
+            Condition::Result
+        } else {
+            Condition::Unfinished
+        }
+    }
+
+    /// Returns `true` if the displayed state is a result for its load, or a motion that goes on.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.condition() == Condition::Result
     }
 
     /// Returns `true` if the solve waits for the pointer to be released.
     pub(crate) fn waits(&self) -> bool {
         self.end.is_none() && !self.from_rest && self.is_sound()
-    }
-
-    /// Returns `true` if the displayed state belongs to an earlier load.
-    pub(crate) fn is_outdated(&self) -> bool {
-        self.is_away() && !self.measures
     }
 
     /// Returns the displacement of the first probe, m, in a sound state.
@@ -401,7 +417,7 @@ mod tests {
         let scene = |force| scene(MethodKind::Newton, [300, 8], force);
         let mut run = Run::new(None);
         run.advance(scene(30.0), &[], frame(false));
-        assert!(run.is_away() && run.is_outdated() && run.answer().is_none());
+        assert!(run.is_away() && run.condition() == Condition::Outdated && run.answer().is_none());
         let last = scene(60.0);
         iterate(&mut run, &last);
         let (iterations, probe) = independent(&last);

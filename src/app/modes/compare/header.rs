@@ -2,7 +2,7 @@
 
 use egui::emath::GuiRounding;
 
-use super::pane::{Condition, Pane};
+use super::pane::Pane;
 use super::setting::PANES;
 use super::{CompareInput, PaneChange};
 use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip};
@@ -66,7 +66,7 @@ pub(super) fn shown_probes(scene: &Scene, view: &ViewOptions) -> usize {
 
 /// Shows the displacements of the probes.
 fn kept_probes(ui: &mut Ui, pane: &Pane, view: &ViewOptions) {
-    let Some(simulation) = pane.simulation().filter(|_| pane.condition() == Condition::Result) else { return };
+    let Some(simulation) = pane.simulation().filter(|_| pane.run.is_sound()) else { return };
     for probe in simulation.problem().probes().iter().take(shown_probes(simulation.scene(), view)) {
         let u = probe.mean(simulation.displacement());
         let u = engineering_pair([u.x, u.y].map(three_digits), "m");
@@ -110,7 +110,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let bound = judged.map(|(error, first)| first.error_bound(error));
         let number = error_text(error, bound, input.live.is_some());
         // Until the pane has a result, the error is that of an earlier load.
-        let is_current = pane.condition() == Condition::Result;
+        let is_current = pane.run.is_sound();
         let color = if is_current { error_color(&palette, bound) } else { palette.secondary };
         let galley = painter.layout_no_wrap(number, FontId::proportional(HEADLINE), color);
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());

@@ -9,7 +9,7 @@ use crate::app::interface::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
-use crate::app::session::run::{PaneEnd, Run};
+use crate::app::session::run::{Condition, PaneEnd, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::ForceArrows;
@@ -46,19 +46,6 @@ pub struct Pane {
     /// Area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
     pub place: Option<Rect>,
     pub(super) pointer: Pointer,
-}
-
-/// Condition of a displayed state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Condition {
-    /// The state is a result for its load.
-    Result,
-    /// The solve has not ended.
-    Unfinished,
-    /// The state belongs to an earlier load.
-    Outdated,
-    /// The state is no result: it is dimmed.
-    Failed,
 }
 
 impl Pane {
@@ -120,18 +107,6 @@ impl Pane {
         Some(&self.run.model()?.simulation)
     }
 
-    pub(super) fn condition(&self) -> Condition {
-        if self.run.is_outdated() {
-            Condition::Outdated
-        } else if self.run.has_failed() {
-            Condition::Failed
-        } else if self.run.is_sound() {
-            Condition::Result
-        } else {
-            Condition::Unfinished
-        }
-    }
-
     /// Returns the rest position, m, of the material point under the pointer, and the pointer's position.
     pub(super) fn under_pointer(&self) -> Option<(Vector2<f64>, Pos2)> {
         let (point, at) = self.pointer.over_body()?;
@@ -144,7 +119,7 @@ impl Pane {
     pub(super) fn show_value(&self, ui: &Ui, view: &ViewOptions, rest: Vector2<f64>, camera: Camera, at: Option<Pos2>) {
         let (Some(system), Some(place)) = (&self.system, self.place) else { return };
         let mesh = system.mesh();
-        let Some(point) = mesh.locate(rest).filter(|_| self.condition() == Condition::Result) else { return };
+        let Some(point) = mesh.locate(rest).filter(|_| self.run.is_sound()) else { return };
         let Some(now) = probe::place(mesh, &self.body_mesh.nodes, point) else { return };
         let painter = ui.painter_at(place);
         let at = at.unwrap_or_else(|| {
@@ -160,7 +135,7 @@ impl Pane {
     /// setting.
     pub(super) fn keep_equilibrium(&mut self, last: Option<&Simulation>) {
         let displayed = self.run.displayed().map(|model| &model.simulation);
-        let last = last.filter(|_| self.run.has_failed());
+        let last = last.filter(|_| self.run.condition() == Condition::Failed);
         displayed.into_iter().chain(last).for_each(|simulation| self.fallback.keep(simulation));
     }
 
@@ -168,7 +143,7 @@ impl Pane {
     fn in_place(&self) -> Option<&Simulation> {
         let is_wild =
             |simulation: &Simulation| self.is_dragged && !self.run.is_settled() && simulation.residual() > WILD;
-        let is_replaced = |simulation: &&Simulation| self.run.has_failed() || is_wild(simulation);
+        let is_replaced = |simulation: &&Simulation| self.run.condition() == Condition::Failed || is_wild(simulation);
         self.fallback.of(self.simulation().filter(is_replaced)?)
     }
 
@@ -255,7 +230,7 @@ impl Pane {
     ) -> Interaction {
         let Some(place) = self.place else { return Interaction::default() };
         let mut pointer = std::mem::take(&mut self.pointer);
-        let condition = self.condition();
+        let condition = self.run.condition();
         let in_place = self.in_place().map(Simulation::scene);
         // The scene whose state diverges, if an equilibrium is displayed in its place.
         let wanted = self.run.wanted.as_ref().filter(|_| in_place.is_some());
