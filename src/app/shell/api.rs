@@ -16,11 +16,10 @@ use crate::study::Study;
 impl Lab {
     /// Shows card `number` of the mode Learn, from 1. The current scene is restored when the mode ends.
     pub fn show_card(&mut self, number: usize) {
-        let card = number.saturating_sub(1).min(learn::CARDS.len() - 1);
-        if self.lesson.is_some() {
-            self.go_to_card(card);
+        if self.aside.is_some() {
+            self.go_to_card(number.saturating_sub(1));
         } else {
-            self.card = card;
+            self.learn.go_to(number.saturating_sub(1));
             self.desk.view.mode = Mode::Learn;
             self.enter_or_leave();
         }
@@ -29,7 +28,7 @@ impl Lab {
     /// Returns the number of the displayed card, from 1, and the number of cards; `None` in other modes.
     #[must_use]
     pub fn card(&self) -> Option<(usize, usize)> {
-        self.lesson.as_ref().map(|_| (self.card + 1, learn::CARDS.len()))
+        self.aside.as_ref().map(|_| (self.learn.card + 1, learn::CARDS.len()))
     }
 
     /// Shows a speed–accuracy study in the mode Measure.
@@ -160,7 +159,7 @@ impl Lab {
             Some(MeasureTab::HowFar) => measure.limits_of.as_ref().is_none_or(|base| facts.limits.is_pending(base)),
             Some(MeasureTab::HowFast) | None => false,
         };
-        let learns = self.lesson.as_ref().is_some_and(|lesson| lesson.learn.is_computing(scene));
+        let learns = self.aside.is_some() && self.learn.is_computing(scene);
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;

@@ -41,9 +41,7 @@ impl Lab {
             view.why = false;
             view.fixed_range = None;
             view.magnification = Magnification::default();
-            if let Some(lesson) = &mut self.lesson {
-                lesson.learn.line = 0;
-            }
+            self.learn.line = 0;
         }
     }
 
@@ -107,7 +105,7 @@ impl Lab {
             Action::Reset => {
                 self.reset();
                 // A card that waits for its steps waits again.
-                if self.lesson.as_ref().is_some_and(|lesson| lesson.learn.card().setup.waits) {
+                if self.aside.is_some() && self.learn.card().setup.waits {
                     self.desk.session.set_running(false);
                 }
             }
@@ -177,7 +175,7 @@ impl Lab {
         let session = &mut self.desk.session;
         // On the pseudocode card a step goes to the next line, and only one of the lines iterates.
         let ended = !session.is_motion() && session.simulation().is_at_rest();
-        let line = self.lesson.as_ref().and_then(|lesson| lesson.learn.next_line(session.simulation(), ended));
+        let line = self.aside.as_ref().and_then(|_| self.learn.next_line(session.simulation(), ended));
         let Some(line) = line.filter(|_| !session.is_in_background()) else {
             session.step();
             return self.apply_session_changes();
@@ -189,9 +187,7 @@ impl Lab {
         if line == learn::SOLVE {
             session.iterate();
         }
-        if let Some(lesson) = &mut self.lesson {
-            lesson.learn.line = line;
-        }
+        self.learn.line = line;
     }
 
     /// Returns to rest, or to the start of the motion.
@@ -202,9 +198,7 @@ impl Lab {
         session.reset();
         if is_here {
             viewport.clear_swept();
-            if let Some(lesson) = &mut self.lesson {
-                lesson.learn.line = 0;
-            }
+            self.learn.line = 0;
         }
         self.apply_session_changes();
     }

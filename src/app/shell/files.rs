@@ -176,7 +176,7 @@ impl Lab {
     /// and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {
         self.end_story();
-        if self.unsaved().is_some() && self.lesson.is_some() {
+        if self.unsaved().is_some() && self.aside.is_some() {
             self.desk.view.mode = Mode::Explore;
             self.enter_or_leave();
         }
@@ -194,7 +194,7 @@ impl Lab {
     pub(super) fn depart(&mut self, ctx: &Context, departure: Action) {
         let closes = departure == Action::Close;
         let is_lost = |edits: &Unsaved| closes || edits.document.source.built_in().is_none();
-        let loses = self.lesson.is_none() && self.unsaved().is_some_and(is_lost);
+        let loses = self.aside.is_none() && self.unsaved().is_some_and(is_lost);
         if !loses {
             return self.go(ctx, departure);
         }
@@ -250,7 +250,7 @@ impl Lab {
 
     /// Returns the edits that are offered now: they are restored to the user's own scene, which Learn puts aside.
     pub(super) fn offered(&self) -> Option<&Unsaved> {
-        self.left.as_ref().filter(|_| self.lesson.is_none())
+        self.left.as_ref().filter(|_| self.aside.is_none())
     }
 
     /// Offers the edits left by a crashed window, until the user answers.

@@ -68,14 +68,6 @@ impl Desk {
     }
 }
 
-/// State of the mode Learn.
-#[derive(Debug)]
-pub(super) struct Lesson {
-    pub learn: Learn,
-    /// The user's desk, which is restored when the mode ends.
-    pub aside: Desk,
-}
-
 /// Story while it is told.
 #[derive(Debug)]
 pub(super) struct Story {
@@ -90,8 +82,8 @@ pub(super) struct Story {
     pub compares: bool,
     /// View options before the story.
     pub view: ViewOptions,
-    /// State of Learn, if the story was started there.
-    pub lesson: Option<Box<Lesson>>,
+    /// The user's desk, if the story was started in Learn.
+    pub aside: Option<Box<Desk>>,
 }
 
 /// Question that the user is asked.
@@ -110,9 +102,9 @@ pub(super) enum Question {
 pub struct Lab {
     /// Desk of the scene, or of the mode Learn.
     pub desk: Desk,
-    pub(super) lesson: Option<Box<Lesson>>,
-    /// Number of the last displayed card, from 0.
-    pub(super) card: usize,
+    pub(super) learn: Learn,
+    /// In Learn, the user's desk, which is restored when the mode ends.
+    pub(super) aside: Option<Box<Desk>>,
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
@@ -138,8 +130,8 @@ impl Lab {
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         Self {
             desk: Desk::new(Session::new(source, scene, simulation)),
-            lesson: None,
-            card: 0,
+            learn: Learn::new(0),
+            aside: None,
             story: None,
             dialog: None,
             question: Question::None,
@@ -192,17 +184,10 @@ impl Lab {
             session.playback.clock.rest();
             compare.advance_motions(session, now);
         } else if self.desk.session.advance(now) {
-            self.show_last_line();
+            self.learn.line = learn::UNTIL;
         }
         self.apply_session_changes();
         self.iterates()
-    }
-
-    /// Highlights the last line of the pseudocode, after an iteration.
-    pub(super) fn show_last_line(&mut self) {
-        if let Some(lesson) = &mut self.lesson {
-            lesson.learn.line = learn::UNTIL;
-        }
     }
 
     /// Returns `true` if the next frame changes the body.
@@ -217,7 +202,7 @@ impl Lab {
     pub(crate) fn iterate(&mut self) {
         self.desk.session.iterate();
         if !self.desk.session.is_motion() {
-            self.show_last_line();
+            self.learn.line = learn::UNTIL;
         }
     }
 
@@ -235,36 +220,36 @@ impl Lab {
         if view.drawer == Some(Drawer::Section) {
             sections.wait(session.simulation());
         }
-        if let Some(lesson) = &mut self.lesson {
-            lesson.learn.wait(session.scene());
+        if self.aside.is_some() {
+            self.learn.wait(session.scene());
         }
         if view.mode == Mode::Compare {
             compare.solve_to_end(session, view.bars);
         }
         if has_search {
-            self.show_last_line();
+            self.learn.line = learn::UNTIL;
         }
     }
 
     /// Returns the desk of the user's scene, which Learn puts aside; `None` while the story is told on it.
     pub(super) fn own_desk(&self) -> Option<&Desk> {
-        let lesson = self.story.as_ref().map_or(self.lesson.as_ref(), |story| story.lesson.as_ref());
-        lesson.map(|lesson| &lesson.aside).or_else(|| self.story.is_none().then_some(&self.desk))
+        let aside = self.story.as_ref().map_or(&self.aside, |story| &story.aside);
+        aside.as_deref().or_else(|| self.story.is_none().then_some(&self.desk))
     }
 
     /// Returns `true` if a card of Learn shows ρ at the equilibrium.
     pub(super) fn learns_rho(&self) -> bool {
-        self.lesson.as_ref().is_some_and(|lesson| lesson.learn.shows_rho())
+        self.aside.is_some() && self.learn.shows_rho()
     }
 
     pub(super) fn content(&self) -> Content<'_> {
-        let Self { desk: Desk { session, view, panel, .. }, lesson, .. } = self;
-        content(session, view, panel, lesson.as_deref())
+        let Self { desk: Desk { session, view, panel, .. }, learn, aside, .. } = self;
+        content(session, view, panel, aside.is_some().then_some(learn))
     }
 
     pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
-        let Self { desk: Desk { session, viewport, view, panel, .. }, lesson, .. } = self;
-        (viewport, content(session, view, panel, lesson.as_deref()))
+        let Self { desk: Desk { session, viewport, view, panel, .. }, learn, aside, .. } = self;
+        (viewport, content(session, view, panel, aside.is_some().then_some(learn)))
     }
 
     /// Returns the state that bars, panel and cards show.
@@ -298,13 +283,12 @@ fn content<'a>(
     session: &'a Session,
     options: &'a ViewOptions,
     panel: &PanelState,
-    lesson: Option<&'a Lesson>,
+    learn: Option<&'a Learn>,
 ) -> Content<'a> {
     Content {
         session,
         options,
         direction: panel.force_direction(),
-        card: lesson
-            .map(|lesson| CardContent { is_apart: lesson.learn.is_apart(), reach: lesson.learn.reach.as_ref() }),
+        card: learn.map(|learn| CardContent { is_apart: learn.is_apart(), reach: learn.reach.as_ref() }),
     }
 }

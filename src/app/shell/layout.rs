@@ -6,7 +6,7 @@ use crate::app::diagnosis::{self, Errors};
 use crate::app::interface::*;
 use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
-use crate::app::modes::learn;
+use crate::app::modes::learn::{self, Learn};
 use crate::app::modes::motion_plot;
 use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
@@ -133,7 +133,7 @@ impl Lab {
         top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
         self.gallery = gallery;
         // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
-        if self.desk.view.mode != Mode::Compare && !(self.lesson.is_some() && self.desk.view.narrow) {
+        if self.desk.view.mode != Mode::Compare && !(self.aside.is_some() && self.desk.view.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
             bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
         }
@@ -237,14 +237,14 @@ impl Lab {
 
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         // The state of the cards is taken out of the lab, because the readout borrows the lab.
-        let Some(mut lesson) = self.lesson.take() else { return };
+        let mut learn = std::mem::replace(&mut self.learn, Learn::new(0));
         let shown = self.readout();
         // Escape closes the panel over the body and the explanation first.
         let view = &self.desk.view;
         let is_covered = view.help || view.why || view.narrow && view.sheet;
         let keys = !self.has_dialog() && !is_covered;
-        lesson.learn.show(ui, &shown, keys, actions);
-        self.lesson = Some(lesson);
+        learn.show(ui, &shown, keys, actions);
+        self.learn = learn;
     }
 
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
@@ -262,9 +262,9 @@ impl Lab {
         self.edit_loads(ui.ctx(), &interaction);
         let (viewport, content) = self.viewport_and_content();
         viewport.update(ui.visuals(), &content);
-        if let Some(lesson) = self.lesson.as_ref().filter(|lesson| lesson.learn.is_apart()) {
+        if self.aside.is_some() && self.learn.is_apart() {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.body.displace(|points| lesson.learn.place(session.drawn(), session.geometry(), points));
+            viewport.body.displace(|points| self.learn.place(session.drawn(), session.geometry(), points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -283,12 +283,12 @@ impl Lab {
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
-        if self.desk.view.bars && self.desk.session.is_motion() && self.lesson.is_none() {
+        if self.desk.view.bars && self.desk.session.is_motion() && self.aside.is_none() {
             let Desk { session, viewport, .. } = &self.desk;
             let now = session.simulation().state().time();
             time_line::show(ui, rect, &viewport.camera.shown, (&session.playback, now), actions);
         }
-        if let Some(lesson) = &mut self.lesson {
+        if self.aside.is_some() {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::CardView {
                 simulation: session.drawn(),
@@ -298,9 +298,9 @@ impl Lab {
                 palette: Palette::new(ui.visuals()),
             };
             if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {
-                lesson.learn.pick(&view, at);
+                self.learn.pick(&view, at);
             }
-            lesson.learn.paint(&painter, &view);
+            self.learn.paint(&painter, &view);
         }
         let (viewport, content) = self.viewport_and_content();
         actions.extend(viewport.show_values(ui, &painter, &content));

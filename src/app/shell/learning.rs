@@ -5,15 +5,15 @@ use crate::app::interface::*;
 use crate::app::modes::learn::Learn;
 use crate::app::panel::PanelState;
 use crate::app::session::document::built_in;
-use crate::app::shell::lab::{Desk, Lab, Lesson};
+use crate::app::shell::lab::{Desk, Lab};
 
 impl Lab {
     /// Enters or leaves Learn after a change of the mode.
     pub(super) fn enter_or_leave(&mut self) {
-        match (self.desk.view.mode == Mode::Learn, self.lesson.take()) {
+        match (self.desk.view.mode == Mode::Learn, self.aside.take()) {
             (true, None) => self.enter(),
-            (false, Some(lesson)) => self.leave(*lesson),
-            (_, same) => self.lesson = same,
+            (false, Some(aside)) => self.leave(*aside),
+            (_, same) => self.aside = same,
         }
     }
 
@@ -30,14 +30,14 @@ impl Lab {
         // A card has the controls that it needs, so the panel is closed until the user opens it.
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
-        let aside = std::mem::replace(own, desk);
-        self.lesson = Some(Box::new(Lesson { learn: Learn::new(self.card), aside }));
+        self.aside = Some(Box::new(std::mem::replace(own, desk)));
         self.set_card_up();
     }
 
-    fn leave(&mut self, lesson: Lesson) {
+    fn leave(&mut self, aside: Desk) {
         let ViewOptions { mode, tab, drawer, .. } = self.desk.view;
-        self.desk = lesson.aside;
+        self.desk = aside;
+        self.learn = Learn::new(self.learn.card);
         let view = &mut self.desk.view;
         (view.mode, view.tab) = (mode, tab);
         // A drawer opened from a card stays open.
@@ -46,16 +46,15 @@ impl Lab {
 
     /// Goes to card number `card`, from 0.
     pub(super) fn go_to_card(&mut self, card: usize) {
-        if let Some(lesson) = &mut self.lesson {
-            lesson.learn.go_to(card);
-            self.card = card;
+        if self.aside.is_some() {
+            self.learn.go_to(card);
             self.set_card_up();
         }
     }
 
     /// Sets up the scene and the view of the card.
     pub(super) fn set_card_up(&mut self) {
-        let Some(setup) = self.lesson.as_ref().map(|lesson| lesson.learn.card().setup) else { return };
+        let setup = self.learn.card().setup;
         let Some((source, mut scene)) = built_in("article") else { return };
         setup.edit(&mut scene);
         let reach = setup.at_reach().and_then(|setup| {
@@ -69,9 +68,7 @@ impl Lab {
         if self.set_scene(scene).is_err() {
             return;
         }
-        if let Some(lesson) = &mut self.lesson {
-            lesson.learn.reach = reach;
-        }
+        self.learn.reach = reach;
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
         session.is_slow = setup.waits;

@@ -84,7 +84,7 @@ impl Lab {
     /// scene or another one would be lost.
     pub fn tell_story(&mut self) {
         let Some((source, scene)) = built_in(registry::DEFAULT) else { return };
-        let is_lost = self.lesson.is_none() && (*self.scene() != scene || self.desk.session.can_undo());
+        let is_lost = self.aside.is_none() && (*self.scene() != scene || self.desk.session.can_undo());
         if self.story.is_some() || is_lost {
             return;
         }
@@ -98,9 +98,9 @@ impl Lab {
         *panel = PanelState::default();
         let own = ViewOptions { bars: view.bars, narrow: view.narrow, ..ViewOptions::default() };
         let view = std::mem::replace(view, own);
-        let (is_still, lesson) = (self.reduces_motion(), self.lesson.take());
+        let (is_still, aside) = (self.reduces_motion(), self.aside.take());
         let (start, part, left, compares) = (None, 0, 0.0, false);
-        self.story = Some(Box::new(Story { start, part, left, is_still, compares, view, lesson }));
+        self.story = Some(Box::new(Story { start, part, left, is_still, compares, view, aside }));
         self.apply_session_changes();
     }
 
@@ -172,10 +172,9 @@ impl Lab {
     /// Ends the story: the scene is solved as it was opened, or Learn shows its card again.
     pub(super) fn end_story(&mut self) {
         let Some(story) = self.story.take() else { return };
-        let Story { view, lesson, .. } = *story;
-        (self.desk.view, self.lesson) = (view, lesson);
+        (self.desk.view, self.aside) = (story.view, story.aside);
         self.desk.viewport.camera.fit();
-        if self.lesson.is_some() {
+        if self.aside.is_some() {
             return self.set_card_up();
         }
         let session = &mut self.desk.session;

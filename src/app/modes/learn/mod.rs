@@ -49,7 +49,8 @@ fn without_element(scene: &Scene) -> Scene {
 /// State of the mode.
 #[derive(Debug)]
 pub(crate) struct Learn {
-    card: usize,
+    /// Number of the card that was displayed last, from 0.
+    pub card: usize,
     /// Index of the element that was selected last.
     picked: usize,
     /// Fraction of the exploded view: 0 for the body itself, 1 for separate, rotated-back elements.
