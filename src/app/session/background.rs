@@ -5,8 +5,9 @@ use crate::app::prelude::*;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::solve::{
-    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest, SolveUpdate,
+    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveProgress, SolveRequest,
 };
+use crate::app::task::thread::Update;
 
 /// Time after which the meshing of a body that is solved between two frames is shown.
 const SOON: Duration = Duration::from_millis(500);
@@ -128,7 +129,7 @@ impl Session {
 
     /// Cancels the solve; it returns the model that it has.
     pub(super) fn stop_solve(&self) {
-        self.background.solve.iter().for_each(|solve| solve.cancel());
+        self.background.solve.iter().for_each(|solve| solve.task.cancel());
     }
 
     /// Handles the updates of the background solve, and starts the next solve if one is needed.
@@ -140,11 +141,15 @@ impl Session {
     /// Handles an update of the background solve, or `waits` for it; returns `false` if there is none.
     pub(super) fn take_update(&mut self, waits: bool) -> bool {
         let Some(solve) = &mut self.background.solve else { return false };
-        match solve.next(waits) {
-            SolveUpdate::None => return false,
-            SolveUpdate::Progress(snapshot) => self.display(*snapshot),
-            SolveUpdate::Done(outcome) => self.receive(outcome),
-            SolveUpdate::Died => {
+        match solve.task.next(waits) {
+            Update::None => return false,
+            Update::Progress(SolveProgress::Phase(phase)) => solve.phase = phase,
+            Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
+                drop(receipt);
+                self.display(*snapshot);
+            }
+            Update::Done(outcome) => self.receive(outcome),
+            Update::Died => {
                 self.roll_back();
                 // Repeating the same solve would fail in the same way.
                 self.running = false;

@@ -243,7 +243,7 @@ impl Run {
     fn take_solved(&mut self) -> bool {
         let RunPlace::Away(solve) = &mut self.place else { return true };
         if self.given != self.wanted {
-            solve.cancel();
+            solve.task.cancel();
         }
         let Some(ended) = solve.poll_end() else { return false };
         self.place = ended.map_or_else(RunPlace::Refused, RunPlace::Here);

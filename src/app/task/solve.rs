@@ -197,13 +197,10 @@ pub(crate) enum SolveProgress {
 /// Solved model, or the error of a scene that has none.
 pub(crate) type SolveOutcome = Result<Box<Model>, SimulationError>;
 
-/// Update of a background solve: a snapshot, or the result.
-pub(crate) type SolveUpdate = Update<Box<Model>, SolveOutcome>;
-
 /// Solve in a background thread, or on a web page after the current frame. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct BackgroundSolve {
-    task: Task<SolveProgress, SolveOutcome>,
+    pub task: Task<SolveProgress, SolveOutcome>,
     /// Scene that is solved.
     pub scene: Scene,
     pub phase: Phase,
@@ -221,40 +218,20 @@ impl BackgroundSolve {
         Ok(Self { task: Task::start("solve", work)?, scene, phase })
     }
 
-    /// Cancels the solve; it ends with the model that it has.
-    pub(crate) fn cancel(&self) {
-        self.task.cancel();
-    }
-
     /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended. Snapshots are
     /// dropped.
     pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Model>, Sentence>> {
         loop {
-            return Some(match self.next(false) {
-                SolveUpdate::None => return None,
-                SolveUpdate::Progress(_) => continue,
-                SolveUpdate::Done(outcome) => outcome.map_err(|error| (&error).into()),
-                SolveUpdate::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
-            });
-        }
-    }
-
-    /// Returns the next update, and records the phases that are reported before it; waits for it if `waits` is `true`.
-    pub(crate) fn next(&mut self, waits: bool) -> SolveUpdate {
-        loop {
-            return match self.task.next(waits) {
+            return Some(match self.task.poll() {
+                Update::None => return None,
                 Update::Progress(SolveProgress::Phase(phase)) => {
                     self.phase = phase;
                     continue;
                 }
-                Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
-                    drop(receipt);
-                    Update::Progress(snapshot)
-                }
-                Update::Done(outcome) => Update::Done(outcome),
-                Update::None => Update::None,
-                Update::Died => Update::Died,
-            };
+                Update::Progress(SolveProgress::Snapshot(..)) => continue,
+                Update::Done(outcome) => outcome.map_err(|error| (&error).into()),
+                Update::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
+            });
         }
     }
 }
