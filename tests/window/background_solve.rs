@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 /// Returns a window that solves everything in the background; every frame is checked.
 fn open(id: &str) -> Ui {
     let mut lab = lab_of(id, scene(id));
-    lab.desk.session.set_most_unknowns(0);
+    lab.desk.session.most_unknowns = 0;
     let mut ui = Ui(Harness::builder().with_size(SIZE).with_max_steps(400).build_ui_state(
         |ui, lab: &mut Lab| {
             lab.advance(ui.input(|i| i.time));
@@ -215,7 +215,7 @@ fn a_refused_scene_is_reported_and_nothing_is_changed() {
 fn a_dropped_lab_ends_its_background_solve() {
     let scene = scene_with("cantilever", &["beam.cells=[200,20]", "solver.method=warped"]);
     let mut lab = lab_of("cantilever", scene.clone());
-    lab.desk.session.set_most_unknowns(0);
+    lab.desk.session.most_unknowns = 0;
     lab.solve();
     let system = Arc::downgrade(lab.simulation().system());
     let mut heavy = scene;
@@ -234,7 +234,7 @@ fn a_dropped_lab_ends_its_background_solve() {
 #[test]
 fn solve_waits_for_the_worker() {
     let mut lab = lab_of("cantilever", scene("cantilever"));
-    lab.desk.session.set_most_unknowns(0);
+    lab.desk.session.most_unknowns = 0;
     let fine = scene("cantilever").with_cells(24, 3);
     for scene in [fine.clone(), fine.with_method(MethodKind::Newton)] {
         lab.set_scene(scene).unwrap();

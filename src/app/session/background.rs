@@ -40,12 +40,6 @@ pub(super) struct Before {
 }
 
 impl Session {
-    /// Sets the number of unknowns above which a model is meshed and solved in the background.
-    pub fn set_most_unknowns(&mut self, most: u64) {
-        self.most_unknowns = most;
-        self.note_size();
-    }
-
     /// Returns `true` while a model is meshed or solved in the background.
     pub fn is_working(&self) -> bool {
         self.background.solve.is_some()
@@ -60,45 +54,28 @@ impl Session {
         (!is_soon_over).then_some((scene, solve.phase, since.as_secs()))
     }
 
-    /// Returns `true` if `scene` is set up in the background: it is large, and has a new mesh or is static. Time steps
-    /// of motions are made between frames.
+    /// Returns `true` if `scene` is set up in the background: it takes too long for the time between two frames, and has a
+    /// new mesh or is static. Time steps of motions are made between frames.
     pub(super) fn is_for_background(&self, scene: &Scene) -> bool {
-        self.is_large(scene) && self.needs_work(scene)
-    }
-
-    /// Returns `true` if the requested scene is set up in the background.
-    fn is_wanted_in_background(&self) -> bool {
-        self.is_large && self.needs_work(&self.present.scene)
-    }
-
-    /// Returns `true` if a scene takes too long for the time between two frames: a new mesh takes longer than an
-    /// iteration.
-    fn is_large(&self, scene: &Scene) -> bool {
-        let most = self.most_unknowns;
-        let is_new = !has_mesh_of(scene, self.model.simulation.scene());
-        scene.unknowns() > if is_new { most.min(MAX_PANE_UNKNOWNS) } else { most }
-    }
-
-    fn needs_work(&self, scene: &Scene) -> bool {
-        let is_search = scene.analysis == Analysis::Static && self.model.simulation.motion().is_none();
-        is_search || !has_mesh_of(scene, self.model.simulation.scene())
+        let (own, most) = (&self.model.simulation, self.most_unknowns);
+        if !has_mesh_of(scene, own.scene()) {
+            // A new mesh takes longer than an iteration.
+            return scene.unknowns() > most.min(MAX_PANE_UNKNOWNS);
+        }
+        // Counting the nodes of a mesh file takes too long for every frame.
+        let is_large = 2 * own.mesh().nodes().len() as u64 > most;
+        is_large && scene.analysis == Analysis::Static && own.motion().is_none()
     }
 
     /// Returns `true` if the displayed model is solved in the background.
     pub(crate) fn is_in_background(&self) -> bool {
-        self.is_working() || self.is_wanted_in_background()
-    }
-
-    /// Notes whether the wanted scene is large.
-    pub(super) fn note_size(&mut self) {
-        self.is_large = self.is_large(&self.present.scene);
+        self.is_working() || self.is_for_background(&self.present.scene)
     }
 
     /// Requests a scene, which the next background solve uses.
     pub(super) fn request_scene(&mut self, scene: Scene) {
         self.keep_before();
         self.present.scene = scene;
-        self.note_size();
         self.changed.scene = true;
         self.stop_solve();
     }
@@ -179,7 +156,6 @@ impl Session {
         let model = std::mem::replace(&mut self.model, model);
         let scene = model.simulation.scene().clone();
         self.timings = *self.model.simulation.last_iteration();
-        self.note_size();
         let is_another_document = self.background.before.as_mut().is_some_and(|before| {
             before.model.get_or_insert(model);
             std::mem::take(&mut before.is_another_document)
@@ -204,7 +180,7 @@ impl Session {
             || self.running && *own.status() == Status::Running;
         // The time steps of a displayed motion are made between two frames.
         let is_motion = returned.is_none() && own.motion().is_some();
-        if !self.is_wanted_in_background() || !is_new && (!is_needed || is_motion) {
+        if !self.is_for_background(&self.present.scene) || !is_new && (!is_needed || is_motion) {
             self.background.before = None;
             return;
         }
@@ -252,7 +228,6 @@ impl Session {
         let Before { version, depth, model, .. } = *before;
         self.undo.take_back(depth);
         self.present = version;
-        self.note_size();
         if let Some(model) = model {
             let scene = self.model.simulation.scene().clone();
             self.model = model;

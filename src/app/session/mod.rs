@@ -93,11 +93,8 @@ pub struct Session {
     undo: UndoHistory,
     /// Displayed model; a copy of it while it is solved in the background.
     model: Model,
-    /// Models with more unknowns than this are solved in the background.
-    most_unknowns: u64,
-    /// `true` if the requested scene has more unknowns. Stored, because counting those of a mesh file takes too long for
-    /// every frame.
-    is_large: bool,
+    /// Number of unknowns above which a model is meshed and solved in the background.
+    pub most_unknowns: u64,
     background: Background,
     running: bool,
     /// `true` if a displayed frame makes one iteration: slow motion of the method.
@@ -148,7 +145,6 @@ impl Session {
             undo: UndoHistory::default(),
             model,
             most_unknowns: MAX_UNKNOWNS,
-            is_large: false,
             background: Background::default(),
             running: true,
             is_slow: false,
@@ -172,7 +168,6 @@ impl Session {
             notices: Vec::new(),
         };
         session.fallback.keep(&session.model.simulation);
-        session.note_size();
         session
     }
 
@@ -419,7 +414,6 @@ impl Session {
         }
         self.present.scene = scene;
         (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
-        self.note_size();
         self.scene_changed(&before);
         self.begin_accepted_at_rest();
         let known = self.model.linear.take();

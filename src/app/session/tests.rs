@@ -86,7 +86,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
     let mut session = session(cantilever(-100.0));
     session.solve(ShownFacts::default());
     let first = tip(&session);
-    session.set_most_unknowns(0);
+    session.most_unknowns = 0;
     session.apply(with_force(&session, -200.0)).unwrap();
     assert!(session.is_working() && session.work().is_some());
     wait(&mut session);
@@ -115,7 +115,7 @@ fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
     let mut session = session(cantilever(-100.0));
     session.solve(ShownFacts::default());
     let first = session.scene().clone();
-    session.set_most_unknowns(0);
+    session.most_unknowns = 0;
     for cells in [[16, 4], [8, 2]] {
         let cancelled = first.clone().with_cells(cells[0], cells[1]).force("top", [0.0, -50.0]);
         session.apply(Edit::Scene("Force", Box::new(cancelled.clone()))).unwrap();
@@ -139,7 +139,7 @@ fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = session(cantilever(-100.0));
     session.solve(ShownFacts::default());
-    session.set_most_unknowns(0);
+    session.most_unknowns = 0;
     let first = session.scene().clone();
     let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
     let mut wrong = first.clone();
@@ -265,7 +265,7 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
         assert_eq!(*session.scene(), saved);
     }
     // A cancelled solve does not return to the previous file either.
-    session.set_most_unknowns(0);
+    session.most_unknowns = 0;
     session.apply(with_force(&session, -500.0)).unwrap();
     session.save(&path("third.toml")).unwrap();
     session.cancel();
