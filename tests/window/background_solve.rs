@@ -16,7 +16,7 @@ fn open(id: &str) -> Ui {
             let before = body(lab);
             lab.ui(ui);
             // The window lays such a frame out again, with the result of its edit.
-            if !lab.take_mixed() {
+            if !std::mem::take(&mut lab.is_mixed) {
                 is_of_one_state(lab, &before);
             }
         },

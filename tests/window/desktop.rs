@@ -422,7 +422,7 @@ fn edits_survive_a_killed_window() {
     let restore = {
         let (_place, left) = RecoveryCopies::open(&copies).unwrap();
         let mut ui = laid_out();
-        ui.state_mut().offer(left.unwrap());
+        ui.state_mut().left = Some(left.unwrap());
         // Learn shows a scene of its own, to which the edits do not belong.
         ui.state_mut().show_card(1);
         ui.run_steps(3);

@@ -43,7 +43,7 @@ fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured
     let folder = tempfile::tempdir().unwrap();
     let mut wrong = Vec::new();
     for (language, theme, mark) in looks {
-        lab.set_language(*language);
+        lab.settings.language = *language;
         let file = format!("{name}-{mark}.png");
         let path = folder.path().join(&file);
         picture(&gpu, lab, SIZE, 1.0, *theme).unwrap().write_png(&path).unwrap();
@@ -69,7 +69,7 @@ fn explore_and_measure() {
     explore.solve();
     golden("explore", &mut explore, &[DARK, LIGHT, CHINESE], &[TIME]);
     let mut ui = crate::common::lab::window([960.0, 600.0], explore);
-    ui.state_mut().set_language(Language::English);
+    ui.state_mut().settings.language = Language::English;
     ui.key_press(Key::B);
     ui.run_steps(3);
     golden("budget", ui.state_mut(), &[DARK], &[TIME]);

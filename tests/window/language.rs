@@ -20,7 +20,7 @@ fn zh(english: &str) -> String {
 /// Returns a window in Chinese; `size` in points.
 fn open_of(id: &str, size: [f32; 2]) -> Ui {
     let mut lab = lab_of(id, scene(id));
-    lab.set_language(Language::Chinese);
+    lab.settings.language = Language::Chinese;
     window_at([0.05, 600.0], size, lab)
 }
 
@@ -292,7 +292,7 @@ fn the_fonts_have_every_letter() {
     let chinese: String = catalogue().into_values().chain([Language::Chinese.name().to_owned()]).collect();
     for (language, texts) in [(Language::English, texts), (Language::Chinese, chinese)] {
         let mut ui = open_of("article", [640.0, 480.0]);
-        ui.state_mut().set_language(language);
+        ui.state_mut().settings.language = language;
         ui.run();
         for font in
             [12.0, 14.0, 18.0].into_iter().flat_map(|size| [FontId::proportional(size), FontId::monospace(size)])
@@ -312,7 +312,7 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     assert_chinese(&ui, "Explore");
     press(&mut ui, "Language");
     ui.contains(["Language", "Run"]);
-    assert_eq!(ui.state().language(), Language::English);
+    assert_eq!(ui.state().settings.language, Language::English);
     ui.click("Language");
     ui.get_by_label(&zh("Run"));
     // The same on a card of Learn, and after it.
@@ -328,7 +328,7 @@ fn the_switch_changes_the_language_and_the_settings_keep_it() {
     let (settings, _) = Settings::load(&file);
     assert_eq!((settings.language, Settings::default().language), (Language::Chinese, Language::English));
     let mut again = settled("article", SIZE);
-    again.state_mut().set_language(Language::English);
+    again.state_mut().settings.language = Language::English;
     let ctx = again.ctx.clone();
     again.state_mut().set_settings(&ctx, settings);
     again.run();
@@ -453,7 +453,7 @@ fn nothing_is_clipped_in_windows_of_any_size() {
     for (language, size) in pairs([Language::English, Language::Chinese], SIZES) {
         let word = |english: &str| if language == Language::Chinese { zh(english) } else { english.to_owned() };
         let mut ui = open_of("article", size);
-        ui.state_mut().set_language(language);
+        ui.state_mut().settings.language = language;
         ui.run();
         settle(&mut ui);
         let (is_narrow, force) = (size[0] < 960.0, word("Force"));
@@ -502,7 +502,7 @@ fn nothing_of_the_toolbar_overlaps_in_windows_of_any_width() {
     let names = "Scene Step Reset Undo Redo Explore Learn Compare Measure Help Theme Language Panel";
     let mut ui = open_of("article", [640.0, 600.0]);
     for language in [Language::English, Language::Chinese] {
-        ui.state_mut().set_language(language);
+        ui.state_mut().settings.language = language;
         for width in (640..1300).step_by(10) {
             let window = Rect::from_min_size(Pos2::ZERO, vec2(width as f32, 600.0));
             ui.set_size(window.size());

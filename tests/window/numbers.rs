@@ -178,7 +178,7 @@ fn panes_have_the_numbers_of_solve() {
         lab.solve();
         let ui = open_of(lab);
         let shown = Shown::in_view(&ui);
-        let bar = ui.state().seconds_from_rest();
+        let bar = ui.state().desk.session.timed_from_rest().map(|solve| solve.timings.total().as_secs_f64());
         for (number, pane) in ui.state().panes().iter().enumerate() {
             let json = solve(pane.scene().unwrap());
             let setting = pane.setting.of(ui.scene());

@@ -36,7 +36,7 @@ pub fn shot(
 ) -> Result<Shot, AppError> {
     let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
-    lab.set_language(options.look.language);
+    lab.settings.language = options.look.language;
     let view = &mut lab.desk.view;
     view.bars = !options.no_panel;
     view.color_with(options.field);

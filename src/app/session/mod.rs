@@ -234,7 +234,7 @@ impl Session {
 
     /// Returns time and result of a solve from rest; `None` if they are not known for the present load, or the body is
     /// grabbed: the solve is without the pull.
-    pub(crate) fn timed_from_rest(&self) -> Option<&SolveFromRest> {
+    pub fn timed_from_rest(&self) -> Option<&SolveFromRest> {
         self.timed_solve().filter(|_| !self.is_grabbed())
     }
 

@@ -2,7 +2,7 @@
 
 use crate::app::ThemeChoice;
 use crate::app::interface::*;
-use crate::app::language::{self, Language};
+use crate::app::language;
 use crate::app::modes::compare::{Pane, PaneSetting};
 use crate::app::modes::learn;
 use crate::app::shell::lab::{Desk, Lab};
@@ -99,13 +99,6 @@ impl Lab {
         self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
     }
 
-    /// Returns the time of a solve of the scene from rest, s, as in the status bar; `None` until it has been measured.
-    #[must_use]
-    pub fn seconds_from_rest(&self) -> Option<f64> {
-        let session = &self.desk.session;
-        session.facts().time.get(session.scene()).map(|solve| solve.timings.total().as_secs_f64())
-    }
-
     /// Returns the camera of the last [`Self::ui`].
     #[must_use]
     pub fn camera(&self) -> Camera {
@@ -181,22 +174,6 @@ impl Lab {
         if let Some(path) = self.desk.session.document().path() {
             self.settings.add_recent(path);
         }
-    }
-
-    /// Sets the language of the user interface.
-    pub fn set_language(&mut self, language: Language) {
-        self.settings.language = language;
-    }
-
-    /// Returns the language of the user interface.
-    #[must_use]
-    pub fn language(&self) -> Language {
-        self.settings.language
-    }
-
-    /// Records the size of the window, points, for the settings.
-    pub fn set_window_size(&mut self, size: [f32; 2]) {
-        self.settings.size = size;
     }
 
     /// Returns the settings to be saved.

@@ -162,16 +162,6 @@ impl Lab {
         self.own_desk()?.session.unsaved()
     }
 
-    /// Offers to restore the edits left by a crashed window.
-    pub fn offer(&mut self, left: Unsaved) {
-        self.left = Some(left);
-    }
-
-    /// Returns `true` while edits of an earlier window wait for an answer.
-    pub(crate) fn offers_unsaved(&self) -> bool {
-        self.left.is_some()
-    }
-
     /// Returns `true` if the window may close now. Otherwise the user is asked about unsaved edits,
     /// and [`Request::Close`] follows unless the answer is "Cancel".
     pub fn request_close(&mut self, ctx: &Context) -> bool {

@@ -110,18 +110,20 @@ pub struct Lab {
     pub(super) dialog: Option<FileDialog>,
     pub(super) question: Question,
     /// Edits left by a crashed window, while they are offered.
-    pub(super) left: Option<Unsaved>,
+    pub left: Option<Unsaved>,
     /// Requests to the window after this frame.
     pub(super) requests: Vec<Request>,
-    pub(super) settings: Settings,
+    /// Settings that neither the display options nor egui has.
+    pub settings: Settings,
     /// Message, and the time until which it is shown, s.
     pub(super) toast: Option<(String, f64)>,
     /// Warnings, and the number of them that the user has closed.
     pub(super) warnings: Vec<String>,
     pub(super) closed_warnings: usize,
     pub(super) gallery: Gallery,
-    /// `true` if parts of the last frame show the scene before an edit.
-    pub(super) is_mixed: bool,
+    /// `true` if an edit during the last [`Self::ui`] has left parts that show the scene before it, which are to be laid
+    /// out again before they are displayed.
+    pub is_mixed: bool,
 }
 
 impl Lab {
@@ -144,12 +146,6 @@ impl Lab {
             gallery: Gallery::default(),
             is_mixed: false,
         }
-    }
-
-    /// Returns `true` if an edit during the last [`Self::ui`] has left parts that show the scene before it, which are to be
-    /// laid out again before they are displayed.
-    pub fn take_mixed(&mut self) -> bool {
-        std::mem::take(&mut self.is_mixed)
     }
 
     /// Creates a lab that shows the first built-in scene until `scene`, which is large, has been meshed in the
@@ -197,13 +193,6 @@ impl Lab {
             return self.desk.session.is_running() && self.desk.compare.goes_on() && !self.desk.compare.is_timing;
         }
         self.desk.session.iterates()
-    }
-
-    pub(crate) fn iterate(&mut self) {
-        self.desk.session.iterate();
-        if !self.desk.session.is_motion() {
-            self.learn.line = learn::UNTIL;
-        }
     }
 
     /// Iterates until the status is final, or to the end of the motion's duration, and computes all displayed results.

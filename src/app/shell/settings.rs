@@ -33,7 +33,7 @@ pub struct Settings {
     /// Name of the field that colours the body.
     color: String,
     /// Size of the window, points.
-    pub(super) size: [f32; 2],
+    pub(crate) size: [f32; 2],
     /// Recent scene files, the last one first.
     pub(super) recent: Vec<PathBuf>,
 }

@@ -152,7 +152,7 @@ impl App {
         let folder = file.as_deref().and_then(Path::parent).map(|folder| folder.join("unsaved"));
         let recovery = folder.and_then(|folder| match RecoveryCopies::open(&folder) {
             Ok((recovery, left)) => {
-                left.into_iter().for_each(|left| lab.offer(left));
+                lab.left = left;
                 recovery.unreadable.iter().for_each(|message| _ = lab.warn(message.clone()));
                 Some(recovery)
             }
@@ -163,7 +163,7 @@ impl App {
         });
         match card {
             Some(card) => lab.show_card(card),
-            None if is_default && is_first_start && !lab.offers_unsaved() => lab.tell_story(),
+            None if is_default && is_first_start && lab.left.is_none() => lab.tell_story(),
             None => {}
         }
         let needs_settings_file = lab.story().is_some();
@@ -234,7 +234,7 @@ impl App {
         let mut output = egui::FullOutput::default();
         for input in [input, again] {
             output.append(self.ctx.run_ui(input, |ui| requests.extend(self.lab.ui(ui))));
-            if !self.lab.take_mixed() {
+            if !std::mem::take(&mut self.lab.is_mixed) {
                 break;
             }
         }
@@ -271,7 +271,7 @@ impl App {
                     let edits = self.lab.unsaved();
                     let discarded = self.recovery.as_mut().map(|recovery| recovery.discard_left(edits));
                     match discarded.transpose() {
-                        Ok(next) => next.flatten().into_iter().for_each(|left| self.lab.offer(left)),
+                        Ok(next) => self.lab.left = next.flatten(),
                         Err(error) => self.warn(no_copy(error)),
                     }
                 }
@@ -466,7 +466,7 @@ impl ApplicationHandler for App {
             WindowEvent::Resized(size) => {
                 open.resize(size.width, size.height);
                 let points = size.to_logical::<f32>(open.bare.window.scale_factor());
-                self.lab.set_window_size([points.width, points.height]);
+                self.lab.settings.size = [points.width, points.height];
                 open.bare.window.request_redraw();
             }
             WindowEvent::Occluded(occluded) => {

@@ -164,7 +164,7 @@ pub fn record(
 
     let new_lab = || -> Result<Lab, AppError> {
         let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-        lab.set_language(options.look.language);
+        lab.settings.language = options.look.language;
         if let Some(preview) = &preview {
             lab.desk.view.bars = false;
             let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
@@ -202,7 +202,8 @@ pub fn record(
             true => observe(progress).is_continue(),
             false => {
                 let observe = &mut |_| observe(progress);
-                reel.advance(k, &mut lab, Lab::simulation, Lab::iterate, observe) == Reached::Picture
+                reel.advance(k, &mut lab, Lab::simulation, |lab| lab.desk.session.iterate(), observe)
+                    == Reached::Picture
             }
         };
         // Even a cancelled recording has one frame, because a file without frames is invalid.
@@ -235,7 +236,7 @@ fn tell(lab: &mut Lab, delay: f64, k: u64) {
 
 /// Draws the lab, with the time or the iteration above the body; the story has captions of its own.
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
-    language::speak(lab.language());
+    language::speak(lab.settings.language);
     let simulation = lab.simulation();
     let text = match simulation.motion() {
         Some(_) => {
