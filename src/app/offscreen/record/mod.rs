@@ -11,6 +11,7 @@ use crate::app::language;
 use crate::app::offscreen::options::RecordOptions;
 use crate::app::offscreen::shot::Canvas;
 use crate::app::prelude::*;
+use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::story;
@@ -154,7 +155,7 @@ pub fn record(
     let mut recorded = Recorded { pictures: 0, rate: 1.0 / delay, format, interrupted: true, status: Status::Running };
     let mut preview = None;
     if !is_story {
-        preview = Preview::new(&reel, again()?, observe);
+        preview = Preview::new(&reel, &mut Session::new(source.clone(), scene.clone(), again()?), observe);
         if preview.is_none() {
             return Ok(recorded);
         }
@@ -202,8 +203,7 @@ pub fn record(
             true => observe(progress).is_continue(),
             false => {
                 let observe = &mut |_| observe(progress);
-                reel.advance(k, &mut lab, Lab::simulation, |lab| lab.desk.session.iterate(), observe)
-                    == Reached::Picture
+                reel.advance(k, &mut lab.desk.session, observe) == Reached::Picture
             }
         };
         // Even a cancelled recording has one frame, because a file without frames is invalid.
@@ -275,27 +275,20 @@ enum Reached {
 }
 
 impl Reel {
-    /// Advances a simulation, alone or in a lab, which records the trail, to frame `k`: to the last step that is not later.
-    /// `observe` receives the time.
-    fn advance<B>(
-        &self,
-        k: u64,
-        body: &mut B,
-        simulation: fn(&B) -> &Simulation,
-        step: fn(&mut B),
-        observe: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Reached {
-        let time = |body: &B| simulation(body).state().time();
-        let is_running = |body: &B| *simulation(body).status() == Status::Running;
-        if observe(time(body)).is_break() {
+    /// Advances a session, which records the trail, to frame `k`: to the last step that is not later. `observe` receives the
+    /// time.
+    fn advance(&self, k: u64, session: &mut Session, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
+        let time = |session: &Session| session.simulation().state().time();
+        let is_running = |session: &Session| *session.simulation().status() == Status::Running;
+        if observe(time(session)).is_break() {
             return Reached::CalledOff;
         }
-        if simulation(body).motion().is_none() {
+        if !session.is_motion() {
             if k > 0 {
-                if !is_running(body) {
+                if !is_running(session) {
                     return Reached::End;
                 }
-                step(body);
+                session.iterate();
             }
             return Reached::Picture;
         }
@@ -303,15 +296,15 @@ impl Reel {
         if at > self.duration + NO_TIME * self.between {
             return Reached::End;
         }
-        let time_step = simulation(body).scene().dynamics.time_step;
-        while is_running(body) && time(body) + time_step <= at + NO_TIME * time_step {
-            step(body);
-            if observe(time(body)).is_break() {
+        let time_step = session.simulation().scene().dynamics.time_step;
+        while is_running(session) && time(session) + time_step <= at + NO_TIME * time_step {
+            session.iterate();
+            if observe(time(session)).is_break() {
                 return Reached::CalledOff;
             }
         }
         // A motion that has been stopped has no further frames.
-        let given_up = matches!(simulation(body).status(), Status::Stopped(_)) && time(body) + time_step <= at;
+        let given_up = matches!(session.simulation().status(), Status::Stopped(_)) && time(session) + time_step <= at;
         if given_up { Reached::End } else { Reached::Picture }
     }
 }
@@ -330,10 +323,10 @@ struct Preview {
 
 impl Preview {
     /// Simulates the whole recording; `None` if it was cancelled.
-    fn new(reel: &Reel, mut simulation: Simulation, observe: Observer<'_>) -> Option<Self> {
+    fn new(reel: &Reel, session: &mut Session, observe: Observer<'_>) -> Option<Self> {
         let now = sentence!("preparing the recording");
-        let moves = simulation.motion().is_some();
-        let (low, high) = simulation.system().mesh().bounds();
+        let moves = session.is_motion();
+        let (low, high) = session.simulation().mesh().bounds();
         let largest = LARGEST_VIEW * (high - low).norm();
         let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
         let (mut field, mut largest_value) = (InterpolatedField::default(), 0.0_f64);
@@ -346,16 +339,17 @@ impl Preview {
         loop {
             let fraction = |time| if moves { time / reel.duration } else { 0.0 };
             let observe = &mut |time| observe(Progress { fraction: fraction(time), now: Some(&now) });
-            match reel.advance(preview.pictures, &mut simulation, |own| own, |own| _ = own.step(), observe) {
+            match reel.advance(preview.pictures, session, observe) {
                 Reached::CalledOff => return None,
                 Reached::End => break,
                 Reached::Picture => {}
             }
-            let (low, high) = bounds(&simulation);
+            let simulation = session.simulation();
+            let (low, high) = bounds(simulation);
             if moves {
                 // Unstable states extend neither the view nor the colour range.
                 if preview.include(low, high, largest) {
-                    largest_value = largest_value.max(largest_of(&simulation));
+                    largest_value = largest_value.max(largest_of(simulation));
                 }
             } else {
                 range.push((low, high));
@@ -371,13 +365,13 @@ impl Preview {
             preview.pictures += 1;
         }
         if !moves {
-            let (low, high) = bounds(&simulation);
+            let (low, high) = bounds(session.simulation());
             preview.include(low, high, f64::INFINITY);
             let largest = LARGEST_WAY * (preview.high - preview.low).norm();
             for (low, high) in range {
                 preview.include(low, high, largest);
             }
-            largest_value = largest_of(&simulation);
+            largest_value = largest_of(session.simulation());
         }
         preview.range = Field::default().range(largest_value);
         Some(preview)
@@ -407,21 +401,22 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
 mod tests {
     use super::*;
 
-    fn simulation(id: &str, set: &[&str]) -> Simulation {
-        let assignments = set.iter().map(|s| (*s).to_owned()).collect();
-        Simulation::new(&crate::scene::open(&Source { name: id.into(), assignments }).unwrap()).unwrap()
+    fn session(id: &str, set: &[&str]) -> Session {
+        let source = Source { name: id.into(), assignments: set.iter().map(|s| (*s).to_owned()).collect() };
+        let scene = crate::scene::open(&source).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        Session::new(source, scene, simulation)
     }
 
-    fn reel(simulation: &Simulation, between: f64) -> Reel {
-        Reel { between, duration: simulation.scene().dynamics.duration }
+    fn reel(session: &Session, between: f64) -> Reel {
+        Reel { between, duration: session.scene().dynamics.duration }
     }
 
     /// Advances through all frames, calls `each` for every frame, and returns their number.
-    fn run(reel: &Reel, mut simulation: Simulation, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
+    fn run(reel: &Reel, mut session: Session, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
         for k in 0.. {
-            match reel.advance(k, &mut simulation, |own| own, |own| _ = own.step(), &mut |_| ControlFlow::Continue(()))
-            {
-                Reached::Picture => each(k, &simulation),
+            match reel.advance(k, &mut session, &mut |_| ControlFlow::Continue(())) {
+                Reached::Picture => each(k, session.simulation()),
                 _ => return k,
             }
         }
@@ -432,7 +427,7 @@ mod tests {
     fn a_picture_shows_the_last_step_that_is_not_later() {
         // Steps that are shorter than the time between frames, equal to it, and longer.
         for (step, between, pictures) in [(0.01, 0.04, 26), (0.01, 0.03, 34), (0.04, 0.04, 26), (0.1, 0.04, 26)] {
-            let swing = simulation("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
+            let swing = session("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
             let reel = reel(&swing, between);
             let seen = run(&reel, swing, &mut |k, simulation| {
                 let (at, time) = (k as f64 * between, simulation.state().time());
@@ -445,11 +440,11 @@ mod tests {
     #[test]
     fn the_preview_spans_every_picture() {
         for id in ["swing", "jelly", "spin", "elastica"] {
-            let again = || simulation(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
+            let again = || session(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
             let reel = reel(&again(), 0.04);
-            let preview = Preview::new(&reel, again(), &|_| ControlFlow::Continue(())).unwrap();
+            let preview = Preview::new(&reel, &mut again(), &|_| ControlFlow::Continue(())).unwrap();
             assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
-            let moves = again().motion().is_some();
+            let moves = again().is_motion();
             let seen = run(&reel, again(), &mut |k, simulation| {
                 let (low, high) = bounds(simulation);
                 // Iterations before the equilibrium may leave the frame; the equilibrium is inside it.
@@ -462,7 +457,7 @@ mod tests {
             });
             assert_eq!(seen, preview.pictures, "{id}");
         }
-        let cancelled = Preview::new(&Reel { between: 0.04, duration: 1.0 }, simulation("swing", &[]), &|progress| {
+        let cancelled = Preview::new(&Reel { between: 0.04, duration: 1.0 }, &mut session("swing", &[]), &|progress| {
             if progress.fraction > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         assert!(cancelled.is_none());
@@ -471,12 +466,12 @@ mod tests {
     /// An unstable motion does not make the view infinitely large.
     #[test]
     fn an_unstable_motion_leaves_the_picture() {
-        let swing = simulation("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);
+        let mut swing = session("swing", &["dynamics.integrator=symplectic-euler", "dynamics.time_step=0.001"]);
         let size = {
-            let (low, high) = swing.system().mesh().bounds();
+            let (low, high) = swing.simulation().mesh().bounds();
             (high - low).norm()
         };
-        let preview = Preview::new(&reel(&swing, 0.001), swing, &|_| ControlFlow::Continue(())).unwrap();
+        let preview = Preview::new(&reel(&swing, 0.001), &mut swing, &|_| ControlFlow::Continue(())).unwrap();
         assert!((preview.high - preview.low).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
         assert!(preview.pictures > 1);
     }
