@@ -68,8 +68,8 @@ impl Lab {
             Action::Undo | Action::Redo => {}
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
             Action::Escape if self.desk.view.why => self.desk.view.why = false,
-            Action::Cancel => self.cancel(),
-            Action::Escape if self.desk.session.is_working() => self.cancel(),
+            Action::Cancel => self.desk.session.cancel(),
+            Action::Escape if self.desk.session.is_working() => self.desk.session.cancel(),
             Action::Escape => self.desk.viewport.probe = None,
             Action::Edit(label, scene) => {
                 let before = self.scene().loads.len();
@@ -78,7 +78,6 @@ impl Lab {
                     Ok(_) => _ = self.desk.panel.messages.remove(label),
                     Err(error) => self.refuse(ctx, label, (&error).into()),
                 }
-                self.apply_session_changes();
                 // The sliders set a new force.
                 if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()
                     && rest.len() >= before
@@ -154,16 +153,12 @@ impl Lab {
             }
             Action::Measure(false) => self.desk.measure.budget.cancel(),
         }
+        self.apply_session_changes();
     }
 
     fn undo(&mut self, ctx: &Context, edit: Edit) {
         self.desk.panel.messages.clear();
         self.apply(ctx, edit);
-    }
-
-    fn cancel(&mut self) {
-        self.desk.session.cancel();
-        self.apply_session_changes();
     }
 
     /// Pauses, and makes one step in the current mode.
@@ -177,8 +172,7 @@ impl Lab {
         let ended = !session.is_motion() && session.simulation().is_at_rest();
         let line = self.aside.as_ref().and_then(|_| self.learn.next_line(session.simulation(), ended));
         let Some(line) = line.filter(|_| !session.is_in_background()) else {
-            session.step();
-            return self.apply_session_changes();
+            return session.step();
         };
         session.pause();
         if ended && line == learn::AT_REST {
@@ -200,7 +194,6 @@ impl Lab {
             viewport.clear_swept();
             self.learn.line = 0;
         }
-        self.apply_session_changes();
     }
 
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.

@@ -172,9 +172,7 @@ impl Lab {
     pub fn advance(&mut self, now: f64) -> bool {
         if self.story.is_some() {
             self.advance_story(now);
-            return self.story.is_some() || self.iterates();
-        }
-        if self.compares_motions() {
+        } else if self.compares_motions() {
             let Desk { session, compare, .. } = &mut self.desk;
             session.poll();
             session.playback.clock.rest();
@@ -183,7 +181,7 @@ impl Lab {
             self.learn.line = learn::UNTIL;
         }
         self.apply_session_changes();
-        self.iterates()
+        self.story.is_some() || self.iterates()
     }
 
     /// Returns `true` if the next frame changes the body.

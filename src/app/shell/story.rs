@@ -101,7 +101,6 @@ impl Lab {
         let (is_still, aside) = (self.reduces_motion(), self.aside.take());
         let (start, part, left, compares) = (None, 0, 0.0, false);
         self.story = Some(Box::new(Story { start, part, left, is_still, compares, view, aside }));
-        self.apply_session_changes();
     }
 
     /// Returns the index of the story's current part, and its caption; `None` if no story is told.
@@ -143,7 +142,6 @@ impl Lab {
             return self.end_story();
         }
         session.solve_from_rest();
-        self.apply_session_changes();
     }
 
     /// Waits for the reference solution, if the body is compared with it.
@@ -182,7 +180,6 @@ impl Lab {
         if *session.scene() != original && session.set_scene(original).is_ok() {
             session.solve_from_rest();
         }
-        self.apply_session_changes();
     }
 
     /// Fits the camera to the bodies of all parts: a camera that followed the body would hide its growth.
