@@ -21,7 +21,8 @@ pub fn open_page() {
     console_error_panic_hook::set_once();
     // It fails if a logger has been set, which then goes on.
     let _ = console_log::init_with_level(log::Level::Warn);
-    if !page::has_window() {
+    // A worker has no window.
+    if web_sys::window().is_none() {
         return worker::listen();
     }
     if let Err(error) = open(Address::read()) {

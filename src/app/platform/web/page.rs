@@ -62,11 +62,6 @@ impl Address {
     }
 }
 
-/// Returns `true` on a page, and `false` in a worker.
-pub(crate) fn has_window() -> bool {
-    web_sys::window().is_some()
-}
-
 /// Returns the language that the browser prefers, such as `zh-CN`.
 pub(crate) fn language() -> Option<String> {
     web_sys::window()?.navigator().language()
