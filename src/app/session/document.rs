@@ -12,8 +12,6 @@ pub(crate) struct Document {
     pub original: Scene,
     /// Loads of the scene as last opened: saving does not change the scales of arrows and sliders, which follow from them.
     pub opened: OpeningLoads,
-    /// `true` if the scene comes from a file: it is neither built in nor read from a stream.
-    has_file: bool,
     /// Folder that the path of the scene's mesh file is relative to: that of the file which was opened. Saving elsewhere
     /// does not change the path in the scene.
     mesh_folder: Option<PathBuf>,
@@ -70,9 +68,9 @@ impl Document {
 
     /// Creates the document of a file that had this content when it was last read or written.
     pub(crate) fn with_text(source: Source, original: Scene, text: Option<Arc<str>>) -> Self {
-        let has_file = source.built_in().is_none() && !source.is_stream();
-        let mesh_folder = folder(&source.name).filter(|_| has_file);
-        Self { source, opened: OpeningLoads::of(&original), original, has_file, mesh_folder, text }
+        let mut document = Self { source, opened: OpeningLoads::of(&original), original, mesh_folder: None, text };
+        document.mesh_folder = document.path().and_then(folder);
+        document
     }
 
     /// Returns the current content of the file; `None` if it cannot be read.
@@ -101,7 +99,8 @@ impl Document {
 
     /// Returns the path of the scene's file; `None` for a built-in scene, and for one read from a stream.
     pub(crate) fn path(&self) -> Option<&Path> {
-        self.has_file.then_some(self.source.name.as_path())
+        let has_file = self.source.built_in().is_none() && !self.source.is_stream();
+        has_file.then_some(self.source.name.as_path())
     }
 
     /// Returns `true` if the file has been changed on disk since it was read or saved here.
