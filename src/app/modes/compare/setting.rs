@@ -140,22 +140,16 @@ impl FromStr for PaneSetting {
             let element = ELEMENTS.iter().find(|entry| entry.id == part).map(|entry| entry.kind);
             let cells = part.split_once(['x', 'X', '×']).and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
             let iterations = part.parse().ok().filter(|&n| n > 0);
-            let own = Self { method, element, cells, iterations, integrator: None };
-            let given =
-                |of: &Self| [of.method.is_some(), of.element.is_some(), of.cells.is_some(), of.iterations.is_some()];
-            if given(&own).iter().zip(given(&setting)).any(|(now, before)| *now && before) {
+            let is_second = match (method, element, cells, iterations) {
+                (Some(method), ..) => setting.method.replace(method).is_some(),
+                (_, Some(element), ..) => setting.element.replace(element).is_some(),
+                (_, _, Some(cells), _) => setting.cells.replace(cells).is_some(),
+                (.., Some(iterations)) => setting.iterations.replace(iterations).is_some(),
+                _ => return Err(PaneSettingError::Unknown { part: part.to_owned() }),
+            };
+            if is_second {
                 return Err(PaneSettingError::Twice { part: part.to_owned() });
             }
-            if own == Self::default() {
-                return Err(PaneSettingError::Unknown { part: part.to_owned() });
-            }
-            setting = Self {
-                method: method.or(setting.method),
-                element: element.or(setting.element),
-                cells: cells.or(setting.cells),
-                iterations: iterations.or(setting.iterations),
-                integrator: None,
-            };
         }
         Ok(setting)
     }

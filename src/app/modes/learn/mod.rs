@@ -141,13 +141,6 @@ impl Learn {
         self.card().content == CardDisplay::Elements && self.errors.is_pending(scene)
     }
 
-    /// Requests the results that the card shows.
-    fn request(&mut self, scene: &Scene, ctx: &Context) {
-        if self.card().content == CardDisplay::Elements && self.errors.request(scene) {
-            ctx.request_repaint_after(POLL);
-        }
-    }
-
     /// Computes the results that the card shows, and waits for them.
     pub(crate) fn wait(&mut self, scene: &Scene) {
         if self.card().content == CardDisplay::Elements {
@@ -207,7 +200,9 @@ impl Learn {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Readout<'_>, keys: bool, actions: &mut Vec<Action>) {
-        self.request(shown.scene, ui.ctx());
+        if self.card().content == CardDisplay::Elements && self.errors.request(shown.scene) {
+            ui.ctx().request_repaint_after(POLL);
+        }
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
