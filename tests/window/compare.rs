@@ -20,11 +20,11 @@ fn set(ui: &mut Ui, id: &str, assignment: &str) {
 }
 
 fn are_judged(lab: &Lab) -> bool {
-    let has_failed = |pane: &Pane| pane.end().is_some_and(|end| !end.status.is_success());
+    let has_failed = |pane: &Pane| pane.run.end.as_ref().is_some_and(|end| !end.status.is_success());
     let judged = |pane: &Pane| pane.error_percent.is_some() && pane.seconds().is_some() || has_failed(pane);
     let mut panes = lab.panes().iter();
     // The error of a live reference comes before that of the reference.
-    !lab.panes().is_empty() && !lab.is_computing() && panes.all(|pane| pane.end().is_some() && judged(pane))
+    !lab.panes().is_empty() && !lab.is_computing() && panes.all(|pane| pane.run.end.is_some() && judged(pane))
 }
 
 fn compared(id: &str, panes: &str) -> Ui {
@@ -73,7 +73,7 @@ fn presets_make_panes_with_the_results_of_independent_solves() {
     // Panes follow the panel in all settings except their own.
     set(&mut ui, "article", "solver.method=\"newton\"");
     wait_for_panes(&mut ui);
-    assert!(ui.state().panes().iter().all(|p| p.scene().unwrap().solver.method == MethodKind::Newton));
+    assert!(ui.state().panes().iter().all(|p| p.run.wanted.as_ref().unwrap().solver.method == MethodKind::Newton));
     panes_agree_with_solves(&ui);
     ui.click_for("Close pane 2", 2);
     assert!(ui.state().panes().len() == 2 && ui.query_by_label("Close pane 1").is_none());
@@ -86,10 +86,10 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
     let lab = ui.state();
     let is_exact = |lab: &Lab, number: usize| {
         let alone = panes_agree_with_solves_of(lab, number).solution().probes[0].u;
-        assert!((lab.panes()[number].end().unwrap().probes[0].u - alone).norm() < 1e-12);
+        assert!((lab.panes()[number].run.end.as_ref().unwrap().probes[0].u - alone).norm() < 1e-12);
     };
     [0, 2].into_iter().for_each(|number| is_exact(lab, number));
-    let stopped = lab.panes()[1].end().unwrap();
+    let stopped = lab.panes()[1].run.end.as_ref().unwrap();
     assert_eq!((&stopped.status, stopped.iterations), (&Status::Running, 4));
     // If the load changes during a solve, the result is that of the last load, and no result of one load is judged by the
     // reference solution of another: that would be an error of some 20 %. The reference that follows the load is up to 0.1 % off.
@@ -104,14 +104,14 @@ fn large_panes_and_stopped_ones_agree_with_solves_too() {
         }
     }
     wait_for_panes(&mut ui);
-    assert!(ui.state().panes().iter().all(|pane| force(pane.scene().unwrap()) == [0.0, -1500.0]));
+    assert!(ui.state().panes().iter().all(|pane| force(pane.run.wanted.as_ref().unwrap()) == [0.0, -1500.0]));
     is_exact(ui.state(), 0);
 }
 
 fn panes_agree_with_solves_of(lab: &Lab, number: usize) -> Simulation {
     let pane = &lab.panes()[number];
     let alone = ended(&pane.setting.apply(lab.scene()));
-    let end = pane.end().unwrap();
+    let end = pane.run.end.as_ref().unwrap();
     assert_eq!((&end.status, end.iterations), (alone.status(), alone.iterations()), "{}", pane.setting);
     alone
 }

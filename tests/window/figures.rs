@@ -20,7 +20,7 @@ fn a_wrong_displacement_of_the_right_length_has_an_error() {
     let compared = |lab: &mut Lab| lab.show_comparison(&parse_panes("linear,newton").unwrap());
     let ui = open_with(SIZE, "scene", cantilever.clone(), &compared);
     let pane = &ui.state().panes()[0];
-    let linear = pane.end().unwrap().probes[0].u;
+    let linear = pane.run.end.as_ref().unwrap().probes[0].u;
     assert!((linear.norm() - exact.norm()).abs() < 1e-3 * exact.norm(), "{linear} {exact}");
     let error = 100.0 * (linear - exact).norm() / exact.norm();
     assert!(error > 12.0 && (pane.error_percent.unwrap() - error).abs() < 1e-6, "{:?}", pane.error_percent);

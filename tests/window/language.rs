@@ -415,7 +415,7 @@ fn comparing_is_in_chinese() {
     let mut ui = settled("article", SIZE);
     ui.state_mut().show_comparison(&parse_panes("linear,warped,newton:t6:10x2,auto").unwrap());
     ui.run();
-    wait(&mut ui, "the panes", |lab| lab.panes().iter().all(|pane| pane.end().is_some()));
+    wait(&mut ui, "the panes", |lab| lab.panes().iter().all(|pane| pane.run.end.is_some()));
     assert_tips_are_chinese(&mut ui, "Compare");
     for what in ["method", "element", "mesh"] {
         entries_are_chinese(&mut ui, &format!("{} {}", zh("Pane %{n}").replace("%{n}", "1"), zh(what)));

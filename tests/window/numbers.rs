@@ -180,7 +180,7 @@ fn panes_have_the_numbers_of_solve() {
         let shown = Shown::in_view(&ui);
         let bar = ui.state().desk.session.timed_from_rest().map(|solve| solve.timings.total().as_secs_f64());
         for (number, pane) in ui.state().panes().iter().enumerate() {
-            let json = solve(pane.scene().unwrap());
+            let json = solve(pane.run.wanted.as_ref().unwrap());
             let setting = pane.setting.of(ui.scene());
             let what = format!("{id} at {factor}, {setting}");
             let header = shown.starting_with(&format!("Pane {}: ", number + 1)).unwrap();
@@ -192,7 +192,7 @@ fn panes_have_the_numbers_of_solve() {
             let probe = &json["probes"][0];
             let error = probe["error_percent"].as_f64().map(percent).unwrap();
             // A pane with the panel's settings has the time of the status bar.
-            let is_panels = pane.scene() == Some(ui.scene());
+            let is_panels = pane.run.wanted.as_ref() == Some(ui.scene());
             let seconds = bar.filter(|_| is_panels).unwrap_or_else(|| pane.seconds().unwrap());
             let time = engineering(two_digits(seconds), "s");
             let iterations = count(json["iterations"].as_u64().unwrap(), "iteration");

@@ -79,7 +79,11 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
 fn is_default(lab: &Lab) {
     assert_eq!((lab.story(), lab.scene()), (None, &scene(DEFAULT)));
-    assert!(lab.simulation().status().is_success() && !lab.desk.session.can_undo() && !lab.desk.session.can_redo());
+    assert!(
+        lab.simulation().status().is_success()
+            && !lab.desk.session.undo.can_undo()
+            && !lab.desk.session.undo.can_redo()
+    );
 }
 
 /// ρ passes 1 and `warped` ends, `newton` converges under larger loads, another element reduces the error.
@@ -178,7 +182,7 @@ fn the_arrow_is_handed_over() {
     ui.drop_at(tip + vec2(0.0, 30.0));
     ui.step();
     let usual = size(&scene(DEFAULT));
-    assert!(size(ui.scene()) > 1.1 * usual && ui.state().desk.session.can_undo(), "{} N", size(ui.scene()));
+    assert!(size(ui.scene()) > 1.1 * usual && ui.state().desk.session.undo.can_undo(), "{} N", size(ui.scene()));
 }
 
 #[test]

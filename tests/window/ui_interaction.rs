@@ -262,7 +262,7 @@ fn a_scene_opened_while_another_is_paused_is_solved() {
 #[test]
 fn edits_are_undone_and_redone() {
     let mut ui = open("cantilever");
-    let steps = |ui: &Ui| [ui.state().desk.session.can_undo(), ui.state().desk.session.can_redo()];
+    let steps = |ui: &Ui| [ui.state().desk.session.undo.can_undo(), ui.state().desk.session.undo.can_redo()];
     let values = |ui: &Ui| (ui.force(), ui.scene().material.poisson);
     let (start, before) = (ui.scene().clone(), values(&ui));
     assert_eq!(steps(&ui), [false, false]);
@@ -552,7 +552,7 @@ fn files_are_dropped_opened_saved_and_offered_again() {
     std::fs::write(&path, own.to_toml().unwrap()).unwrap();
     let mut ui = open("article");
     ui.drop_file(&path);
-    assert_eq!((&*ui.scene().name, ui.state().desk.session.can_undo()), ("Mine", true));
+    assert_eq!((&*ui.scene().name, ui.state().desk.session.undo.can_undo()), ("Mine", true));
     ui.drag(ui.tip(), ui.tip() + vec2(-6.0, -6.0));
     let edited = ui.scene().clone();
     assert!(ui.state().title().starts_with("Mine*"));
@@ -763,7 +763,7 @@ fn loads_and_supports_are_added_and_removed() {
     unfold(&mut ui, "Add");
     ui.push("Remove load 2");
     assert_eq!((ui.force(), ui.scene().loads.len()), (first, 1));
-    while ui.state().desk.session.can_undo() {
+    while ui.state().desk.session.undo.can_undo() {
         ui.undo();
     }
     assert_eq!(*ui.scene(), before);

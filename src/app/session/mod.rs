@@ -24,7 +24,7 @@ use crate::app::session::facts::{Facts, Follower, Live, ShownFacts, first_probe}
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
-use crate::app::task::solve::{Equations, MAX_UNKNOWNS, Model, Quality, note_residual, solve_linear};
+use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::assembly::SystemError;
 use crate::mesh::MaterialPoint;
@@ -90,9 +90,9 @@ pub(crate) struct Grab {
 pub struct Session {
     /// Document, and the requested scene, which differs from the simulation's only while a background solve is in progress.
     present: Version,
-    undo: UndoHistory,
+    pub undo: UndoHistory,
     /// Displayed model; a copy of it while it is solved in the background.
-    model: Model,
+    pub(crate) model: Model,
     /// Number of unknowns above which a model is meshed and solved in the background.
     pub most_unknowns: u64,
     background: Background,
@@ -193,11 +193,6 @@ impl Session {
         &self.model.geometry
     }
 
-    /// Returns the equations of the displayed body, for bodies on the same mesh.
-    pub(crate) fn equations(&self) -> Equations {
-        self.model.equations()
-    }
-
     pub(crate) fn quality(&self) -> &Quality {
         &self.model.quality
     }
@@ -254,19 +249,6 @@ impl Session {
 
     pub(crate) fn timings(&self) -> &Timings {
         &self.timings
-    }
-
-    /// Returns the residual after every iteration since the last change.
-    pub(crate) fn residuals(&self) -> &[f64] {
-        &self.model.residuals
-    }
-
-    pub fn can_undo(&self) -> bool {
-        self.undo.can_undo()
-    }
-
-    pub fn can_redo(&self) -> bool {
-        self.undo.can_redo()
     }
 
     /// Returns `true` if the scene is a motion.
@@ -475,11 +457,6 @@ impl Session {
         self.facts.curve.clear();
         self.live = Follower::default();
         self.is_slow = false;
-    }
-
-    /// Forgets the steps of the undo history.
-    pub(crate) fn forget_steps(&mut self) {
-        self.undo = UndoHistory::default();
     }
 
     /// Makes the current scene the unedited scene of a document; the undo history is cleared.

@@ -11,7 +11,7 @@ use crate::simulation::{ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.
 #[derive(Debug, Default)]
-pub(crate) struct Run {
+pub struct Run {
     /// Number of iterations after which a solve is stopped.
     most_iterations: Option<u32>,
     /// Requested scene; `None` before the first [`Self::turn_to`].

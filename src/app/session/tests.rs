@@ -62,7 +62,7 @@ fn edits_change_the_solution_and_are_undone_and_redone() {
     session.apply(Edit::Undo).unwrap();
     session.solve(ShownFacts::default());
     assert!((tip(&session) - first).abs() < 1e-6 * first.abs() && !session.is_edited());
-    assert!(!session.can_undo() && session.can_redo());
+    assert!(!session.undo.can_undo() && session.undo.can_redo());
     session.apply(Edit::Redo).unwrap();
     session.solve(ShownFacts::default());
     assert!((tip(&session) - second).abs() < 1e-6 * second.abs());
@@ -75,10 +75,10 @@ fn a_refused_edit_leaves_the_session_unchanged() {
     let (scene, first) = (session.scene().clone(), tip(&session));
     session.take_changed();
     assert!(session.apply(edited(&session, "Poisson ν", |scene| scene.material.poisson = 0.9)).is_err());
-    assert!(*session.scene() == scene && tip(&session) == first && !session.can_undo());
+    assert!(*session.scene() == scene && tip(&session) == first && !session.undo.can_undo());
     assert_eq!(session.take_changed(), Changed::default());
     assert!(session.apply(Edit::Open(source("nowhere.toml"))).is_err());
-    assert!(*session.scene() == scene && !session.can_undo());
+    assert!(*session.scene() == scene && !session.undo.can_undo());
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
         let simulation = session.simulation();
         let certificate = simulation.equilibrium().unwrap().certificate();
         let solve = (simulation.status().clone(), simulation.iterations(), *simulation.timings());
-        (solve, certificate, session.residuals().to_vec(), simulation.displacement().to_vec())
+        (solve, certificate, session.model.residuals.to_vec(), simulation.displacement().to_vec())
     };
     let before = numbers(&session);
     assert!(before.1.is_some());
@@ -256,7 +256,7 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
             session.apply(Edit::Undo).unwrap();
             check(&mut session);
         }
-        assert!(*session.scene() == scene && session.is_edited() && !session.can_undo());
+        assert!(*session.scene() == scene && session.is_edited() && !session.undo.can_undo());
         for force in [-200.0, -300.0] {
             session.apply(Edit::Redo).unwrap();
             check(&mut session);

@@ -30,7 +30,7 @@ pub(crate) struct Press {
 
 /// Steps that can be undone and redone.
 #[derive(Debug, Default)]
-pub(crate) struct UndoHistory {
+pub struct UndoHistory {
     past: VecDeque<Version>,
     future: Vec<Version>,
     /// Label of the control edited during the current press: further edits with it belong to the same step.
@@ -113,11 +113,13 @@ impl UndoHistory {
         self.past.truncate(depth);
     }
 
-    pub(crate) fn can_undo(&self) -> bool {
+    /// Returns `true` if there is an edit to undo.
+    pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    pub(crate) fn can_redo(&self) -> bool {
+    /// Returns `true` if there is an undone edit to redo.
+    pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }
 }

@@ -63,8 +63,8 @@ impl Lab {
             Action::Reload => self.open(ctx, self.desk.session.document().source.clone()),
             Action::Save => self.save_here(ctx),
             Action::SaveAs => self.ask_where_to_save(ctx),
-            Action::Undo if self.desk.session.can_undo() => self.undo(ctx, Edit::Undo),
-            Action::Redo if self.desk.session.can_redo() => self.undo(ctx, Edit::Redo),
+            Action::Undo if self.desk.session.undo.can_undo() => self.undo(ctx, Edit::Undo),
+            Action::Redo if self.desk.session.undo.can_redo() => self.undo(ctx, Edit::Redo),
             Action::Undo | Action::Redo => {}
             Action::Escape if self.desk.view.help => self.desk.view.help = false,
             Action::Escape if self.desk.view.why => self.desk.view.why = false,

@@ -6,6 +6,7 @@ use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
+use crate::app::session::undo::UndoHistory;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
 use crate::app::shell::lab::{Lab, Question, Request};
 
@@ -263,7 +264,7 @@ impl Lab {
         }
         if restore && !loses {
             // An undo would go from the restored work, whose copy is removed, to a scene without edits.
-            self.desk.session.forget_steps();
+            self.desk.session.undo = UndoHistory::default();
         }
         self.left = None;
         self.requests.push(Request::DiscardCopy);

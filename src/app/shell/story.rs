@@ -84,7 +84,7 @@ impl Lab {
     /// scene or another one would be lost.
     pub fn tell_story(&mut self) {
         let Some((source, scene)) = built_in(registry::DEFAULT) else { return };
-        let is_lost = self.aside.is_none() && (*self.scene() != scene || self.desk.session.can_undo());
+        let is_lost = self.aside.is_none() && (*self.scene() != scene || self.desk.session.undo.can_undo());
         if self.story.is_some() || is_lost {
             return;
         }

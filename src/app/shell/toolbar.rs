@@ -84,8 +84,8 @@ fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>
         run,
         (Icon::Step, "Step", step, !(moves && ended), Action::Step),
         (Icon::Reset, "Reset", reset, true, Action::Reset),
-        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.session.can_undo(), Action::Undo),
-        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.session.can_redo(), Action::Redo),
+        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.session.undo.can_undo(), Action::Undo),
+        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.session.undo.can_redo(), Action::Redo),
     ] {
         let word = (wide && matches!(icon, Icon::Play | Icon::Pause | Icon::Step)).then_some(tr(name));
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), word, false));

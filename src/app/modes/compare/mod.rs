@@ -159,7 +159,7 @@ impl Compare {
         if !self.in_motion && !self.goes_on() {
             self.reset();
         }
-        let time_step = self.panes.iter().find_map(|pane| Some(pane.scene()?.dynamics.time_step));
+        let time_step = self.panes.iter().find_map(|pane| Some(pane.run.wanted.as_ref()?.dynamics.time_step));
         self.played += time_step.unwrap_or_default() / self.clock.speed;
         self.runs().for_each(Run::step);
     }
@@ -174,7 +174,7 @@ impl Compare {
 
     /// Returns the existing equations that the panes can share: those of the body in Explore, and their own.
     fn equations(&self, session: &Session) -> Vec<Equations> {
-        std::iter::once(session.equations()).chain(self.panes.iter().filter_map(Pane::equations)).collect()
+        std::iter::once(session.model.equations()).chain(self.panes.iter().filter_map(Pane::equations)).collect()
     }
 
     /// Solves all panes, and waits for them; `times` them, too.
@@ -461,7 +461,7 @@ impl Compare {
         /// Largest size of the box with the solution of linear theory, which may be so large that the other bodies would be
         /// shown too small, relative to the box without it.
         const LARGEST: f64 = 1.5;
-        let is_linear = |pane: &Pane| pane.scene().is_some_and(|s| s.solver.method == MethodKind::Linear);
+        let is_linear = |pane: &Pane| pane.run.wanted.as_ref().is_some_and(|s| s.solver.method == MethodKind::Linear);
         let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
             self.panes.iter().filter(|pane| pane.run.is_sound()).partition(|pane| is_linear(pane));
         let bounds = exact.iter().flatten().fold(rest, grow);
@@ -493,7 +493,7 @@ impl Compare {
     /// their labels.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
-        let forces = self.panes.first().and_then(|pane| pane.forces(pane.scene()?, 0.0, input));
+        let forces = self.panes.first().and_then(|pane| pane.forces(pane.run.wanted.as_ref()?, 0.0, input));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
             arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector))).fold(0.0, f64::max)

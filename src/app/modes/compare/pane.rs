@@ -9,7 +9,7 @@ use crate::app::interface::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
-use crate::app::session::run::{Condition, PaneEnd, Run};
+use crate::app::session::run::{Condition, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::ForceArrows;
@@ -26,7 +26,8 @@ use crate::exact_beam::error_percent;
 pub struct Pane {
     /// Settings of the pane.
     pub setting: PaneSetting,
-    pub(super) run: Run,
+    /// Run of the scene with these settings.
+    pub run: Run,
     /// Error of the result at the first probe, percent of the reference displacement, as of the last
     /// [`crate::app::Lab::ui`].
     pub error_percent: Option<f64>,
@@ -53,18 +54,6 @@ impl Pane {
         Self { setting, run: Run::new(setting.iterations), ..Self::default() }
     }
 
-    /// Returns the scene with these settings, after the pane was first shown.
-    #[must_use]
-    pub fn scene(&self) -> Option<&Scene> {
-        self.run.wanted.as_ref()
-    }
-
-    /// Returns the result of the solve from rest; `None` until it has ended.
-    #[must_use]
-    pub fn end(&self) -> Option<&PaneEnd> {
-        self.run.end.as_ref()
-    }
-
     /// Returns the computing time of the solve from rest, or of a motion's frame at 60 Hz, s; `None` until it has been
     /// measured.
     #[must_use]
@@ -75,10 +64,10 @@ impl Pane {
     /// Returns the scene whose solve, which ends after the setting's number of iterations, or whose motion is timed; `None`
     /// while there is no result.
     fn timed_scene(&self) -> Option<Scene> {
-        let mut scene = self.scene()?.clone();
+        let mut scene = self.run.wanted.clone()?;
         scene.solver.accept_after = self.setting.iterations.unwrap_or(scene.solver.accept_after);
         let is_motion = scene.analysis == Analysis::Dynamic;
-        (if is_motion { self.run.is_sound() } else { self.end().is_some() }).then_some(scene)
+        (if is_motion { self.run.is_sound() } else { self.run.end.is_some() }).then_some(scene)
     }
 
     /// Returns the time of the solve from rest to show, s: that of the status bar for the panel's settings.

@@ -10,7 +10,7 @@ pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>)
     ui.horizontal_wrapped(|ui| {
         let ended = *shown.simulation.status() != Status::Running;
         step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
-        if let Some(ratio) = last_ratio(shown.session.residuals()) {
+        if let Some(ratio) = last_ratio(&shown.session.model.residuals) {
             let text = fill!("last step: residual × %{ratio}", ratio = rho_number(ratio));
             ui.add(Label::new(text).extend());
         }
@@ -62,7 +62,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
     let asked = shown.scene.solver.tolerance.max(1e-300).log10();
-    let residuals = shown.session.residuals();
+    let residuals = &shown.session.model.residuals;
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
     let most = residuals.len().max(MIN_ITERATIONS) as f64;
