@@ -79,11 +79,8 @@ fn five_short_captions_are_shown_in_twenty_seconds() {
 /// Asserts that a lab has the default scene in equilibrium, without a trace of the story.
 fn is_default(lab: &Lab) {
     assert_eq!((lab.story(), lab.scene()), (None, &scene(DEFAULT)));
-    assert!(
-        lab.simulation().status().is_success()
-            && !lab.desk.session.undo.can_undo()
-            && !lab.desk.session.undo.can_redo()
-    );
+    let undo = &lab.desk.session.undo;
+    assert!(lab.simulation().status().is_success() && !undo.can_undo() && !undo.can_redo());
 }
 
 /// ρ passes 1 and `warped` ends, `newton` converges under larger loads, another element reduces the error.
@@ -108,18 +105,16 @@ fn the_numbers_of_the_window_tell_the_story() {
         if part == 1 {
             lost.push((!converges, ui.query_by_label_contains(" not reached").is_some()));
         }
-        last[part] =
-            Some((load, [Some(lab.simulation()), lab.desk.session.linear()].map(|body| body.unwrap().area_change())));
+        last[part] = Some((load, [lab.simulation(), lab.desk.session.linear().unwrap()].map(Simulation::area_change)));
         if part == 3 && load == usual {
             errors.push((element, error(ui)));
         }
     });
-    let [first, second, third, ..] = last.map(Option::unwrap);
-    let (warped, linear) = (first.1[0], first.1[1]);
+    let [(first, [warped, linear]), (second, _), (third, _), ..] = last.map(Option::unwrap);
     assert!(warped.abs() < 1e-3 && linear > 0.4, "changes of the area: {warped} and {linear}");
     assert!(lost.contains(&(false, false)) && lost.ends_with(&[(true, true)]), "{lost:?}");
     assert!(largest > 1.0, "ρ = {largest}");
-    assert!(third.0 > second.0 && second.0 > first.0);
+    assert!(third > second && second > first);
     let (before, after) = (errors.first().unwrap(), errors.last().unwrap());
     assert_eq!((before.0, after.0), (ElementKind::T3, ElementKind::T6));
     assert!(before.1 > 5.0 * after.1, "{errors:?}");

@@ -13,6 +13,7 @@ use std::io::ErrorKind;
 use std::rc::Rc;
 
 use egui::ViewportId;
+use egui_wgpu::ScreenDescriptor;
 use thiserror::Error;
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
@@ -246,7 +247,7 @@ impl App {
         open.bare.input.handle_platform_output_with_event_loop(&open.bare.window, event_loop, platform);
         let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         open.graphics.stage.set_textures(&open.graphics.gpu, &mut output.textures_delta);
-        let screen = open.graphics.screen(output.pixels_per_point);
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point: output.pixels_per_point };
         let views = self.lab.views(screen.pixels_per_point);
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);

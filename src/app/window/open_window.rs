@@ -92,10 +92,6 @@ impl Graphics {
         picture.write_png(file.path()).map_err(|error| RenderError::from(error).to_string())?;
         Ok(file.path().to_owned())
     }
-
-    pub(super) fn screen(&self, pixels_per_point: f32) -> ScreenDescriptor {
-        ScreenDescriptor { size_in_pixels: [self.configuration.width, self.configuration.height], pixels_per_point }
-    }
 }
 
 impl BareWindow {
