@@ -96,7 +96,7 @@ impl Session {
             self.background.before = Some(Box::new(Before {
                 since: Instant::now(),
                 version: self.present.clone(),
-                depth: self.undo.depth(),
+                depth: self.undo.past.len(),
                 label: None,
                 is_another_document: false,
                 model: None,

@@ -241,20 +241,12 @@ pub(crate) struct Follower {
     /// Key of the scene that was solved last, or is being solved.
     asked: Option<Scene>,
     solutions: Option<Box<LiveReference>>,
-    running: Option<LiveTask>,
-    known: Option<Box<Live>>,
+    pub running: Option<LiveTask>,
+    /// Last reference; `None` if the last load has none that is found soon.
+    pub known: Option<Box<Live>>,
 }
 
 impl Follower {
-    /// Returns the last reference; `None` if the last load has none that is found soon.
-    pub(crate) fn known(&self) -> Option<&Live> {
-        self.known.as_deref()
-    }
-
-    pub(crate) fn is_running(&self) -> bool {
-        self.running.is_some()
-    }
-
     /// Takes the reference that has been found; returns `true` while one is pending.
     pub(crate) fn poll(&mut self) -> bool {
         let Some(task) = &self.running else { return false };

@@ -158,7 +158,6 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{IntegratorKind, Scene};
 
     /// Returns a record of `steps` steps of 1 s that is limited to the memory of `most` moments, and the bytes of one
     /// moment.

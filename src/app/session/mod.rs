@@ -53,17 +53,15 @@ pub(crate) enum Edit {
     Redo,
 }
 
-/// Parts of the session that have changed since the last [`Session::take_changed`].
+/// Parts of the session that have changed since the window was last updated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Changed {
     pub scene: bool,
     /// `true` if the mesh has changed.
     pub mesh: bool,
-    /// `true` if the mesh or the kind of analysis has changed.
-    pub body: bool,
     /// `true` if the scene comes from another document.
     pub document: bool,
-    /// `true` if an exploded motion has started again.
+    /// `true` if the mesh or the kind of analysis has changed, or an exploded motion has started again.
     pub restart: bool,
 }
 
@@ -117,7 +115,7 @@ pub struct Session {
     timings: Timings,
     pub(crate) playback: Playback,
     /// Certification of a copy of the displayed body.
-    certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
+    pub(crate) certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Bodies drawn in place of a search that has found no equilibrium.
     fallback: Fallback,
     /// Equilibrium before the body was grabbed, which its release restores, and the time of its iterations.
@@ -127,8 +125,8 @@ pub struct Session {
     /// Body that is solved from rest to measure the time of a dragged load, and the last such solve with its scene.
     timed: Option<(Simulation, SolveFromRest)>,
     /// `true` if the scene's file has changed on disk since it was read or saved.
-    is_outdated: bool,
-    changed: Changed,
+    pub(crate) is_outdated: bool,
+    pub(crate) changed: Changed,
     pub(crate) notices: Vec<Notice>,
 }
 
@@ -223,7 +221,8 @@ impl Session {
         let has_error = |reference: &Reference| reference.first().is_some();
         let is_wanted = self.reference().is_none() && self.facts.reference.latest().is_some_and(has_error);
         self.live
-            .known()
+            .known
+            .as_deref()
             .filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.present.scene))
     }
 
@@ -298,11 +297,6 @@ impl Session {
     /// found none.
     pub(crate) fn drawn(&self) -> &Simulation {
         self.fallback().unwrap_or(&self.model.simulation)
-    }
-
-    /// Returns the parts that have changed since the last call.
-    pub(crate) fn take_changed(&mut self) -> Changed {
-        std::mem::take(&mut self.changed)
     }
 
     /// Records the presses of the pointer: edits during one press are one undo step.
@@ -419,7 +413,7 @@ impl Session {
         let is_another_mesh = !has_mesh_of(scene, before);
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
-        self.changed.body |= is_another_body;
+        self.changed.restart |= is_another_body;
         self.playback.change_scene(&self.model.simulation, is_another_body);
         self.facts.turn_to(scene);
         // A time step with other settings takes another time.
@@ -485,11 +479,6 @@ impl Session {
     /// Checks whether the scene's file has changed on disk.
     pub(crate) fn check_file(&mut self) {
         self.is_outdated = self.present.document.has_changed();
-    }
-
-    /// Returns `true` if the scene's file has changed on disk since it was read or saved.
-    pub(crate) fn is_outdated(&self) -> bool {
-        self.is_outdated
     }
 
     /// Keeps the scene although its file has changed on disk, and stops reporting that change.
@@ -701,11 +690,6 @@ impl Session {
         self.certifying.is_some()
     }
 
-    /// Returns `true` while the result is certified in the background.
-    pub(crate) fn is_certifying(&self) -> bool {
-        self.certifying.is_some()
-    }
-
     /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
     /// press only those that a frame has time for are requested, and the reference that follows the load.
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
@@ -743,7 +727,7 @@ impl Session {
 
     /// Returns `true` while the reference that follows the load is being computed.
     pub fn is_following(&self) -> bool {
-        self.live.is_running()
+        self.live.running.is_some()
     }
 
     /// Measures the time of a solve from rest, if it was short at the last rest; if that failed, if the last search was.

@@ -356,10 +356,7 @@ impl Run {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::scene::{IntegratorKind, MethodKind};
 
     /// Returns a cantilever with a downward tip force, N, solved by `method`.
     fn scene(method: MethodKind, cells: [u32; 2], force: f64) -> Scene {

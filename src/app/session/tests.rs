@@ -3,7 +3,6 @@
 use std::fs;
 
 use super::*;
-use crate::app::prelude::*;
 use crate::scene::LoadId;
 
 fn cantilever(force: f64) -> Scene {
@@ -73,10 +72,10 @@ fn a_refused_edit_leaves_the_session_unchanged() {
     let mut session = session(cantilever(-100.0));
     session.solve(ShownFacts::default());
     let (scene, first) = (session.scene().clone(), tip(&session));
-    session.take_changed();
+    session.changed = Changed::default();
     assert!(session.apply(edited(&session, "Poisson ν", |scene| scene.material.poisson = 0.9)).is_err());
     assert!(*session.scene() == scene && tip(&session) == first && !session.undo.can_undo());
-    assert_eq!(session.take_changed(), Changed::default());
+    assert_eq!(std::mem::take(&mut session.changed), Changed::default());
     assert!(session.apply(Edit::Open(source("nowhere.toml"))).is_err());
     assert!(*session.scene() == scene && !session.undo.can_undo());
 }
@@ -95,9 +94,9 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
     // A new mesh of a large model is made in the background, too.
     let second = tip(&session);
     let finer = Edit::Scene("Cells along", Box::new(session.scene().clone().with_cells(64, 16)));
-    session.take_changed();
+    session.changed = Changed::default();
     session.apply(finer.clone()).unwrap();
-    assert!(session.is_working() && !session.take_changed().mesh, "the display keeps the last model");
+    assert!(session.is_working() && !std::mem::take(&mut session.changed).mesh, "the display keeps the last model");
     session.cancel();
     wait(&mut session);
     assert_eq!(session.scene().beam.as_ref().unwrap().cells, [8, 2]);
@@ -107,7 +106,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
     assert!((tip(&session) - first).abs() < 1e-6 * first.abs(), "the cancelled edit is no step");
     session.apply(finer).unwrap();
     wait(&mut session);
-    assert!(session.take_changed().mesh && session.simulation().system().mesh().element_count() == 2 * 64 * 16);
+    assert!(session.changed.mesh && session.simulation().system().mesh().element_count() == 2 * 64 * 16);
 }
 
 #[test]
@@ -244,13 +243,13 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
         session.apply(edited(&session, label, change)).unwrap();
     }
     session.apply(Edit::Undo).unwrap();
-    session.take_changed();
+    session.changed = Changed::default();
     let saved = session.scene().clone();
     for name in ["first.toml", "second.toml"] {
         session.save(&path(name)).unwrap();
         let check = |session: &mut Session| {
             assert_eq!(session.document().path(), Some(path(name).as_path()));
-            assert!(!session.take_changed().document);
+            assert!(!std::mem::take(&mut session.changed).document);
         };
         for _ in 0..2 {
             session.apply(Edit::Undo).unwrap();
@@ -300,7 +299,7 @@ fn restored_edits_know_what_their_file_contained() {
         let mut next = session(cantilever(-1.0));
         next.apply(Edit::Restore(Box::new(left))).unwrap();
         assert!(next.scene() == crashed.scene() && next.is_edited());
-        assert_eq!((next.is_outdated(), next.document().has_changed()), (is_changed, is_changed));
+        assert_eq!((next.is_outdated, next.document().has_changed()), (is_changed, is_changed));
         recovery.discard_left(None).unwrap();
     }
 }
@@ -362,7 +361,7 @@ fn a_large_document_that_becomes_small_starts_over() {
     let large = large(6);
     let document = Document::new(source("large"), large.clone());
     session.apply(Edit::Restore(Box::new(Version { document, scene: large }))).unwrap();
-    assert!(session.is_working() && !session.take_changed().document);
+    assert!(session.is_working() && !std::mem::take(&mut session.changed).document);
     let small = Edit::Scene("Cells along", Box::new(cantilever(-1000.0)));
     assert!(session.apply(small).unwrap().document && !session.is_working());
     assert!(session.iterates() && tip(&session) == 0.0, "it starts from rest");
@@ -402,7 +401,7 @@ fn a_large_body_without_an_equilibrium_comes_to_rest() {
     assert!(is_lost(session.simulation()), "{:?}", session.simulation().status());
     let begun = Instant::now();
     session.request_facts(ShownFacts::default(), false);
-    while session.is_certifying() {
+    while session.certifying.is_some() {
         assert!(begun.elapsed().as_secs() < 60, "it is certified without end");
         session.request_facts(ShownFacts::default(), false);
         std::thread::yield_now();
@@ -418,9 +417,9 @@ fn a_large_result_is_certified_in_the_background() {
         session.iterate();
     }
     let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
-    assert!(session.request_facts(ShownFacts::default(), false) && session.is_certifying());
+    assert!(session.request_facts(ShownFacts::default(), false) && session.certifying.is_some());
     assert_eq!(certificate(&session), None, "it is not computed between two frames");
-    while session.is_certifying() {
+    while session.certifying.is_some() {
         session.request_facts(ShownFacts::default(), false);
         std::thread::yield_now();
     }
@@ -435,7 +434,7 @@ fn a_large_result_is_certified_in_the_background() {
     }
     session.request_facts(ShownFacts::default(), false);
     session.apply(with_force(&session, -1200.0)).unwrap();
-    while session.iterates() || session.is_certifying() {
+    while session.iterates() || session.certifying.is_some() {
         session.iterate();
         session.request_facts(ShownFacts::default(), false);
     }

@@ -31,7 +31,7 @@ pub(crate) struct Press {
 /// Steps that can be undone and redone.
 #[derive(Debug, Default)]
 pub struct UndoHistory {
-    past: VecDeque<Version>,
+    pub(super) past: VecDeque<Version>,
     future: Vec<Version>,
     /// Label of the control edited during the current press: further edits with it belong to the same step.
     edited: Option<&'static str>,
@@ -102,11 +102,6 @@ impl UndoHistory {
         self.past.iter().rev().find(|version| version.document.source == *source)
     }
 
-    /// Returns the number of steps that can be undone.
-    pub(crate) fn depth(&self) -> usize {
-        self.past.len()
-    }
-
     /// Removes the steps beyond the first `depth`; they cannot be redone.
     pub(crate) fn take_back(&mut self, depth: usize) {
         self.edited = None;
@@ -154,7 +149,7 @@ mod tests {
         let mut edits = UndoHistory::default();
         (0..4).for_each(|force| edits.record(snapshot(f64::from(force)), None));
         edits.take_back(7);
-        assert_eq!(edits.depth(), 4);
+        assert_eq!(edits.past.len(), 4);
         edits.take_back(2);
         assert!(!edits.can_redo());
         assert_eq!(edits.undo(snapshot(2.0)), Some(snapshot(1.0)));

@@ -54,7 +54,7 @@ impl Lab {
     /// Returns the panes that are compared.
     #[must_use]
     pub fn panes(&self) -> &[Pane] {
-        self.desk.compare.panes()
+        &self.desk.compare.panes
     }
 
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
@@ -156,7 +156,7 @@ impl Lab {
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
-        session.is_working() || session.is_certifying() || plots || measures || learns || at_rest
+        session.is_working() || session.certifying.is_some() || plots || measures || learns || at_rest
     }
 
     /// Restores the saved settings.

@@ -14,7 +14,7 @@ impl Lab {
     /// Updates the window after changes of the session.
     pub(super) fn apply_session_changes(&mut self) {
         let Desk { session, viewport, view, panel, compare, measure, .. } = &mut self.desk;
-        let changed = session.take_changed();
+        let changed = std::mem::take(&mut session.changed);
         if changed == Changed::default() {
             return;
         }
@@ -28,7 +28,7 @@ impl Lab {
             viewport.camera.set_body(mesh.bounds().into());
             viewport.probe = None;
         }
-        if changed.body || changed.document || changed.restart {
+        if changed.document || changed.restart {
             viewport.clear_swept();
         }
         if changed.document || compare.in_motion != session.is_motion() {

@@ -124,7 +124,7 @@ impl Lab {
     /// Offers to read the scene's file again if it has changed on disk.
     pub(super) fn offer_changed_file(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let session = &mut self.desk.session;
-        if !session.is_outdated() {
+        if !session.is_outdated {
             return;
         }
         ui.horizontal_wrapped(|ui| {

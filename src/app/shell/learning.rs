@@ -2,7 +2,7 @@
 //! ends.
 
 use crate::app::interface::*;
-use crate::app::modes::learn::Learn;
+use crate::app::modes::learn::{Learn, Setup};
 use crate::app::panel::PanelState;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::{Desk, Lab};
@@ -57,9 +57,9 @@ impl Lab {
         let setup = self.learn.card().setup;
         let Some((source, mut scene)) = built_in("article") else { return };
         setup.edit(&mut scene);
-        let reach = setup.at_reach().and_then(|setup| {
+        let reach = setup.reach.and_then(|force| {
             let mut scene = scene.clone();
-            setup.edit(&mut scene);
+            Setup { force, ..setup }.edit(&mut scene);
             let mut simulation = Simulation::new(&scene).ok()?;
             simulation.solve();
             Some(simulation)

@@ -42,7 +42,7 @@ impl Lab {
     /// Shows warnings and offers in rows under the toolbar, if there are any.
     pub(super) fn show_banners(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let has_warning = self.warnings.len() > self.closed_warnings;
-        if !(has_warning || self.offered().is_some() || self.desk.session.is_outdated()) {
+        if !(has_warning || self.offered().is_some() || self.desk.session.is_outdated) {
             return;
         }
         let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 4));

@@ -63,7 +63,7 @@ type PaneChange = Option<Option<PaneSetting>>;
 pub(crate) struct Compare {
     /// `true` if the panes show motions.
     pub in_motion: bool,
-    panes: Vec<Pane>,
+    pub panes: Vec<Pane>,
     /// Camera of all panes; `None` before the first frame.
     controller: Option<CameraController>,
     /// Factor of the drawn displacement in all panes.
@@ -105,10 +105,6 @@ impl Compare {
             magnification: 1.0,
             ..Self::default()
         }
-    }
-
-    pub(crate) fn panes(&self) -> &[Pane] {
-        &self.panes
     }
 
     fn runs(&mut self) -> impl Iterator<Item = &mut Run> {

@@ -43,8 +43,8 @@ pub(crate) enum CardDisplay {
 #[derive(Clone, Copy)]
 pub(crate) struct Setup {
     /// Method, and force on the article's beam, N.
-    method: MethodKind,
-    force: f64,
+    pub method: MethodKind,
+    pub force: f64,
     pub field: Field,
     /// `true` if the outline of the reference solution is shown, and (`rest`) the outline at rest.
     pub exact: bool,
@@ -52,7 +52,7 @@ pub(crate) struct Setup {
     /// `true` if the card iterates from rest when the user starts it, in slow motion.
     pub waits: bool,
     /// Largest force that the card's slider reaches, N: the view leaves room for its body from the beginning.
-    reach: Option<f64>,
+    pub reach: Option<f64>,
 }
 
 /// Forces on the article's beam, N: with the first the warped iteration converges, with the second it does not.
@@ -79,11 +79,6 @@ impl Setup {
                 *force = [0.0, -self.force];
             }
         }
-    }
-
-    /// Returns the setup with the largest force of the card's slider, if it has one.
-    pub(crate) fn at_reach(self) -> Option<Self> {
-        self.reach.map(|force| Self { force, ..self })
     }
 }
 

@@ -22,7 +22,7 @@ mod matrices;
 mod residuals;
 mod triangle;
 
-pub(crate) use cards::{CARDS, Card};
+pub(crate) use cards::{CARDS, Card, Setup};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
 
 /// Height of the row of cards, points, and its largest fraction of the window's height.
