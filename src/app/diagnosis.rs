@@ -110,6 +110,11 @@ fn notes_on_mesh(simulation: &Simulation) -> Vec<Sentence> {
     simulation.system().seams().iter().cloned().chain(moved).chain(crowded).collect()
 }
 
+/// Returns a strain in words if it is too large for the linear material law.
+pub(crate) fn strain_text(strain: f64) -> Option<String> {
+    strain_warning(strain).map(|_| fill!("nodal strain %{strain}", strain = percent(100.0 * strain)))
+}
+
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
 pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
@@ -121,8 +126,7 @@ pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
         // The status has it too.
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
-    let strain = quality.deformation.max_strain;
-    let strained = strain_warning(strain).map(|_| fill!("nodal strain %{strain}", strain = percent(100.0 * strain)));
+    let strained = strain_text(quality.deformation.max_strain);
     let known = errors.own.zip(input.reference.and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
     let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();

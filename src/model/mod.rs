@@ -283,8 +283,7 @@ impl Scene {
             "name": name, "about": about, "analysis": analysis, "material": material, "support": supports, "load": loads,
             "probe": probes, "section": sections, "solver": solver, "dynamics": dynamics, "start": start,
         }
-        check(&changed)?;
-        self.validate_choices()
+        check(&changed).and_then(|()| self.validate_choices())
     }
 
     /// Checks everything but the kinds and ranges of [`keys::KEYS`].

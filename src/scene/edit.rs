@@ -59,7 +59,12 @@ fn edit_table(table: &mut dyn TableLike, path: &str, before: &Table, after: &Tab
     for key in keys_of(path) {
         let name = name_of(key);
         // Scenes are written without some keys that have their default value.
-        let default = default_of(key);
+        let default = match key.need {
+            Need::Default(text) => {
+                toml::from_str::<Table>(&format!("{name} = {text}")).ok().and_then(|mut t| t.remove(name))
+            }
+            _ => None,
+        };
         let (before, after) = (before.get(name).or(default.as_ref()), after.get(name));
         if before == after.or(default.as_ref()) {
             continue;
@@ -67,7 +72,12 @@ fn edit_table(table: &mut dyn TableLike, path: &str, before: &Table, after: &Tab
         match (table.get_mut(name), after) {
             (Some(item), Some(after)) => edit_item(item, key, before, after),
             (None, Some(after)) => {
-                let mut item = empty_item(key, path);
+                let mut item = match key.kind {
+                    KeyKind::Table if path.is_empty() => Item::Table(toml_edit::Table::new()),
+                    KeyKind::Table => Item::Value(InlineTable::new().into()),
+                    KeyKind::Tables => Item::ArrayOfTables(ArrayOfTables::new()),
+                    _ => Item::Value(false.into()),
+                };
                 edit_item(&mut item, key, None, after);
                 table.insert(name, item);
             }
@@ -77,21 +87,6 @@ fn edit_table(table: &mut dyn TableLike, path: &str, before: &Table, after: &Tab
             },
             (None, None) => {}
         }
-    }
-}
-
-fn default_of(key: &Key) -> Option<Value> {
-    let Need::Default(default) = key.need else { return None };
-    toml::from_str::<Table>(&format!("default = {default}")).ok()?.remove("default")
-}
-
-/// Returns an item of the key's kind without content, for the table at `path`.
-fn empty_item(key: &Key, path: &str) -> Item {
-    match key.kind {
-        KeyKind::Table if path.is_empty() => Item::Table(toml_edit::Table::new()),
-        KeyKind::Table => Item::Value(InlineTable::new().into()),
-        KeyKind::Tables => Item::ArrayOfTables(ArrayOfTables::new()),
-        _ => Item::Value(false.into()),
     }
 }
 

@@ -4,10 +4,8 @@
 use crate::app::prelude::*;
 use crate::app::session::facts::first_probe;
 use crate::app::session::has_mesh_of;
-use crate::app::task::solve::{
-    BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, Quality, SolveRequest,
-};
-use crate::simulation::{ProbeResult, probe_results};
+use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveRequest};
+use crate::simulation::{Deformation, ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.
 #[derive(Debug, Default)]
@@ -39,10 +37,8 @@ pub struct PaneEnd {
     pub iterations: u32,
     /// Results at the probes.
     pub probes: Vec<ProbeResult>,
-    /// `true` if an element is turned inside out.
-    pub is_inside_out: bool,
-    /// Relative change of the body's area.
-    pub area_change: f64,
+    /// Inverted elements, largest strain, and change of the body's area.
+    pub deformation: Deformation,
 }
 
 /// Condition of a displayed state.
@@ -337,8 +333,7 @@ impl Run {
             status: simulation.status().clone(),
             iterations: simulation.iterations(),
             probes: probe_results(simulation.problem(), simulation.state()),
-            is_inside_out: Quality::default().is_inside_out(simulation),
-            area_change: simulation.area_change(),
+            deformation: Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress()),
         });
     }
 

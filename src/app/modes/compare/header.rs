@@ -5,7 +5,7 @@ use egui::emath::GuiRounding;
 use super::pane::Pane;
 use super::setting::PANES;
 use super::{CompareInput, PaneChange};
-use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip};
+use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip, strain_text};
 use crate::app::interface::*;
 use crate::app::viewport::overlay;
 
@@ -87,11 +87,12 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         (true, fill!("Does not converge: %{reason}.", reason = said(&reason)))
     } else if let Some(end) = &run.end {
         let stopped = if end.status == Status::Converged { "" } else { tr(", stopped") };
-        let inverted = if end.is_inside_out { format!(", {}", tr("inverted elements")) } else { String::new() };
+        let is_inverted = end.deformation.inverted_elements > 0;
+        let inverted = if is_inverted { format!(", {}", tr("inverted elements")) } else { String::new() };
         // Images without bars omit the time, which differs from run to run.
         let time = pane.shown_seconds(input).filter(|_| input.view.bars);
         let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
-        let area = area_text(end.area_change);
+        let area = area_text(end.deformation.area_change);
         (false, format!("{time}{}{stopped}{inverted} · {area}", count(end.iterations, "iteration")))
     } else if run.is_away() {
         (false, fill!("solving: %{iterations}", iterations = iterations))
@@ -118,7 +119,8 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         left = at.right() + 12.0;
     }
     let coarse = judged.and_then(|(error, first)| coarse_text(error, &first));
-    let text = joined(coarse.into_iter().chain([text]));
+    let strained = run.end.as_ref().filter(|_| !bad).and_then(|end| strain_text(end.deformation.max_strain));
+    let text = joined(strained.into_iter().chain(coarse).chain([text]));
     let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
     let room = (rect.right() - left - 4.0).max(0.0);
     let lay_out = |text: &str| {
