@@ -159,9 +159,9 @@ impl PathEquations for StaticEquations<'_> {
     }
 
     fn critical_mode(&mut self) -> Option<CriticalMode> {
-        /// Largest cosine that is the rounding error of differences: the unit roundoff over their step, times the size of
-        /// the body over its height.
-        const ROUNDING: f64 = 1e-10;
+        /// Largest cosine that is the rounding error of differences: the unit roundoff over their step. Far from the crossing
+        /// of an imperfect body, cosines are not much larger: they grow as one over the mode's stiffness.
+        const ROUNDING: f64 = 2e-13;
         let (mode, stiffness) = softest_mode(&mut self.workspace.linear.factor, self.last_rate.len(), &[]);
         let mut cosine = dot(&mode, &self.last_rate).abs() / (norm(&mode) * norm(&self.last_rate));
         if self.problem.supports().move_the_body() && cosine.is_finite() {

@@ -60,10 +60,12 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         let factor = if last.factor + step > 1.0 - 0.5 * shortest { 1.0 } else { last.factor + step };
         let start = extrapolated(&points, factor);
         let ahead = largest_distance(&start, &last.u);
-        let allowed = if points.len() > 1 { 0.25 * ahead } else { 4.0 * speed * (factor - last.factor) };
-        let next = judge.equilibrium(start, factor, allowed);
         let least = shortest.min(0.1 * last.factor).max(SHARP);
-        let is_short = step <= least;
+        let (is_short, is_alone) = (step <= least, points.len() == 1);
+        // In a sharp turn of the path, the displacement soon grows much faster than before.
+        let sudden = if step <= SHARP { 1e-5 * simulation.system().size() } else { 0.0 };
+        let allowed = if is_alone { (4.0 * speed * (factor - last.factor)).max(sudden) } else { 0.25 * ahead };
+        let next = judge.equilibrium(start, factor, allowed);
         // Beside a singular tangent, rounding displaces points or hides them: the steps go on from one farther beyond,
         // unless they are short enough for a sharp turn of the path.
         let next = next.or_else(|| beyond.last().filter(|_| is_short && shortest > SHARP)?.last().cloned());
@@ -94,7 +96,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
                 }
                 step = (2.0 * step).min(longest);
             }
-            None if is_short && points.len() > 1 => drop(points.drain(..points.len() - 1)),
+            None if is_short && !is_alone => drop(points.drain(..points.len() - 1)),
             None if is_short => break,
             None => step = (0.5 * (factor - last.factor)).max(least),
         }

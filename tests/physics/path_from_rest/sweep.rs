@@ -6,8 +6,7 @@ use crate::common::*;
 
 /// Returns a slender body of height 1 m, E = 1 MPa, with supports that move or hold points.
 fn scene(seed: u64) -> Scene {
-    let mut random = Random(seed.wrapping_mul(0x2545_F491_4F6C_DD1D).wrapping_add(55));
-    let random = &mut random;
+    let random = &mut Random(seed.wrapping_mul(0x2545_F491_4F6C_DD1D).wrapping_add(55));
     let length = 10f64.powf(random.between(0.477, 1.602));
     let element = random.one_of(&[ElementKind::Q4, ElementKind::T6, ElementKind::T3]);
     let along = if element == ElementKind::T6 { 4 + random.below(7) } else { 6 + random.below(15) };
@@ -146,12 +145,11 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
         }
         wrong
     };
-    if !events_off(&small).is_empty() {
-        // A sharp turn of the path is a bifurcation to steps that do not resolve it.
-        let shorter = follow(&simulation, SHARP).unwrap();
-        if shorter.factor > small.factor || events_off(&shorter).is_empty() {
-            small = shorter;
-        }
+    // Long steps take a sharp turn for a bifurcation, and rounding stops the shortest ones at a bifurcation.
+    for shortest in [1e-6, 1e-7, SHARP] {
+        let shorter = events_off(&small).first().and_then(|_| follow(&simulation, shortest));
+        let better = shorter.filter(|shorter| shorter.factor > small.factor || events_off(shorter).is_empty());
+        small = better.unwrap_or(small);
     }
     note += &format!(", small steps to {:.4}, {:?}", small.factor, small.bifurcations);
     wrong.extend(events_off(&small));
@@ -194,8 +192,8 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
 #[test]
 fn random_bodies_with_moved_supports_end_on_their_path() {
     let (seeds, mut judged, mut all) = (seeds(500, 30, 300), 0, Vec::new());
-    // In the last two, bifurcations hide each other; beside those of the one before, rounding hides the path.
-    for scene in seeds.iter().copied().chain([5210, 5072, 2180]).map(scene) {
+    // In the first, rounding hides the path beside bifurcations; in two, these hide each other; the others turn sharply.
+    for scene in seeds.iter().copied().chain([5210, 5072, 2180, 4064, 5058, 5116, 6294, 7140]).map(scene) {
         if Simulation::new(&scene).is_err() {
             continue;
         }
