@@ -133,6 +133,8 @@ pub struct LoadPath {
 
 /// Number of rows of a path, which are drawn and between which the work of supports is integrated.
 const ROWS: u32 = 60;
+/// Largest number of times that an interval between rows is halved for the work of supports.
+const MAX_HALVINGS: u32 = 5;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
@@ -290,6 +292,9 @@ impl LoadPath {
     }
 }
 
+/// Equilibrium on a path that is followed.
+type Point = ContinuationPoint<State>;
+
 /// Records the states of a path.
 struct Tracer {
     path: LoadPath,
@@ -303,10 +308,12 @@ struct Tracer {
     power: f64,
     /// Slope of this derivative over the last interval, and the length of the interval.
     power_slope: Option<[f64; 2]>,
+    /// Sum of the magnitudes of the work over all intervals, J.
+    exchanged: f64,
     /// Load factor up to which the work is integrated.
     reached: f64,
     /// Last equilibrium, and its stability under force control.
-    last: Option<(ContinuationPoint<State>, Option<bool>)>,
+    last: Option<(Point, Option<bool>)>,
     /// Displacement under the full load, m.
     end: Option<Vec<Vector2<f64>>>,
 }
@@ -325,6 +332,7 @@ impl Tracer {
             row: 1,
             power: 0.0,
             power_slope: None,
+            exchanged: 0.0,
             reached: 0.0,
             last: None,
             end: None,
@@ -337,7 +345,8 @@ impl Tracer {
         let now = sentence!("following the load path");
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
         follower.path.locates_all = true;
-        self.record(&follower, &follower.last);
+        self.visit(&follower, &follower.last);
+        self.mark();
         let end = loop {
             if observe(Progress { fraction: follower.last.factor / to, now: Some(&now) }).is_break() {
                 break Some(PathEndReason::Interrupted);
@@ -352,7 +361,8 @@ impl Tracer {
                             self.path.states_before_jump.get_or_insert(self.path.states.len());
                         }
                         self.last = None;
-                        self.record(&follower, &landing);
+                        self.visit(&follower, &landing);
+                        self.mark();
                         self.power_slope = None;
                     }
                 }
@@ -375,7 +385,7 @@ impl Tracer {
     }
 
     /// Records the rows between two points of the path, and visits the second one.
-    fn follow(&mut self, follower: &PathFollower, from: &ContinuationPoint<State>, to: &ContinuationPoint<State>) {
+    fn follow(&mut self, follower: &PathFollower, from: &Point, to: &Point) {
         let factor = |row: u32| f64::from(row) / f64::from(ROWS);
         while self.row <= ROWS && factor(self.row) < to.factor {
             let at = factor(self.row);
@@ -383,24 +393,39 @@ impl Tracer {
             if at > from.factor
                 && let Some(row) = follower.path.clone().between(&mut self.equations(), from, to, at)
             {
-                self.record(follower, &row);
+                self.approach(follower, [from, to], &row, MAX_HALVINGS);
+                self.mark();
             }
         }
-        self.visit(follower, to);
+        self.approach(follower, [from, to], to, MAX_HALVINGS);
         if factor(self.row) == to.factor {
             self.mark();
         }
     }
 
-    /// Records an equilibrium.
-    fn record(&mut self, follower: &PathFollower, point: &ContinuationPoint<State>) {
+    /// Visits an equilibrium between two points of the path and, where the power of moving supports bends sharply, some
+    /// equilibria before it.
+    fn approach(&mut self, follower: &PathFollower, [from, to]: [&Point; 2], point: &Point, halvings: u32) {
+        /// Work that depends on the bend of the power, relative to all work so far.
+        const RESOLVED: f64 = 2e-3;
+        let length = point.factor - self.reached;
+        if self.path.driven.is_some() && length > 0.0 && point.factor <= 1.0 && halvings > 0 {
+            let reactions = self.reactions(point);
+            let slope = (supports_power(&self.problem, &reactions) - self.power) / length;
+            let bend = (slope - self.power_slope.map_or(0.0, |[before, _]| before)).abs();
+            let matters = bend * length * length > RESOLVED * self.exchanged;
+            let middle = self.reached + 0.5 * length;
+            if matters && let Some(middle) = follower.path.clone().between(&mut self.equations(), from, to, middle) {
+                self.approach(follower, [from, to], &middle, halvings - 1);
+                return self.approach(follower, [from, to], point, halvings - 1);
+            }
+        }
         self.visit(follower, point);
-        self.mark();
     }
 
     /// Integrates the work of moving supports to an equilibrium. If the body loses or regains its stability under force
     /// control since the last one, the state between them at which this happens is recorded.
-    fn visit(&mut self, follower: &PathFollower, point: &ContinuationPoint<State>) {
+    fn visit(&mut self, follower: &PathFollower, point: &Point) {
         if point.factor > 1.0 {
             return;
         }
@@ -420,7 +445,7 @@ impl Tracer {
 
     /// Integrates the work of moving supports to a state beyond the last one, by the parabola through their power there and
     /// at the two states before.
-    fn integrate(&mut self, point: &ContinuationPoint<State>) {
+    fn integrate(&mut self, point: &Point) {
         /// Smallest length of an interval, relative to the next one, whose slope is not the error of its ends.
         const RESOLVED: f64 = 0.1;
         if self.path.driven.is_none() {
@@ -433,7 +458,9 @@ impl Tracer {
             let slope = (power - self.power) / length;
             let last = self.power_slope.filter(|[_, last]| *last > RESOLVED * length);
             let curvature = last.map_or(0.0, |[before, last]| (slope - before) / (length + last));
-            self.path.supports_work += 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
+            let work = 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
+            self.path.supports_work += work;
+            self.exchanged += work.abs();
             self.power_slope = Some([slope, length]);
         }
         (self.power, self.reached) = (power, point.factor);
@@ -455,7 +482,7 @@ impl Tracer {
     }
 
     /// Returns `true` if a state is stable under force control.
-    fn is_stable(&mut self, point: &ContinuationPoint<State>) -> Option<bool> {
+    fn is_stable(&mut self, point: &Point) -> Option<bool> {
         if point.modes > 0 || self.path.driven.is_none() {
             return Some(point.modes == 0);
         }
@@ -464,13 +491,7 @@ impl Tracer {
     }
 
     /// Returns the last or first state, between two others, that is stable under force control, by bisection.
-    fn limit_under_force(
-        &mut self,
-        follower: &PathFollower,
-        from: &ContinuationPoint<State>,
-        stable: bool,
-        to: &ContinuationPoint<State>,
-    ) -> Option<ContinuationPoint<State>> {
+    fn limit_under_force(&mut self, follower: &PathFollower, from: &Point, stable: bool, to: &Point) -> Option<Point> {
         /// Number of bisections; the reaction is stationary there, so that its error is about the square of 2⁻¹⁰.
         const BISECTIONS: u32 = 10;
         let (mut low, mut high) = (from.clone(), to.clone());
@@ -483,7 +504,7 @@ impl Tracer {
         Some(if stable { low } else { high })
     }
 
-    fn reactions(&mut self, point: &ContinuationPoint<State>) -> Vec<SupportReaction> {
+    fn reactions(&mut self, point: &Point) -> Vec<SupportReaction> {
         use Kinematics::Corotated;
         self.problem.linearize(&point.state, &mut self.forces, None);
         self.problem.balance(&point.state, Corotated, point.factor, &mut self.forces);

@@ -193,7 +193,8 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
 fn random_bodies_with_moved_supports_end_on_their_path() {
     let (seeds, mut judged, mut all) = (seeds(500, 30, 300), 0, Vec::new());
     // In the first, rounding hides the path beside bifurcations; in two, these hide each other; the others turn sharply.
-    for scene in seeds.iter().copied().chain([5210, 5072, 2180, 4064, 5058, 5116, 6294, 7140]).map(scene) {
+    for scene in seeds.iter().copied().chain([5210, 5072, 2180, 4064, 5058, 5116, 6294, 7140, 8569, 11_670]).map(scene)
+    {
         if Simulation::new(&scene).is_err() {
             continue;
         }
