@@ -197,7 +197,10 @@ fn panes_have_the_numbers_of_solve() {
             let time = engineering(two_digits(seconds), "s");
             let iterations = count(json["iterations"].as_u64().unwrap(), "iteration");
             let (header, area) = header.rsplit_once(" \u{b7} area ").unwrap();
-            assert!(header.ends_with(&format!(": error {error}, {time} \u{b7} {iterations}")), "{what}: {header}");
+            let strain = 100.0 * json["max_strain"].as_f64().unwrap();
+            let strain = if strain > 10.0 { format!("nodal strain {}, ", percent(strain)) } else { String::new() };
+            let expected = format!(": error {error}, {strain}{time} \u{b7} {iterations}");
+            assert!(header.ends_with(&expected), "{what}: {header}, expected {expected}");
             let area: f64 = area.replace('\u{2212}', "-").trim_end_matches(" %").parse().unwrap();
             let change = json["area_change_percent"].as_f64().unwrap();
             assert!((area - change).abs() < 0.006 + 0.05 * area.abs(), "{what}: {header}, {area} %");

@@ -351,7 +351,8 @@ impl Lab {
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // The remedy of a failure says what has failed.
                     let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
-                    let reason = remedy.map(|remedy| (remedy.text, palette.error));
+                    let reason = remedy
+                        .map(|remedy| (remedy.text, if input.has_failed() { palette.error } else { palette.large }));
                     for (text, color) in reason.into_iter().chain(status) {
                         ui.add(Label::new(RichText::new(text).color(color)).truncate());
                     }

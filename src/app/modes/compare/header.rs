@@ -100,6 +100,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         (false, if input.session.is_running() { iterations } else { tr("paused").to_owned() })
     };
     let error = pane.error_percent.filter(|_| !bad);
+    let strained = run.end.as_ref().filter(|_| !bad).and_then(|end| strain_text(end.deformation.max_strain));
     let judged = error.zip(input.reference.and_then(Reference::first));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0), Sense::hover());
     let painter = ui.painter();
@@ -117,10 +118,15 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
         semibold(painter, at.min, &galley, color);
         left = at.right() + 12.0;
+        if strained.is_some() {
+            // The tooltip has the words, for which there is no room.
+            let font = FontId::proportional(HEADLINE);
+            let mark = painter.text(pos2(left - 8.0, rect.center().y), Align2::LEFT_CENTER, "!", font, palette.warning);
+            left = mark.right() + 8.0;
+        }
     }
     let coarse = judged.and_then(|(error, first)| coarse_text(error, &first));
-    let strained = run.end.as_ref().filter(|_| !bad).and_then(|end| strain_text(end.deformation.max_strain));
-    let text = joined(strained.into_iter().chain(coarse).chain([text]));
+    let text = joined(coarse.into_iter().chain([text]));
     let (size, ink) = if bad { (SMALL, palette.error) } else { (BODY, palette.secondary) };
     let room = (rect.right() - left - 4.0).max(0.0);
     let lay_out = |text: &str| {
@@ -135,6 +141,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), galley.size());
     painter.galley(at.min, galley, ink);
     let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
+    let text = joined(strained.into_iter().chain([text]));
     let spoken = format!("{name}: {}: {error}{text}", setting.text());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     let error_tip = error_tip(input.reference, input.session.facts().reference.failure(input.scene));
