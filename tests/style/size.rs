@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 24_201),
-    ("study", &["src/study"], 6_710),
+    ("app", &["src/app"], 23_966),
+    ("study", &["src/study"], 6_616),
     ("model", &["src/model", "src/scene"], 3_173),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
-    ("simulation", &["src/simulation"], 2_555),
-    ("assembly", &["src/assembly"], 2_991),
+    ("simulation", &["src/simulation"], 2_546),
+    ("assembly", &["src/assembly"], 2_988),
     ("cli", &["src/cli"], 2_295),
-    ("dynamics", &["src/dynamics"], 1_931),
-    ("render", &["src/render"], 1_930),
+    ("dynamics", &["src/dynamics"], 1_922),
+    ("render", &["src/render"], 1_896),
     ("element", &["src/element"], 2_008),
-    ("mesh", &["src/mesh"], 1_936),
+    ("mesh", &["src/mesh"], 1_930),
     ("plot", &["src/plot"], 709),
-    ("the rest of src", &["src"], 5_066),
-    ("tests", &["tests"], 19_303),
+    ("the rest of src", &["src"], 5_038),
+    ("tests", &["tests"], 19_310),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 58_739;
+const SRC: usize = 58_321;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
