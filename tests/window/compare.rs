@@ -132,6 +132,33 @@ fn panes_follow_a_dragged_load() {
     panes_agree_with_solves(&ui);
 }
 
+/// The body of a pane whose arrow is dragged stays in the pane, also before the arrow is released.
+#[test]
+fn the_view_of_the_panes_grows_while_a_load_is_dragged() {
+    let mut ui = compared("cantilever", "warped,newton");
+    wait_for_panes(&mut ui);
+    let at = |ui: &Ui, x: Vector2<f64>| {
+        let place = ui.state().panes()[1].place.unwrap();
+        place.center() + egui::Vec2::from(ui.state().camera().to_view(x).map(|v| v as f32))
+    };
+    let tip = ui.state().panes()[1].run.end.as_ref().unwrap().probes[0].x;
+    // The shaft of the arrow, which begins in the middle of the end.
+    let from = at(&ui, tip) + egui::vec2(0.0, 25.0);
+    let before = ui.force();
+    ui.hover_at(from);
+    ui.drag_at(from);
+    for i in 1..=12_u8 {
+        ui.hover_at(from - egui::vec2(0.0, 12.0 * f32::from(i)));
+        wait(&mut ui, "newton", |lab| *lab.panes()[1].simulation().unwrap().status() == Status::Converged);
+        let pane = &ui.state().panes()[1];
+        let simulation = pane.simulation().unwrap();
+        for (x, u) in simulation.mesh().nodes().iter().zip(simulation.displacement()) {
+            assert!(pane.place.unwrap().contains(at(&ui, x + u)), "{:?}: {}", ui.force(), at(&ui, x + u));
+        }
+    }
+    assert_ne!(ui.force(), before);
+}
+
 /// While a dragged load makes a pane diverge, its huge stresses do not set the common range of colours.
 #[test]
 fn a_diverging_pane_does_not_set_the_range_of_colours() {

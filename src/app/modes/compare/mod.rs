@@ -438,16 +438,22 @@ impl Compare {
         };
         // While panes iterate, only a camera that has not been fitted yet moves.
         let is_settled = self.in_motion || !self.goes_on();
-        // The view must not move while a load is grabbed.
-        let holds = self.panes.iter().any(|pane| pane.pointer.holds());
+        // While a load is dragged, the view only grows: the arrow that the pointer holds stays in it.
+        let drags = self.panes.iter().any(|pane| pane.pointer.drags_tip());
+        let holds = !drags && self.panes.iter().any(|pane| pane.pointer.holds());
         let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
-        if !holds && (is_settled || controller.whole == rest) {
+        if !holds && (is_settled || drags || controller.whole == rest) {
+            let before = if drags { controller.whole } else { rest };
             controller.set_body(rest);
-            controller.set_whole(whole);
+            controller.set_whole(before.iter().fold(whole, grow));
         }
         let [low, high] = controller.whole;
         let dt = f64::from(ui.input(|i| i.stable_dt));
-        if controller.aim(Camera::fit(low, high, size, margins), input.eases.then_some(dt)) {
+        let mut fitted = Camera::fit(low, high, size, margins);
+        if drags {
+            fitted.scale = fitted.scale.min(controller.shown.scale);
+        }
+        if controller.aim(fitted, (input.eases && !drags).then_some(dt)) {
             ui.ctx().request_repaint();
         }
     }
@@ -491,8 +497,10 @@ impl Compare {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
         let forces = self.panes.first().and_then(|pane| pane.forces(pane.run.wanted.as_ref()?, 0.0, input));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
+        // The bodies keep half of the height.
         let longest = |along: fn(egui::Vec2) -> f32| {
-            arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector))).fold(0.0, f64::max)
+            let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector)));
+            lengths.fold(0.0, f64::max).min(0.25 * height)
         };
         let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
         Margins { sides: 40.0, top: top + longest(|vector| -vector.y), bottom: bottom + longest(|vector| vector.y) }
