@@ -45,7 +45,7 @@ const PARTS: [Part; 5] = [
         outlines: [false, false],
     },
     Part {
-        caption: "Same cells, another element: the error falls.",
+        caption: "Three-node triangles lock; six-node ones do not.",
         seconds: 4.5,
         setting: |t| {
             let element = if t < 0.5 { ElementKind::T3 } else { ElementKind::T6 };
