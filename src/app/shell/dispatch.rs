@@ -7,6 +7,7 @@ use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::viewport::arrow::vector;
+use crate::app::viewport::base::Object;
 use crate::app::viewport::handle::Pull;
 use crate::app::viewport::pointer::Interaction;
 
@@ -196,8 +197,12 @@ impl Lab {
         }
     }
 
-    /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document.
+    /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document; the force whose base was
+    /// dropped is the selected one.
     pub(super) fn edit_loads(&mut self, ctx: &Context, interaction: &Interaction) {
+        if let Some((Object::Force(load), _)) = interaction.dropped {
+            self.desk.panel.force = Some(load);
+        }
         let dragged = interaction.load.and_then(|(load, pull)| {
             self.desk.panel.force = Some(load);
             let mut scene = self.scene().clone();
