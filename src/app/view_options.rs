@@ -22,7 +22,7 @@ pub enum Mode {
     Measure,
 }
 
-/// Tab of [`Mode::Measure`].
+/// Tab of the mode Measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MeasureTab {
     /// Loads up to which each method and element holds; of a motion, time steps.
