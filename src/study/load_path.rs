@@ -345,7 +345,7 @@ impl Tracer {
         let now = sentence!("following the load path");
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
         follower.path.locates_all = true;
-        self.visit(&follower, &follower.last);
+        self.visit(&follower, [&follower.last; 2], &follower.last, 0);
         self.mark();
         let end = loop {
             if observe(Progress { fraction: follower.last.factor / to, now: Some(&now) }).is_break() {
@@ -361,7 +361,7 @@ impl Tracer {
                             self.path.states_before_jump.get_or_insert(self.path.states.len());
                         }
                         self.last = None;
-                        self.visit(&follower, &landing);
+                        self.visit(&follower, [&landing; 2], &landing, 0);
                         self.mark();
                         self.power_slope = None;
                     }
@@ -393,41 +393,36 @@ impl Tracer {
             if at > from.factor
                 && let Some(row) = follower.path.clone().between(&mut self.equations(), from, to, at)
             {
-                self.approach(follower, [from, to], &row, MAX_HALVINGS);
+                self.visit(follower, [from, to], &row, MAX_HALVINGS);
                 self.mark();
             }
         }
-        self.approach(follower, [from, to], to, MAX_HALVINGS);
+        self.visit(follower, [from, to], to, MAX_HALVINGS);
         if factor(self.row) == to.factor {
             self.mark();
         }
     }
 
-    /// Visits an equilibrium between two points of the path and, where the power of moving supports bends sharply, some
-    /// equilibria before it.
-    fn approach(&mut self, follower: &PathFollower, [from, to]: [&Point; 2], point: &Point, halvings: u32) {
+    /// Integrates the work of moving supports to an equilibrium between two points of the path; an interval in which their
+    /// power bends sharply is halved up to `halvings` times. If the body loses or regains its stability under force control
+    /// since the last equilibrium, the state between them at which this happens is recorded.
+    fn visit(&mut self, follower: &PathFollower, [from, to]: [&Point; 2], point: &Point, halvings: u32) {
         /// Work that depends on the bend of the power, relative to all work so far.
         const RESOLVED: f64 = 2e-3;
-        let length = point.factor - self.reached;
-        if self.path.driven.is_some() && length > 0.0 && point.factor <= 1.0 && halvings > 0 {
-            let reactions = self.reactions(point);
-            let slope = (supports_power(&self.problem, &reactions) - self.power) / length;
-            let bend = (slope - self.power_slope.map_or(0.0, |[before, _]| before)).abs();
-            let matters = bend * length * length > RESOLVED * self.exchanged;
-            let middle = self.reached + 0.5 * length;
-            if matters && let Some(middle) = follower.path.clone().between(&mut self.equations(), from, to, middle) {
-                self.approach(follower, [from, to], &middle, halvings - 1);
-                return self.approach(follower, [from, to], point, halvings - 1);
-            }
-        }
-        self.visit(follower, point);
-    }
-
-    /// Integrates the work of moving supports to an equilibrium. If the body loses or regains its stability under force
-    /// control since the last one, the state between them at which this happens is recorded.
-    fn visit(&mut self, follower: &PathFollower, point: &Point) {
         if point.factor > 1.0 {
             return;
+        }
+        let power = self.power_at(point);
+        for halvings in (0..halvings).rev() {
+            let length = point.factor - self.reached;
+            let bend = (power - self.power) / length - self.power_slope.map_or(0.0, |[before, _]| before);
+            let matters = length > 0.0 && bend.abs() * length * length > RESOLVED * self.exchanged;
+            if !matters {
+                break;
+            }
+            let middle = self.reached + 0.5 * length;
+            let Some(middle) = follower.path.clone().between(&mut self.equations(), from, to, middle) else { break };
+            self.visit(follower, [from, to], &middle, halvings);
         }
         let stable = self.is_stable(point);
         if let Some((last, Some(before))) = self.last.take()
@@ -435,24 +430,20 @@ impl Tracer {
             && stable.is_some_and(|stable| stable != before)
             && let Some(limit) = self.limit_under_force(follower, &last, before, point)
         {
-            self.integrate(&limit);
+            let own = self.power_at(&limit);
+            self.integrate(&limit, own);
             self.last = Some((limit, Some(true)));
             self.mark();
         }
-        self.integrate(point);
+        self.integrate(point, power);
         self.last = Some((point.clone(), stable));
     }
 
     /// Integrates the work of moving supports to a state beyond the last one, by the parabola through their power there and
     /// at the two states before.
-    fn integrate(&mut self, point: &Point) {
+    fn integrate(&mut self, point: &Point, power: f64) {
         /// Smallest length of an interval, relative to the next one, whose slope is not the error of its ends.
         const RESOLVED: f64 = 0.1;
-        if self.path.driven.is_none() {
-            return;
-        }
-        let reactions = self.reactions(point);
-        let power = supports_power(&self.problem, &reactions);
         let length = point.factor - self.reached;
         if length > 0.0 {
             let slope = (power - self.power) / length;
@@ -502,6 +493,15 @@ impl Tracer {
             *side = point;
         }
         Some(if stable { low } else { high })
+    }
+
+    /// Returns the derivative of the supports' work by the load factor, J; 0 if none moves.
+    fn power_at(&mut self, point: &Point) -> f64 {
+        if self.path.driven.is_none() {
+            return 0.0;
+        }
+        let reactions = self.reactions(point);
+        supports_power(&self.problem, &reactions)
     }
 
     fn reactions(&mut self, point: &Point) -> Vec<SupportReaction> {
