@@ -12,6 +12,9 @@ const THERE: f64 = 0.3;
 /// Smallest and largest magnification relative to the one that fits the body at rest.
 const ZOOM: [f64; 2] = [0.02, 2e4];
 
+/// Largest room for the arrows of loads on a side, relative to the view: the body keeps half of it.
+pub(crate) const ARROW_ROOM: f64 = 0.25;
+
 /// Returns the smallest box that contains a box and a point.
 pub(crate) fn grow([low, high]: Box2, point: &Vector2<f64>) -> Box2 {
     [low.inf(point), high.sup(point)]
@@ -76,9 +79,21 @@ impl CameraController {
         ZOOM[0] * home..=ZOOM[1] * home
     }
 
+    /// Turns to `fitted`, which shows [`Self::whole`], in this frame of the view. While a load is dragged (`drags`) it jumps
+    /// there and never zooms in, so that the arrow stays under the pointer and in the view; else it moves there if it `eases`.
+    pub(crate) fn turn_to(&mut self, ui: &Ui, mut fitted: Camera, eases: bool, drags: bool) {
+        if drags {
+            fitted.scale = fitted.scale.min(self.shown.scale);
+        }
+        let dt = f64::from(ui.input(|i| i.stable_dt));
+        if self.aim(fitted, (eases && !drags).then_some(dt)) {
+            ui.ctx().request_repaint();
+        }
+    }
+
     /// Advances the animation by one frame of `dt` s: towards `fitted`, which shows [`Self::whole`], or towards the
     /// camera set by the user. Without `dt` it jumps there. Returns `true` while the animation is in progress.
-    pub(crate) fn aim(&mut self, fitted: Camera, dt: Option<f64>) -> bool {
+    fn aim(&mut self, fitted: Camera, dt: Option<f64>) -> bool {
         let goal = self.own.unwrap_or(fitted);
         let (Some(dt), false) = (dt, self.is_new) else {
             self.shown = goal;

@@ -6,7 +6,7 @@ use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_mesh::BodyMesh;
-use crate::app::viewport::camera_controller::{Box2, CameraController, grow};
+use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow};
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
@@ -415,14 +415,8 @@ impl BodyView {
             self.margins = self.with_room_for_arrows(content, least_margins(size), whole, size);
         }
         let [low, high] = self.camera.whole;
-        let mut fitted = self.fitted(content, low, high, size);
-        if drags {
-            fitted.scale = fitted.scale.min(self.camera.shown.scale);
-        }
-        let dt = f64::from(ui.input(|i| i.stable_dt));
-        if self.camera.aim(fitted, (self.eases && !drags).then_some(dt)) {
-            ui.ctx().request_repaint();
-        }
+        let fitted = self.fitted(content, low, high, size);
+        self.camera.turn_to(ui, fitted, self.eases, drags);
     }
 
     /// Returns `true` if the drawn body is at most `times` as large as at rest; a diverging iterate may be larger.
@@ -479,8 +473,6 @@ impl BodyView {
     ) -> Margins {
         /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
-        /// Largest room for arrows on a side, relative to the view: the body keeps half of it.
-        const LARGEST: f64 = 0.25;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
         if content.is_apart() || overlay::is_tiny(content.options, size) {
             return least;
@@ -499,7 +491,7 @@ impl BodyView {
             // A tip must not cover the colour bar.
             let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
             let below = if is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
-            let beyond = |outside: f32, view: f64| f64::from((outside + BEYOND).max(0.0)).min(LARGEST * view);
+            let beyond = |outside: f32, view: f64| f64::from((outside + BEYOND).max(0.0)).min(ARROW_ROOM * view);
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x), view[0])),
                 top: margins.top.max(least.top + beyond(-tip.y, view[1])),

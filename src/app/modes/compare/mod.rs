@@ -11,7 +11,7 @@ use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::QUIET_POLL;
-use crate::app::viewport::camera_controller::{Box2, CameraController, grow};
+use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow};
 use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
@@ -448,14 +448,7 @@ impl Compare {
             controller.set_whole(before.iter().fold(whole, grow));
         }
         let [low, high] = controller.whole;
-        let dt = f64::from(ui.input(|i| i.stable_dt));
-        let mut fitted = Camera::fit(low, high, size, margins);
-        if drags {
-            fitted.scale = fitted.scale.min(controller.shown.scale);
-        }
-        if controller.aim(fitted, (input.eases && !drags).then_some(dt)) {
-            ui.ctx().request_repaint();
-        }
+        controller.turn_to(ui, Camera::fit(low, high, size, margins), input.eases, drags);
     }
 
     /// Returns the bounding box of the results and of the outline `exact` of the reference solution, m.
@@ -497,10 +490,9 @@ impl Compare {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
         let forces = self.panes.first().and_then(|pane| pane.forces(pane.run.wanted.as_ref()?, 0.0, input));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
-        // The bodies keep half of the height.
         let longest = |along: fn(egui::Vec2) -> f32| {
             let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector)));
-            lengths.fold(0.0, f64::max).min(0.25 * height)
+            lengths.fold(0.0, f64::max).min(ARROW_ROOM * height)
         };
         let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));
         Margins { sides: 40.0, top: top + longest(|vector| -vector.y), bottom: bottom + longest(|vector| vector.y) }
