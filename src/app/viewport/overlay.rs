@@ -85,8 +85,7 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
         labels.taken.extend(key(painter, rect, overlay, legends, &palette));
         labels.taken.extend(legend(painter, rect, overlay, legends, &palette));
     }
-    let outline = body_outline(&Projection { camera: overlay.camera, rect }, overlay);
-    on_body(&mut labels, rect, overlay, &outline);
+    on_body(&mut labels, rect, overlay);
     if overlay.legends.is_some() {
         scale_bar(painter, rect, &overlay.camera, &palette);
     }
@@ -97,26 +96,27 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
             (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
             (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
         ];
-        let (at, anchor) = beside_body(&labels, &outline, note, &places);
+        let (at, anchor) = beside_body(&labels, rect, overlay, note, &places);
         labels.add(at, anchor, note, color, rect.width() - beside);
     }
 }
 
-/// Returns the frames of the sides of the drawn body.
-fn body_outline(projection: &Projection, overlay: &Overlay<'_>) -> Vec<Rect> {
-    let place = |&point| projection.point(overlay.geometry.point(point, &|n: u32| overlay.body.positions[n as usize]));
-    let lines = overlay.geometry.outline.iter().map(|line| line.iter().map(place).collect::<Vec<Pos2>>());
-    lines
-        .flat_map(|line| line.windows(2).map(|ends| Rect::from_two_pos(ends[0], ends[1])).collect::<Vec<_>>())
-        .collect()
-}
-
-/// Returns the first of several places at which a text does not cross the body's outline, else the first one.
-fn beside_body(labels: &Labels<'_>, outline: &[Rect], text: &str, places: &[(Pos2, Align2)]) -> (Pos2, Align2) {
+/// Returns the first of several places at which a text does not cross the body's outline in `rect`, else the first one.
+fn beside_body(
+    labels: &Labels<'_>,
+    rect: Rect,
+    overlay: &Overlay<'_>,
+    text: &str,
+    places: &[(Pos2, Align2)],
+) -> (Pos2, Align2) {
+    let projection = Projection { camera: overlay.camera, rect };
+    let position = |node: u32| overlay.body.positions[node as usize];
+    let on_line = |point| projection.point(overlay.geometry.point(point, &position));
     let size = labels.painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::WHITE).size();
     let is_free = |(at, anchor): &&(Pos2, Align2)| {
         let frame = anchor.anchor_size(*at, size).expand(4.0);
-        !outline.iter().any(|side| side.intersects(frame))
+        let crosses = |ends: &[_]| Rect::from_points(&[on_line(ends[0]), on_line(ends[1])]).intersects(frame);
+        !overlay.geometry.outline.iter().any(|line| line.windows(2).any(crosses))
     };
     *places.iter().find(is_free).unwrap_or(&places[0])
 }
@@ -175,7 +175,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
 }
 
 /// Paints supports, loads, probes and sections.
-fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, outline: &[Rect]) {
+fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let projection = Projection { camera: overlay.camera, rect };
     if let Some(edge) = &overlay.options.edge {
@@ -202,7 +202,7 @@ fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, outline: 
         loads(labels, &projection, overlay, &palette);
         weights(labels, rect, overlay, &palette);
         moved_supports(labels, &projection, overlay, &palette);
-        probes(labels, &projection, overlay, outline);
+        probes(labels, &projection, overlay);
         sections(labels, &projection, overlay, &palette);
     }
 }
@@ -277,7 +277,7 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
 }
 
 /// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
-fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, outline: &[Rect]) {
+fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
     const RADIUS: f32 = 3.5;
     /// Distances, points, by which a label moves down to a place beside the body.
     const SHIFTS: [f32; 9] = [0.0, -8.0, 28.0, -16.0, 36.0, -24.0, 44.0, -32.0, 52.0];
@@ -289,7 +289,7 @@ fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
         // A label inside a thin body would hide it.
         let places = SHIFTS.map(|shift| (at + vec2(8.0, -4.0 + shift), Align2::LEFT_BOTTOM));
-        let (at, anchor) = beside_body(labels, outline, tr(&own.name), &places);
+        let (at, anchor) = beside_body(labels, projection.rect, overlay, tr(&own.name), &places);
         labels.add(at, anchor, tr(&own.name), color, 160.0);
     }
 }
