@@ -298,7 +298,7 @@ pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
     input.session.fallback().map(|drawn| equilibrium_text(drawn.scene(), input.scene))
 }
 
-/// Returns the magnitude of a scene's only load.
+/// Returns the magnitude of a scene's only load as text; `None` where [`only_load`] is.
 pub(crate) fn load_text(scene: &Scene) -> Option<String> {
     only_load(scene).map(|(load, unit)| engineering(three_digits(load.norm()), unit))
 }

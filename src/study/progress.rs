@@ -94,11 +94,11 @@ impl StudyError {
 /// Extent of a study, or of the search for a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
-    /// Of a study: coarser meshes only. Of a reference: meshes of at most about 10,000 unknowns, and the work of about 30
-    /// solves on them: a second or two.
+    /// A study measures coarse meshes only. A search for a reference stops at meshes of about 10,000 unknowns and the work
+    /// of about 30 solves on them, after a second or two.
     Quick,
-    /// Of a study: meshes of up to about five thousand unknowns. Of a reference: meshes fine enough for an error of 0.01 %,
-    /// with up to 700,000 unknowns.
+    /// A study measures meshes of up to about five thousand unknowns. A search for a reference refines the mesh, up to
+    /// 700,000 unknowns, until the error is 0.01 %.
     Full,
 }
 

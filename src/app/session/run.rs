@@ -37,7 +37,7 @@ pub struct PaneEnd {
     pub iterations: u32,
     /// Results at the probes.
     pub probes: Vec<ProbeResult>,
-    /// Inverted elements, largest strain, and change of the body's area.
+    /// Deformation of the final state.
     pub deformation: Deformation,
 }
 

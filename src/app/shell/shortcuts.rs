@@ -76,8 +76,8 @@ const SHORTCUTS: &[Shortcut] = &[
     key(Key::F1, "This list", || Action::Toggle(Toggle::Help)),
 ];
 
-/// Returns the actions of the keys pressed in this frame; none while text is edited or a list is open. Space belongs to the control with
-/// the focus, if there is one.
+/// Returns the actions of the keys pressed in this frame; none while text is edited or a list is open. Space belongs to
+/// the control with the focus, if there is one.
 pub(crate) fn actions(ctx: &Context) -> Vec<Action> {
     if ctx.text_edit_focused() || ctx.any_popup_open() {
         return Vec::new();
