@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 23_979),
+    ("app", &["src/app"], 23_978),
     ("study", &["src/study"], 6_616),
     ("model", &["src/model", "src/scene"], 3_173),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 19_337),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 58_334;
+const SRC: usize = 58_333;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
