@@ -73,10 +73,10 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
         moduli: Lame,
         Sums { force, magnitude, mut matrix }: Sums<'_>,
     ) {
+        let mut sum = ElementMatrix::zero();
         for ((numbers, nodes), points) in self.nodes.batches().zip(&self.points) {
             let gathered = gather(nodes);
             let mut own = [zero_vector(); N];
-            let mut sum = ElementMatrix::zero();
             for (q, point) in points.iter().enumerate() {
                 let PointStress { rotation, trace, stress } = look(&gathered, numbers.points(Q, q), point);
                 let stress = stress * point.area;
@@ -88,6 +88,7 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
             add_forces(numbers.count, nodes, &own, force, magnitude);
             if let Some(MatrixSum { slots, values, .. }) = &mut matrix {
                 sum.scatter(numbers.first, numbers.count, slots, values);
+                sum = ElementMatrix::zero();
             }
         }
     }
@@ -208,8 +209,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
         }
     }
 
-    fn viscous_matrix(&self, moduli: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
-        let Lame { lambda, mu } = moduli;
+    fn viscous_matrix(&self, Lame { lambda, mu }: Lame, u: &[Vector2<f64>], slots: &[u32], values: &mut [f64]) {
         for (e, (nodes, points)) in self.elements().enumerate() {
             let own = at_nodes(nodes, u);
             let mut sum = ElementMatrix::<N, f64>::zero();
