@@ -32,4 +32,4 @@ pub use probe::NodalProbe;
 pub use problem::{Change, Forces, Problem};
 pub(crate) use supports::LARGEST_TURN;
 pub use supports::{NodalSupport, Supports};
-pub use system::{System, SystemError};
+pub use system::{SimulationError, System};

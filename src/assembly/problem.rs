@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::{Kinematics, Loads, Matrix, MouseSpring, NodalProbe, Supports, System, SystemError};
+use super::{Kinematics, Loads, Matrix, MouseSpring, NodalProbe, SimulationError, Supports, System};
 use crate::element::{ElementLoops, MatrixSum, Sums, Tangent, UNIT};
 use crate::material::Lame;
 use crate::scene::{Load, Material, Pulse, Scene};
@@ -94,7 +94,7 @@ impl Problem {
     ///
     /// # Errors
     /// The invalid key and the expected value.
-    pub fn new(scene: &Scene, system: Arc<System>) -> Result<Self, SystemError> {
+    pub fn new(scene: &Scene, system: Arc<System>) -> Result<Self, SimulationError> {
         let system = system.adapt(scene, None)?;
         Ok(Self {
             material: scene.material,
@@ -112,7 +112,7 @@ impl Problem {
     ///
     /// # Errors
     /// Same errors as [`Self::new`]; the problem is then unchanged.
-    pub fn update(&mut self, before: &Scene, scene: &Scene) -> Result<Change, SystemError> {
+    pub fn update(&mut self, before: &Scene, scene: &Scene) -> Result<Change, SimulationError> {
         let system = self.system.adapt(scene, Some(before))?;
         let same_mesh = system.shares_mesh(&self.system);
         let same_system = Arc::ptr_eq(&system, &self.system);

@@ -17,11 +17,25 @@ use crate::sentence::{Sentence, sentence};
 use crate::solver::{SolverError, Symbolic};
 use crate::state::{State, StateError};
 
-/// Reason why the equations of a scene could not be set up.
+/// Reason why a scene cannot be simulated.
+///
+/// ```
+/// use warpbeam::{Scene, Simulation, SimulationError, SolverError};
+///
+/// let scene = Scene::beam(10.0, 1.0).clamp("left").force("tip", [0.0, -1.0]); // the edge is called `right`
+/// let advice = match Simulation::new(&scene).unwrap_err() {
+///     SimulationError::Scene(invalid) => format!("edit {}", invalid.key),
+///     SimulationError::TooLarge { .. } | SimulationError::Solver(SolverError::TooLarge) => {
+///         "use fewer cells".to_owned()
+///     }
+///     other => other.to_string(),
+/// };
+/// assert_eq!(advice, "edit load.0.edge");
+/// ```
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", Sentence::from(self))]
 #[non_exhaustive]
-pub enum SystemError {
+pub enum SimulationError {
     /// The scene has an invalid value, or names an edge or point that the mesh does not have.
     Scene(#[from] Invalid),
     /// The factor of the matrix does not fit in memory.
@@ -29,16 +43,19 @@ pub enum SystemError {
         /// Number of free unknowns.
         unknowns: usize,
     },
+    /// Not enough memory.
+    Solver(#[from] SolverError),
 }
 
-impl From<&SystemError> for Sentence {
-    fn from(error: &SystemError) -> Self {
+impl From<&SimulationError> for Sentence {
+    fn from(error: &SimulationError) -> Self {
         match error {
-            SystemError::Scene(invalid) => invalid.into(),
-            SystemError::TooLarge { unknowns } => sentence!(
+            SimulationError::Scene(invalid) => invalid.into(),
+            SimulationError::TooLarge { unknowns } => sentence!(
                 "the factorization of %{n} unknowns does not fit in memory; use a coarser mesh",
                 n = *unknowns
             ),
+            SimulationError::Solver(error) => error.into(),
         }
     }
 }
@@ -122,7 +139,7 @@ impl System {
     ///
     /// # Errors
     /// The invalid key and the expected value, or that the mesh is too large.
-    pub fn new(scene: &Scene) -> Result<Self, SystemError> {
+    pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
         Self::for_display(scene)?.analysed()
     }
 
@@ -130,7 +147,7 @@ impl System {
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
-    pub fn for_display(scene: &Scene) -> Result<Self, SystemError> {
+    pub fn for_display(scene: &Scene) -> Result<Self, SimulationError> {
         scene.validate()?;
         let origin = match (&scene.beam, &scene.mesh) {
             (Some(beam), _) => Origin::Beam(beam.clone()),
@@ -165,7 +182,7 @@ impl System {
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
-    pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SystemError> {
+    pub fn with_mesh(scene: &Scene, mesh: Mesh) -> Result<Self, SimulationError> {
         scene.validate_all_but_geometry(None)?;
         Self::of_body(Arc::new(MeshData::new(Origin::Given, mesh)), scene)?.analysed()
     }
@@ -176,7 +193,7 @@ impl System {
     ///
     /// # Errors
     /// Same errors as [`Self::new`].
-    pub fn adapt(self: &Arc<Self>, scene: &Scene, valid: Option<&Scene>) -> Result<Arc<Self>, SystemError> {
+    pub fn adapt(self: &Arc<Self>, scene: &Scene, valid: Option<&Scene>) -> Result<Arc<Self>, SimulationError> {
         let same_mesh = match &self.body.origin {
             Origin::Given => true,
             Origin::Beam(beam) => scene.beam.as_ref() == Some(beam) && scene.mesh.is_none(),
@@ -196,7 +213,7 @@ impl System {
         Ok(Arc::new(Self::of_body(self.body.clone(), scene)?.analysed()?))
     }
 
-    fn of_body(body: Arc<MeshData>, scene: &Scene) -> Result<Self, SystemError> {
+    fn of_body(body: Arc<MeshData>, scene: &Scene) -> Result<Self, SimulationError> {
         let points = held_points(&scene.supports, &body.mesh);
         let fixed = fixed_unknowns(&scene.supports, &body.mesh, &points)?;
         let held = HeldPoints::solve(points, &fixed);
@@ -214,8 +231,8 @@ impl System {
     }
 
     /// Computes the symbolic factorization.
-    fn analysed(self) -> Result<Self, SystemError> {
-        self.symbolic().map_err(|_| SystemError::TooLarge { unknowns: self.pattern.dofs() })?;
+    fn analysed(self) -> Result<Self, SimulationError> {
+        self.symbolic().map_err(|_| SimulationError::TooLarge { unknowns: self.pattern.dofs() })?;
         Ok(self)
     }
 

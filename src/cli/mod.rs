@@ -12,13 +12,13 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser};
 
 use self::args::{Cli, Command};
-use crate::assembly::{Problem, System, SystemError};
+use crate::assembly::{Problem, SimulationError, System};
 use crate::format::number;
 use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError};
+use crate::simulation::Simulation;
 #[cfg(feature = "app")]
 use crate::simulation::Status;
-use crate::simulation::{Simulation, SimulationError};
 
 mod args;
 mod commands;
@@ -200,7 +200,7 @@ fn validated(source: &scene::Source) -> Result<(Scene, Arc<System>), CliError> {
 /// Adds the place in the scene file to the reason for which a scene cannot be simulated.
 fn refused(source: &scene::Source, error: SimulationError) -> CliError {
     match error {
-        SimulationError::System(SystemError::Scene(invalid)) => scene::locate(source, invalid).into(),
+        SimulationError::Scene(invalid) => scene::locate(source, invalid).into(),
         error => about(source, error),
     }
 }

@@ -5,13 +5,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
-use thiserror::Error;
 
 use self::motion::{TimeStepping, start_of};
 use self::search::Search;
-use crate::assembly::{
-    Change, Forces, Kinematics, LinearSystem, Mass, MouseSpring, NodalProbe, Problem, System, SystemError,
-};
+use crate::assembly::{Change, Forces, Kinematics, LinearSystem, Mass, MouseSpring, NodalProbe, Problem, System};
 use crate::dynamics::StopReason;
 use crate::element::Tangent;
 use crate::mesh::{MaterialPoint, Mesh};
@@ -19,8 +16,6 @@ use crate::method::{AutoReport, Certificate, Restart, is_useful_start};
 use crate::rotation::{Rotation, polar};
 use crate::scene::{Analysis, Invalid, Scene};
 use crate::section::Wrench;
-use crate::sentence::Sentence;
-use crate::solver::SolverError;
 use crate::state::{State, StateError, is_finite};
 use crate::stress::{ErrorEstimate, NodalStress};
 use crate::timings::Timings;
@@ -36,6 +31,7 @@ mod view;
 
 pub use self::motion::Moment;
 pub use self::view::{Equilibrium, Motion};
+pub use crate::assembly::SimulationError;
 pub use field::Field;
 pub use point::{PointState, PointValues};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
@@ -46,46 +42,6 @@ pub use results::{
     supports_power,
 };
 pub use status::Status;
-
-/// Reason why a scene cannot be simulated.
-///
-/// ```
-/// use warpbeam::{Scene, Simulation, SimulationError, SolverError, SystemError};
-///
-/// let scene = Scene::beam(10.0, 1.0).clamp("left").force("tip", [0.0, -1.0]); // the edge is called `right`
-/// let advice = match Simulation::new(&scene).unwrap_err() {
-///     SimulationError::System(SystemError::Scene(invalid)) => format!("edit {}", invalid.key),
-///     SimulationError::System(SystemError::TooLarge { .. }) | SimulationError::Solver(SolverError::TooLarge) => {
-///         "use fewer cells".to_owned()
-///     }
-///     other => other.to_string(),
-/// };
-/// assert_eq!(advice, "edit load.0.edge");
-/// ```
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{}", Sentence::from(self))]
-#[non_exhaustive]
-pub enum SimulationError {
-    /// The equations of the scene could not be set up.
-    System(#[from] SystemError),
-    /// Not enough memory.
-    Solver(#[from] SolverError),
-}
-
-impl From<&SimulationError> for Sentence {
-    fn from(error: &SimulationError) -> Self {
-        match error {
-            SimulationError::System(error) => error.into(),
-            SimulationError::Solver(error) => error.into(),
-        }
-    }
-}
-
-impl From<Invalid> for SimulationError {
-    fn from(invalid: Invalid) -> Self {
-        Self::System(invalid.into())
-    }
-}
 
 /// Results of a state; [`Motion`] has further results of a motion.
 #[derive(Clone, Debug, PartialEq)]

@@ -327,7 +327,7 @@ fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Opt
 }
 
 pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
-    Ok(Arc::new(System::new(scene).map_err(SimulationError::from)?))
+    Ok(Arc::new(System::new(scene)?))
 }
 
 /// Returns the displacement of every probe, m.

@@ -81,7 +81,7 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
     let system = solved(&good()).system().clone();
     for scene in wrong {
         let error = Simulation::new(&scene).map(|_| ()).unwrap_err();
-        let SimulationError::System(SystemError::Scene(invalid)) = &error else { panic!("{scene:?}: {error}") };
+        let SimulationError::Scene(invalid) = &error else { panic!("{scene:?}: {error}") };
         assert!(invalid.message().starts_with("expected "), "{scene:?}: {error}");
         assert_eq!(error.to_string(), format!("{}: {}", invalid.key, invalid.message()));
         assert!(Simulation::with_system(&scene, system.clone()).is_err());

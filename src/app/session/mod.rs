@@ -26,10 +26,10 @@ use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, note_residual, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::assembly::SystemError;
+use crate::assembly::SimulationError;
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
-use crate::simulation::{Equilibrium, SimulationError};
+use crate::simulation::Equilibrium;
 use crate::state::State;
 use crate::study::{SolveFromRest, StudyError, is_unstable};
 use crate::timings::Timings;
@@ -880,12 +880,10 @@ pub(crate) fn object_name(key: &str) -> String {
 /// Returns the reason for which an edit was refused, in the words of the panel.
 fn refusal(error: SimulationError) -> Sentence {
     match error {
-        SimulationError::System(SystemError::Scene(invalid)) if invalid.key == "support" => {
+        SimulationError::Scene(invalid) if invalid.key == "support" => {
             sentence!("the body could move freely: supports must hold it along x, along y and against rotation")
         }
-        SimulationError::System(SystemError::Scene(invalid)) => {
-            Sentence::located(object_name(&invalid.key), invalid.message.clone())
-        }
+        SimulationError::Scene(invalid) => Sentence::located(object_name(&invalid.key), invalid.message.clone()),
         other => (&other).into(),
     }
 }

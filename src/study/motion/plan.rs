@@ -55,7 +55,7 @@ impl Samples {
         let own = scene.dynamics.time_step;
         let system = system_of(scene)?;
         let mass = Mass::new(&system, scene.material.area_density());
-        let problem = Problem::new(scene, system).map_err(SimulationError::from)?;
+        let problem = Problem::new(scene, system)?;
         // A body that is free to move has no lowest period.
         let frequency = lowest_frequency(&problem, &mass).filter(|frequency| *frequency > 0.0);
         let period = frequency.map(|frequency| TAU / frequency).filter(|period| period.is_finite());

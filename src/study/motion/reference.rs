@@ -163,7 +163,7 @@ fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2], St
         if elements > MAX_ELEMENTS {
             return Err(StudyError::TooFine { elements });
         }
-        *system = Arc::new(System::with_mesh(scene, system.mesh().refined()).map_err(SimulationError::from)?);
+        *system = Arc::new(System::with_mesh(scene, system.mesh().refined())?);
     }
     Ok([coarse, fine])
 }
