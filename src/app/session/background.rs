@@ -1,11 +1,11 @@
-//! Background solve of large models, one at a time. The last snapshot stays on display; edits change the requested
+//! Background solve of large models, one at a time. The model before stays on display; edits change the requested
 //! scene, which the next solve uses.
 
 use crate::app::prelude::*;
 use crate::app::session::undo::Version;
 use crate::app::session::{Notice, Session, has_mesh_of};
 use crate::app::task::solve::{
-    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveProgress, SolveRequest,
+    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest,
 };
 use crate::app::task::thread::Update;
 
@@ -35,8 +35,6 @@ pub(super) struct Before {
     pub label: Option<&'static str>,
     /// `true` while the scene of a newly opened document is not displayed yet.
     pub is_another_document: bool,
-    /// Model displayed before the first snapshot.
-    model: Option<Model>,
 }
 
 impl Session {
@@ -99,7 +97,6 @@ impl Session {
                 depth: self.undo.past.len(),
                 label: None,
                 is_another_document: false,
-                model: None,
             }));
         }
     }
@@ -120,11 +117,7 @@ impl Session {
         let Some(solve) = &mut self.background.solve else { return false };
         match solve.task.next(waits) {
             Update::None => return false,
-            Update::Progress(SolveProgress::Phase(phase)) => solve.phase = phase,
-            Update::Progress(SolveProgress::Snapshot(snapshot, receipt)) => {
-                drop(receipt);
-                self.display(*snapshot);
-            }
+            Update::Progress(phase) => solve.phase = phase,
             Update::Done(outcome) => self.receive(outcome),
             Update::Died => {
                 self.roll_back();
@@ -138,8 +131,11 @@ impl Session {
 
     fn receive(&mut self, outcome: SolveOutcome) {
         let Some(solve) = self.background.solve.take() else { return };
+        // A solve that was cancelled, to go on after a change, has no result yet.
+        let Background { from_rest, iterations, .. } = self.background;
+        let goes_on = from_rest || iterations.is_some() || self.running && solve.task.is_cancelled();
         match outcome {
-            Ok(model) if solve.scene == self.present.scene => self.display(*model),
+            Ok(model) if solve.scene == self.present.scene && !goes_on => self.display(*model),
             // The next solve continues with the model of one that an edit has superseded.
             Ok(model) if has_mesh_of(&self.present.scene, &solve.scene) => self.start_solve(Some(model)),
             Err(error) if solve.scene == self.present.scene => {
@@ -151,17 +147,13 @@ impl Session {
         }
     }
 
-    /// Displays a snapshot or a result in place of the current model.
+    /// Displays a result in place of the current model.
     fn display(&mut self, model: Model) {
-        let model = std::mem::replace(&mut self.model, model);
-        let scene = model.simulation.scene().clone();
+        let scene = std::mem::replace(&mut self.model, model).simulation.scene().clone();
         self.timings = *self.model.simulation.last_iteration();
-        let is_another_document = self.background.before.as_mut().is_some_and(|before| {
-            before.model.get_or_insert(model);
-            std::mem::take(&mut before.is_another_document)
-        });
         self.scene_changed(&scene);
-        if is_another_document {
+        let before = self.background.before.as_mut();
+        if before.is_some_and(|before| std::mem::take(&mut before.is_another_document)) {
             self.start_document();
         }
     }
@@ -225,13 +217,8 @@ impl Session {
     /// Drops the background solve, and restores the session before the edit.
     fn roll_back(&mut self) {
         let Some(before) = std::mem::take(&mut self.background).before else { return };
-        let Before { version, depth, model, .. } = *before;
+        let Before { version, depth, .. } = *before;
         self.undo.take_back(depth);
         self.present = version;
-        if let Some(model) = model {
-            let scene = self.model.simulation.scene().clone();
-            self.model = model;
-            self.scene_changed(&scene);
-        }
     }
 }

@@ -306,7 +306,7 @@ impl Session {
     }
 
     /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
-    /// changes when its first snapshot arrives.
+    /// changes when it is solved.
     ///
     /// # Errors
     /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background

@@ -118,7 +118,7 @@ fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
     for cells in [[16, 4], [8, 2]] {
         let cancelled = first.clone().with_cells(cells[0], cells[1]).force("top", [0.0, -50.0]);
         session.apply(Edit::Scene("Force", Box::new(cancelled.clone()))).unwrap();
-        // The thread reports a snapshot, which nothing has polled when the user cancels.
+        // The thread has ended, and nothing has polled its result, when the user cancels.
         std::thread::sleep(std::time::Duration::from_millis(100));
         session.cancel();
         session.apply(with_force(&session, -150.0)).unwrap();

@@ -16,9 +16,6 @@ pub(crate) const MAX_UNKNOWNS: u64 = 16_000;
 /// Largest number of unknowns of a model that is solved between two frames in a pane of Compare, which shows several.
 pub(crate) const MAX_PANE_UNKNOWNS: u64 = 4000;
 
-/// Time between two snapshots while a model is solved.
-const SNAPSHOT: Duration = Duration::from_millis(100);
-
 /// Largest number of residuals recorded for one solve.
 const MAX_RESIDUALS: usize = 400;
 
@@ -170,8 +167,7 @@ pub(crate) struct SolveRequest {
     pub from_rest: bool,
     /// Largest number of iterations; `None` for no limit.
     pub iterations: Option<u32>,
-    /// `true` if the main view shows the model: the solve then reports snapshots, and also computes the solution of
-    /// linear theory and the quality.
+    /// `true` if the main view shows the model: the solve then also computes the solution of linear theory and the quality.
     pub is_displayed: bool,
 }
 
@@ -185,22 +181,13 @@ pub(crate) enum Phase {
     Certifying,
 }
 
-/// Progress of a solve.
-#[derive(Debug)]
-pub(crate) enum SolveProgress {
-    Phase(Phase),
-    /// Snapshot, and a copy of its receipt, dropped when the snapshot has been received: until then no other one is made, so
-    /// that those of a hidden window, which receives none, do not pile up.
-    Snapshot(Box<Model>, Arc<()>),
-}
-
 /// Solved model, or the error of a scene that has none.
 pub(crate) type SolveOutcome = Result<Box<Model>, SimulationError>;
 
 /// Solve in a background thread, or on a web page after the current frame. Dropping it cancels it.
 #[derive(Debug)]
 pub(crate) struct BackgroundSolve {
-    pub task: Task<SolveProgress, SolveOutcome>,
+    pub task: Task<Phase, SolveOutcome>,
     /// Scene that is solved.
     pub scene: Scene,
     pub phase: Phase,
@@ -214,21 +201,19 @@ impl BackgroundSolve {
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
         let phase = if matches!(request.base, ModelBase::None) { Phase::Meshing } else { Phase::Iterating(0) };
         let scene = request.scene.clone();
-        let work = move |reporter: &Reporter<_, _>| run(request, &|progress| reporter.report(progress));
+        let work = move |reporter: &Reporter<_, _>| run(request, &|phase| reporter.report(phase));
         Ok(Self { task: Task::start("solve", work)?, scene, phase })
     }
 
-    /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended. Snapshots are
-    /// dropped.
+    /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended.
     pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Model>, Sentence>> {
         loop {
             return Some(match self.task.poll() {
                 Update::None => return None,
-                Update::Progress(SolveProgress::Phase(phase)) => {
+                Update::Progress(phase) => {
                     self.phase = phase;
                     continue;
                 }
-                Update::Progress(SolveProgress::Snapshot(..)) => continue,
                 Update::Done(outcome) => outcome.map_err(|error| (&error).into()),
                 Update::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
             });
@@ -290,7 +275,7 @@ pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
 ///
 /// # Errors
 /// [`SimulationError`].
-fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>) -> SolveOutcome {
+fn run(request: SolveRequest, report: &dyn Fn(Phase) -> ControlFlow<()>) -> SolveOutcome {
     let SolveRequest { scene, base, from_rest, iterations, is_displayed } = request;
     let is_new = matches!(base, ModelBase::None);
     let mut model = base.set_up(&scene)?;
@@ -303,68 +288,24 @@ fn run(request: SolveRequest, report: &dyn Fn(SolveProgress) -> ControlFlow<()>)
     }
     if is_displayed && model.linear.as_ref().is_none_or(|linear| *linear.scene() != linear_scene(&scene)) {
         let known = model.linear.take();
-        if report(SolveProgress::Phase(Phase::LinearSolve)).is_continue() {
+        if report(Phase::LinearSolve).is_continue() {
             model.linear = solve_linear(&scene, model.simulation.system(), known);
         }
     }
     let is_search = model.simulation.motion().is_none();
-    let (mut made, mut shown, receipt) = (0, None::<Instant>, Arc::new(()));
+    let mut made = 0;
     while is_search
         && *model.simulation.status() == Status::Running
         && iterations.is_none_or(|most| made < most)
-        && report(SolveProgress::Phase(Phase::Iterating(model.simulation.iterations()))).is_continue()
+        && report(Phase::Iterating(model.simulation.iterations())).is_continue()
     {
         model.simulation.step();
         note_residual(&model.simulation, &mut model.residuals);
         made += 1;
-        if is_displayed
-            && shown.is_none_or(|shown| shown.elapsed() >= SNAPSHOT)
-            && Arc::strong_count(&receipt) == 1
-            && let Some(snapshot) = model.snapshot()
-        {
-            let _ = report(SolveProgress::Snapshot(Box::new(snapshot), receipt.clone()));
-            shown = Some(Instant::now());
-        }
     }
     let has_ended = is_search && *model.simulation.status() != Status::Running;
-    if is_displayed && has_ended && report(SolveProgress::Phase(Phase::Certifying)).is_continue() {
+    if is_displayed && has_ended && report(Phase::Certifying).is_continue() {
         model.quality = Quality::certified(&mut model.simulation);
     }
     Ok(model)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::RefCell;
-
-    use super::*;
-
-    /// The snapshots of a hidden window, which receives none, do not pile up.
-    #[test]
-    fn a_snapshot_waits_until_the_one_before_has_been_received() {
-        let scene = Scene::beam(20.0, 1.0).with_cells(600, 9).clamp("left").force("right", [0.0, -100.0]);
-        let request = || SolveRequest {
-            scene: scene.clone(),
-            base: ModelBase::None,
-            from_rest: true,
-            iterations: None,
-            is_displayed: true,
-        };
-        let (held, received) = (RefCell::new(Vec::new()), RefCell::new(0));
-        for holds in [true, false] {
-            run(request(), &|progress| {
-                if matches!(progress, SolveProgress::Snapshot(..)) {
-                    *received.borrow_mut() += u32::from(!holds);
-                    held.borrow_mut().extend(holds.then_some(progress));
-                } else {
-                    // The next snapshot is due after this time.
-                    std::thread::sleep(SNAPSHOT);
-                }
-                ControlFlow::Continue(())
-            })
-            .unwrap();
-        }
-        assert_eq!(held.borrow().len(), 1);
-        assert!(*received.borrow() > 1);
-    }
 }

@@ -121,6 +121,11 @@ impl<P, T> Task<P, T> {
         self.is_cancelled.store(true, Ordering::Relaxed);
         self.worker.iter().for_each(platform::work::end);
     }
+
+    /// Returns `true` if [`Self::cancel`] has been called.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
 }
 
 /// Does work in a worker, and sends its reports and its result to the page.
