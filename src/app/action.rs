@@ -45,8 +45,6 @@ pub(crate) enum Action {
     Reset,
     /// Set the playback speed, simulated seconds per second.
     Speed(f64),
-    /// Show the same motion with another integrator; if it is shown, hide it.
-    Compare(IntegratorKind),
     /// Fit the camera to the whole body.
     Fit,
     /// Show or hide a part of the display.

@@ -20,10 +20,15 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
-    fits("--compare", options.compare.is_some(), false, "it shows equilibria; for a motion, use --motion")?;
+    fits(
+        "--compare",
+        options.compare.is_some(),
+        false,
+        "it shows equilibria; for a motion, --motion shows the energy",
+    )?;
     fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;
     fits("--sections", options.sections, false, "for a motion, use `warpbeam section`")?;
-    fits("--motion", options.motion.is_some(), true, "it shows integrators; for an equilibrium, use --compare")?;
+    fits("--motion", options.motion, true, "it shows the energy of a motion; for an equilibrium, use --compare")?;
     fits(
         "--study",
         options.study && options.learn.is_none(),

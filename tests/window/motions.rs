@@ -144,25 +144,6 @@ fn the_past_ends_at_the_present_and_begins_with_the_scene() {
     assert_eq!(time(&ui), 0.0);
 }
 
-/// One that did not run at the displayed time starts from the body's state.
-#[test]
-fn companions_return_to_the_same_moment() {
-    let mut ui = open("swing");
-    for kind in [IntegratorKind::ImplicitEuler, IntegratorKind::EnergyMomentum] {
-        ui.state_mut().desk.session.toggle_companion(kind);
-        ui.run_steps(20);
-    }
-    key(&mut ui, Key::E);
-    press_line(&mut ui, 0.25);
-    ui.drop_at(on_line(&ui, 0.25));
-    ui.run_steps(2);
-    key(&mut ui, Key::Space);
-    ui.run_steps(10);
-    assert!(ui.simulation().state().is_finite());
-    press_line(&mut ui, 0.0);
-    assert_eq!(time(&ui), 0.0);
-}
-
 /// A body that vibrates fast offers a speed of one period per second.
 #[test]
 fn a_chime_is_slowed_to_a_period_a_second() {

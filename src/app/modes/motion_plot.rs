@@ -44,27 +44,19 @@ impl PlotLine {
 /// Shows the chosen plot, with the names of its lines above it.
 pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, integrator: IntegratorKind) {
     let palette = Palette::new(ui.visuals());
-    let companions = playback.companions.iter().map(|c| (c.integrator, &c.history));
-    let motions: Vec<_> = std::iter::once((integrator, &playback.history)).chain(companions).collect();
     let axis = playback.history.axis();
     let probe = format!("{} {}", tr(&playback.history.probe), ["x", "y"][axis]);
     let before_end = playback.shown.zip(playback.span()).map(|(shown, [_, last])| last - shown);
     let seconds = before_end.unwrap_or_default().max(SHOWN);
-    let per_motion = |name: &dyn Fn(&str) -> String, width: f32, value: &dyn Fn(&MotionSample) -> f64| {
-        let line = |&(kind, history): &(IntegratorKind, &History)| {
-            PlotLine::new((name(tr(kind.id())), palette.integrator(kind), width), (history, seconds), value)
-        };
-        motions.iter().map(line).collect()
-    };
     let (id, y) = match chosen {
         MotionPlot::Energy => ("energy", (tr("energy"), "J")),
         MotionPlot::Tip => ("tip", (&*probe, "m")),
     };
-    let lines: Vec<PlotLine> = match (&*chosen, &motions[..]) {
-        (MotionPlot::Tip, _) => per_motion(&str::to_owned, 1.5, &|s| s.displacement[axis]),
-        (MotionPlot::Energy, [(_, history)]) => energies(history, seconds, &palette),
-        (MotionPlot::Energy, _) => {
-            per_motion(&|integrator| fill!("total, %{integrator}", integrator), 2.5, &|s| s.ledger.total())
+    let lines = match chosen {
+        MotionPlot::Energy => energies(&playback.history, seconds, &palette),
+        MotionPlot::Tip => {
+            let look = (tr(integrator.id()).to_owned(), palette.integrator(integrator), 1.5);
+            vec![PlotLine::new(look, (&playback.history, seconds), |s| s.displacement[axis])]
         }
     };
     ui.horizontal_wrapped(|ui| {

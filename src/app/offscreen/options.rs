@@ -8,7 +8,6 @@ use crate::app::modes::compare::{PaneSetting, parse_panes};
 use crate::app::modes::learn::card_count;
 use crate::app::prelude::*;
 use crate::app::view_options::Magnification;
-use crate::dynamics::INTEGRATORS;
 use crate::scene::keys::range;
 use crate::scene::limits::PLAYBACK_SPEED;
 use crate::scene::units::within;
@@ -72,9 +71,9 @@ pub struct ShotOptions {
     /// Show a card of the window's Learn mode, numbered from 1: each shows the article's beam, whatever the scene.
     #[arg(long, value_name = "CARD", value_parser = clap::value_parser!(u8).range(1..=i64::try_from(card_count()).unwrap_or(i64::MAX)), conflicts_with_all = ["curve", "sections", "motion"])]
     pub learn: Option<u8>,
-    /// For a dynamic scene: add the plot of its energy, and show the same motion with other integrators side by side.
-    #[arg(long, value_name = "INTEGRATOR", num_args = 0.., value_parser = parse_integrator, conflicts_with_all = ["curve", "sections", "study"])]
-    pub motion: Option<Vec<IntegratorKind>>,
+    /// For a dynamic scene: add the plot of its energy.
+    #[arg(long, conflicts_with_all = ["curve", "sections", "study"])]
+    pub motion: bool,
     /// Show two to four panes side by side under one load. A pane is a method, an element, cells or an iteration limit,
     /// or several of these separated by colons, in any order; the rest is as in the scene: linear,warped,newton or
     /// warped:t3,warped:t6:10x2,newton:5. `scene` is the scene unchanged.
@@ -109,12 +108,6 @@ pub struct RecordOptions {
     /// Appearance.
     #[command(flatten)]
     pub look: LookArgs,
-}
-
-fn parse_integrator(text: &str) -> Result<IntegratorKind, String> {
-    let known = || INTEGRATORS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", ");
-    let entry = INTEGRATORS.iter().find(|entry| entry.id == text);
-    entry.map(|entry| entry.kind).ok_or_else(|| format!("expected one of {}", known()))
 }
 
 fn parse_field(text: &str) -> Result<Field, String> {

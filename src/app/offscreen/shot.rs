@@ -60,9 +60,8 @@ pub fn shot(
     if options.limits {
         lab.show_tab(MeasureTab::HowFar);
     }
-    if let Some(integrators) = &options.motion {
+    if options.motion {
         lab.desk.view.drawer = Some(Drawer::Motion);
-        integrators.iter().for_each(|&integrator| lab.desk.session.toggle_companion(integrator));
     }
     if let Some(panes) = &options.compare {
         lab.show_comparison(panes);

@@ -1,5 +1,4 @@
-//! Panel section of a motion: integrator, time step, solves per step, damping, speed, and the other integrators for
-//! comparison.
+//! Panel section of a motion: integrator, time step, solves per step, damping and speed.
 
 use crate::app::interface::*;
 use crate::app::panel::Panel;
@@ -66,16 +65,6 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let chosen = settings.integrator.entry();
     let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
     panel.picker(ui, "Integrator", (chosen.id, chosen.about), entries, |scene, kind| scene.dynamics.integrator = kind);
-    ui.horizontal_wrapped(|ui| {
-        ui.label(tr("Compare integrators"))
-            .on_hover_text(tr("The same motion with other integrators: outlines in the view, lines in the plots"));
-        for entry in INTEGRATORS.iter().filter(|entry| entry.kind != settings.integrator) {
-            let is_shown = input.session.playback.companions.iter().any(|c| c.integrator == entry.kind);
-            if ui.add(option_button(is_shown, tr(entry.id))).on_hover_text(tr(entry.about)).clicked() {
-                panel.actions.push(Action::Compare(entry.kind));
-            }
-        }
-    });
     panel.rows(ui, TIME);
     if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
         let text = fill!("The critical time step near rest is %{step}.", step = engineering(critical, "s"));

@@ -267,7 +267,7 @@ impl Session {
 
     /// Returns `true` if everything is at rest and the next iteration changes nothing.
     pub(crate) fn has_ended(&self) -> bool {
-        self.model.simulation.is_at_rest() && !self.playback.companions_move()
+        self.model.simulation.is_at_rest()
     }
 
     /// Returns `true` if the scene has unsaved edits.
@@ -778,8 +778,7 @@ impl Session {
         self.model.simulation.restore(state).is_ok()
     }
 
-    /// Grabs, pulls and releases the body, and its companion motions under other integrators. A release restores the
-    /// equilibrium before the grab, unless the scene has changed.
+    /// Grabs, pulls and releases the body. A release restores the equilibrium before the grab, unless the scene has changed.
     pub(crate) fn grab(&mut self, grab: Grab) {
         if self.is_in_background() {
             return;
@@ -791,9 +790,7 @@ impl Session {
             && self.model.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
         {
             // Pulling fails only for a position that is not finite; the pointer's is.
-            let pull = |body: &mut Simulation| _ = body.pull_to(target);
-            pull(&mut self.model.simulation);
-            self.playback.each(pull);
+            let _ = self.model.simulation.pull_to(target);
             self.is_edited_now = true;
         }
         if grab.release {
@@ -811,11 +808,7 @@ impl Session {
                     self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.timings));
                 }
             }
-            None => {
-                if self.model.simulation.grab(point) {
-                    self.playback.each(|companion| _ = companion.grab(point));
-                }
-            }
+            None => _ = self.model.simulation.grab(point),
         }
     }
 
@@ -827,7 +820,6 @@ impl Session {
         }
         self.is_from_rest = false;
         self.model.simulation.release();
-        self.playback.each(Simulation::release);
         self.begin_accepted_at_rest();
     }
 
@@ -851,13 +843,6 @@ impl Session {
         let is_shown = self.playback.show_neighbour(forward, &mut self.model.simulation);
         if forward && !is_shown {
             self.iterate();
-        }
-    }
-
-    /// Adds the same motion under another integrator, or removes it.
-    pub fn toggle_companion(&mut self, integrator: IntegratorKind) {
-        if self.is_motion() && integrator != self.present.scene.dynamics.integrator {
-            self.playback.toggle(integrator, &self.model.simulation);
         }
     }
 }

@@ -113,7 +113,6 @@ impl Lab {
                 self.desk.session.playback.clock.set_speed(speed);
                 self.desk.compare.clock.set_speed(speed);
             }
-            Action::Compare(integrator) => self.desk.session.toggle_companion(integrator),
             Action::Fit => {
                 self.desk.viewport.clear_swept();
                 self.desk.viewport.camera.fit();

@@ -61,18 +61,6 @@ impl Lab {
 
     pub(super) fn show_notices(&mut self, ctx: &Context) {
         self.apply_session_changes();
-        for (integrator, step) in std::mem::take(&mut self.desk.session.playback.unstable) {
-            let integrator = tr(integrator.id());
-            let text = match step {
-                Some(step) => fill!(
-                    "%{integrator} is unstable: its critical time step is %{step}",
-                    integrator,
-                    step = engineering(step, "s")
-                ),
-                None => fill!("%{integrator} is unstable: its time steps fail", integrator),
-            };
-            self.say(ctx, text);
-        }
         for Notice { label, message } in std::mem::take(&mut self.desk.session.notices) {
             match label {
                 Some(label) => self.refuse(ctx, label, message),

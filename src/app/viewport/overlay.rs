@@ -156,11 +156,6 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     if let Some(linear) = overlay.ghost {
         draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
-    for companion in overlay.playback.companions.iter().filter(|companion| !companion.is_absent) {
-        let u = companion.simulation.displacement();
-        let color = palette.integrator(companion.integrator);
-        draw(&|n| drawn(n, u), Stroke::new(1.5, color));
-    }
     if !overlay.apart {
         draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
     }
@@ -170,7 +165,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
         dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
     }
     if overlay.options.trail {
-        trails(painter, &projection, overlay, palette);
+        trail(painter, &projection, overlay, palette);
     }
 }
 
@@ -316,25 +311,22 @@ fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], str
 }
 
 /// Paints the fading trail of the first probe over the last seconds.
-fn trails(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn trail(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
     /// Duration of the trail, s.
     const DURATION: f64 = 2.0;
     const MAX_PIECES: usize = 400;
     let playback = overlay.playback;
-    let companions = playback.companions.iter().filter(|companion| !companion.is_absent);
-    let others = companions.map(|c| (&c.history, palette.integrator(c.integrator)));
-    for (history, color) in std::iter::once((&playback.history, palette.solution(overlay.body.scene))).chain(others) {
-        let end = playback.shown.unwrap_or(f64::INFINITY);
-        let end = end.min(history.samples.back().map_or(0.0, |s| s.time));
-        let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
-        let points: Vec<Vector2<f64>> = history.before(end, DURATION).map(drawn).collect();
-        let stride = points.len().div_ceil(MAX_PIECES).max(1);
-        let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
-        for (i, ends) in kept.windows(2).enumerate() {
-            if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
-                let age = i as f32 / kept.len() as f32;
-                painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
-            }
+    let color = palette.solution(overlay.body.scene);
+    let end = playback.shown.unwrap_or(f64::INFINITY);
+    let end = end.min(playback.history.samples.back().map_or(0.0, |s| s.time));
+    let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
+    let points: Vec<Vector2<f64>> = playback.history.before(end, DURATION).map(drawn).collect();
+    let stride = points.len().div_ceil(MAX_PIECES).max(1);
+    let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
+    for (i, ends) in kept.windows(2).enumerate() {
+        if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
+            let age = i as f32 / kept.len() as f32;
+            painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
         }
     }
 }
@@ -623,13 +615,6 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, legends: &Legends<'
         lines.push((palette.text, None, magnified(overlay.magnification)));
     }
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
-    for companion in &overlay.playback.companions {
-        lines.push((
-            palette.integrator(companion.integrator),
-            Some(LegendMark::Line),
-            tr(companion.integrator.id()).to_owned(),
-        ));
-    }
     if overlay.ghost.is_some() {
         let text = values(MethodKind::Linear.id(), [linear, None], legends.areas[1]);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
