@@ -152,11 +152,10 @@ impl Lab {
             Some(MeasureTab::HowFar) => measure.limits_of.as_ref().is_none_or(|base| facts.limits.is_pending(base)),
             Some(MeasureTab::HowFast) | None => false,
         };
-        let learns = self.aside.is_some() && self.learn.is_computing(scene);
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
-        session.is_working() || session.certifying.is_some() || plots || measures || learns || at_rest
+        session.is_working() || session.certifying.is_some() || plots || measures || at_rest
     }
 
     /// Restores the saved settings.

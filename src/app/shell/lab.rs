@@ -207,9 +207,6 @@ impl Lab {
         if view.drawer == Some(Drawer::Section) {
             sections.wait(session.simulation());
         }
-        if self.aside.is_some() {
-            self.learn.wait(session.scene());
-        }
         if view.mode == Mode::Compare {
             compare.solve_to_end(session, view.bars);
         }

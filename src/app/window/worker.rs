@@ -1,6 +1,5 @@
 //! Work that a worker of the web page can do.
 
-use crate::app::modes::learn::ElementErrors;
 use crate::app::platform;
 use crate::app::session::facts::{
     CostFact, CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
@@ -24,7 +23,6 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<CostFact>(),
     entry::<FrequencyFact>(),
     entry::<RhoFact>(),
-    entry::<ElementErrors>(),
     entry::<StudyFact>(),
 ];
 

@@ -3,11 +3,8 @@
 
 use cards::CardDisplay;
 use egui::Panel;
-use locking::ElementError;
 
 use crate::app::interface::*;
-use crate::app::session::facts::without_solver;
-use crate::app::task::keyed::{Keyed, facts};
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::at_right;
 
@@ -34,18 +31,6 @@ const NAVIGATION: f32 = 420.0;
 /// Largest number of elements that are painted one by one.
 const MAX_ELEMENTS: usize = 3000;
 
-facts! {
-    /// Errors of all elements.
-    ElementErrors by without_element = "element-errors": Vec<ElementError>, |scene, observe, _| Ok(locking::errors(scene, observe));
-}
-
-fn without_element(scene: &Scene) -> Scene {
-    let mut scene = without_solver(scene);
-    let first = scene.elements().next().unwrap_or_default();
-    scene.set_element(first);
-    scene
-}
-
 /// State of the mode.
 #[derive(Debug)]
 pub(crate) struct Learn {
@@ -55,7 +40,6 @@ pub(crate) struct Learn {
     picked: usize,
     /// Fraction of the exploded view: 0 for the body itself, 1 for separate, rotated-back elements.
     rotation_part: f64,
-    errors: Keyed<ElementErrors>,
     messages: Messages,
     /// Highlighted line of the pseudocode, from 0.
     pub line: usize,
@@ -103,7 +87,6 @@ impl Learn {
             card: card.min(CARDS.len() - 1),
             picked: 6,
             rotation_part: 1.0,
-            errors: Keyed::default(),
             messages: Messages::new(),
             line: 0,
             shown_line: 0,
@@ -134,18 +117,6 @@ impl Learn {
     /// Returns `true` if the card shows ρ at the equilibrium.
     pub(crate) fn shows_rho(&self) -> bool {
         matches!(self.card().content, CardDisplay::Steps | CardDisplay::Methods)
-    }
-
-    /// Returns `true` while a result of a scene that the card shows is being computed.
-    pub(crate) fn is_computing(&self, scene: &Scene) -> bool {
-        self.card().content == CardDisplay::Elements && self.errors.is_pending(scene)
-    }
-
-    /// Computes the results that the card shows, and waits for them.
-    pub(crate) fn wait(&mut self, scene: &Scene) {
-        if self.card().content == CardDisplay::Elements {
-            self.errors.wait(scene);
-        }
     }
 
     /// Moves the drawn points to their positions in the exploded view.
@@ -189,7 +160,7 @@ impl Learn {
             CardDisplay::Code => code::show(ui, shown, self, actions),
             CardDisplay::Steps => residuals::steps(ui, shown, actions),
             CardDisplay::Methods => residuals::methods(ui, shown, actions),
-            CardDisplay::Elements => locking::show(ui, shown, self, actions),
+            CardDisplay::Elements => locking::show(ui, shown.scene, actions),
             CardDisplay::ToMeasure => {
                 let tip = "Leave the cards, and measure your own scene (B)";
                 if ui.button(tr("Open Measure")).on_hover_text(tr(tip)).clicked() {
@@ -200,9 +171,6 @@ impl Learn {
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Readout<'_>, keys: bool, actions: &mut Vec<Action>) {
-        if self.card().content == CardDisplay::Elements && self.errors.request(shown.scene) {
-            ui.ctx().request_repaint_after(POLL);
-        }
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
