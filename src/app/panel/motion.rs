@@ -2,10 +2,17 @@
 
 use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::session::clock::{fraction, speed_of_period};
 
 /// Selectable speeds with their labels.
-const SPEEDS: [(f64, &str); 4] = [(1.0, "1"), (0.5, "1/2"), (0.25, "1/4"), (0.125, "1/8")];
+const SPEEDS: [(f64, &str); 7] = [
+    (1.0, "1"),
+    (0.5, "1/2"),
+    (0.25, "1/4"),
+    (0.125, "1/8"),
+    (1.0 / 32.0, "1/32"),
+    (1.0 / 128.0, "1/128"),
+    (1e-3, "1/1000"),
+];
 
 /// Rows of time step, solves per step and damping.
 const TIME: [NumberRow; 4] = [
@@ -45,21 +52,12 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
-        let mut button = |speed: f64, word: &str, tip: &str| {
+        let tip = tr("Simulated seconds per second: 1 is real time, less is slow motion");
+        for (speed, word) in SPEEDS {
             let chosen = (input.session.playback.clock.speed - speed).abs() < 1e-9;
             if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 panel.actions.push(Action::Speed(speed));
             }
-        };
-        for (speed, word) in SPEEDS {
-            button(speed, word, tr("Simulated seconds per second: 1 is real time, less is slow motion"));
-        }
-        if let Some((frequency, speed)) =
-            input.session.facts().frequency.latest().and_then(|&f| Some((f, speed_of_period(f)?)))
-        {
-            let frequency = engineering(three_digits(frequency), "Hz");
-            let tip = fill!("One period of the lowest natural frequency, %{frequency}, per second", frequency);
-            button(speed, &fraction(speed), &tip);
         }
     });
     let chosen = settings.integrator.entry();

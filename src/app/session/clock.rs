@@ -2,7 +2,6 @@
 //! rate.
 
 use crate::app::prelude::*;
-use crate::format::two_digits;
 
 /// Displayed frames per second for which the costs of motions are stated.
 pub(crate) const FRAMES: f64 = 60.0;
@@ -12,22 +11,10 @@ const WORK: Duration = Duration::from_millis(24);
 
 /// Lowest playback speed, simulated seconds per second.
 const SLOWEST: f64 = 1e-6;
-/// Speed at which a motion counts as slow enough to follow, unless its frequency is above [`WATCHABLE`]; simulated
-/// seconds per second.
-const SLOW: f64 = 0.125;
-/// Highest frequency, Hz, that the user can follow on the screen.
-const WATCHABLE: f64 = 2.0;
 /// Longest time between two frames that is made up for, s.
 const LONGEST_FRAME: f64 = 0.1;
 /// Interval over which the real-time factor is measured, s.
 const WINDOW: f64 = 0.5;
-
-/// Returns the speed, simulated seconds per second, at which one period of `frequency`, Hz, takes one second: 1 over a
-/// whole number. `None` if the speed 1/8 is slow enough.
-pub(crate) fn speed_of_period(frequency: f64) -> Option<f64> {
-    let is_fast = frequency.is_finite() && frequency * SLOW > WATCHABLE;
-    is_fast.then(|| 1.0 / two_digits(frequency).round())
-}
 
 /// Formats a speed: as a decimal number, or as a fraction with numerator 1 if it is small.
 pub(crate) fn fraction(speed: f64) -> String {
@@ -176,11 +163,7 @@ mod tests {
         assert!(clock.begin(3600.0, 0.01).due <= 10);
     }
     #[test]
-    fn fast_vibrations_are_slowed_to_one_period_per_second() {
-        let offered: Vec<String> =
-            [0.5, 10.0, 16.0, 41.3, 4873.0].into_iter().filter_map(speed_of_period).map(fraction).collect();
-        assert_eq!(offered, ["1/41", "1/4900"]);
-        assert_eq!([1.0, 0.125, 0.0].map(fraction), ["1.00", "0.12", "0.00"]);
-        assert!([f64::NAN, f64::INFINITY, -1.0].into_iter().all(|frequency| speed_of_period(frequency).is_none()));
+    fn small_speeds_are_fractions() {
+        assert_eq!([1.0, 0.125, 0.0, 1.0 / 41.0].map(fraction), ["1.00", "0.12", "0.00", "1/41"]);
     }
 }

@@ -1,8 +1,6 @@
 //! Expensive results of a scene, computed in the background; and the reference solution that follows a dragged load in a
 //! thread of its own, where one load is solved at a time, and the newest is next.
 
-use std::f64::consts::TAU;
-
 use serde::{Deserialize, Serialize};
 
 use crate::app::platform::IS_PAGE;
@@ -10,8 +8,6 @@ use crate::app::prelude::*;
 use crate::app::session::clock::FRAMES;
 use crate::app::task::keyed::{Computed, Keyed, SentScene, facts};
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::assembly::Mass;
-use crate::dynamics::lowest_frequency;
 use crate::format::number;
 use crate::scene::{DynamicsSettings, SolverSettings};
 use crate::study::limits::MethodLimits;
@@ -56,8 +52,6 @@ facts! {
         Analysis::Static => time_from_rest(scene, observe).map(|solve| solve.timings.total().as_secs_f64()),
         Analysis::Dynamic => time_of_motion(scene, observe).map(|per_second| per_second / 1e3 / FRAMES),
     });
-    /// Lowest natural frequency, Hz.
-    FrequencyFact = "frequency": f64, |scene, observe, _| Ok(natural_frequency(scene, observe));
 }
 
 /// Largest number of unknowns of a body whose load curve is computed: a curve takes hundreds of iterations.
@@ -98,13 +92,11 @@ pub(crate) struct Facts {
     pub limits: Keyed<LimitsFact>,
     pub rho: Keyed<RhoFact>,
     pub time: Keyed<TimeFact>,
-    pub frequency: Keyed<FrequencyFact>,
 }
 
 impl Facts {
     /// Cancels the computations for any other scene.
     pub(super) fn turn_to(&mut self, scene: &Scene) {
-        self.frequency.turn_to(scene);
         self.reference.turn_to(scene);
         self.curve.turn_to(scene);
         self.path.turn_to(scene);
@@ -183,18 +175,6 @@ fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
         return None;
     }
     simulation.certify().fixed_point_rho.filter(|_| simulation.status().is_success())
-}
-
-/// Returns the lowest natural frequency of a scene's body about rest, Hz. It asks before it meshes, and before it
-/// factorizes.
-fn natural_frequency(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
-    let goes_on = |fraction: f64| observe(Progress::at(fraction)).continue_value();
-    goes_on(0.0)?;
-    let simulation = Simulation::new(scene).ok()?;
-    goes_on(0.5)?;
-    let problem = simulation.problem();
-    let mass = Mass::new(problem.system(), scene.material.area_density());
-    Some(lowest_frequency(problem, &mass)? / TAU)
 }
 
 /// Returns the displacement of a body's first probe, m.
@@ -317,8 +297,6 @@ mod tests {
             let all = [asked::<ReferenceFact>(&scene), asked::<CurveFact>(&scene), asked::<PathFact>(&scene)];
             assert!(all.iter().all(|asked| (1..4).contains(asked)), "{id}: {all:?}");
         }
-        let swing = open(&crate::scene::Source { name: "swing".into(), assignments: Vec::new() }).unwrap();
-        assert_eq!(asked::<FrequencyFact>(&swing), 1);
     }
 
     #[test]

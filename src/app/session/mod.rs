@@ -623,8 +623,7 @@ impl Session {
             self.iterate();
         }
         if self.is_motion() {
-            shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
-            return self.facts.frequency.wait(&self.present.scene);
+            return shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
         }
         self.certify();
         let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
@@ -694,9 +693,7 @@ impl Session {
     /// press only those that a frame has time for are requested, and the reference that follows the load.
     pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
         if self.is_motion() {
-            let facts = &mut self.facts;
-            let frequency = !is_pressed && facts.frequency.request(&self.present.scene);
-            return shown.limits_of.is_some_and(|scene| facts.limits.request(scene)) || frequency;
+            return shown.limits_of.is_some_and(|scene| self.facts.limits.request(scene));
         }
         if self.iterates() || self.is_working() {
             return false;

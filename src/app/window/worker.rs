@@ -2,7 +2,7 @@
 
 use crate::app::platform;
 use crate::app::session::facts::{
-    CostFact, CurveFact, FrequencyFact, LimitsFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
+    CostFact, CurveFact, LimitsFact, PathFact, ReferenceFact, RhoFact, StudyFact, TimeFact,
 };
 use crate::app::task::keyed::{Fact, work};
 use crate::app::task::thread::serve;
@@ -21,7 +21,6 @@ const ENTRIES: &[WorkerEntry] = &[
     entry::<PathFact>(),
     entry::<TimeFact>(),
     entry::<CostFact>(),
-    entry::<FrequencyFact>(),
     entry::<RhoFact>(),
     entry::<StudyFact>(),
 ];
