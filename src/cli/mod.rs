@@ -192,7 +192,7 @@ fn simulate(source: &scene::Source) -> Result<(Scene, Simulation), CliError> {
 fn validated(source: &scene::Source) -> Result<(Scene, Arc<System>), CliError> {
     let scene = scene::open(source)?;
     let problem = System::for_display(&scene).and_then(|system| Problem::new(&scene, Arc::new(system)));
-    let problem = problem.map_err(|error| refused(source, error.into()))?;
+    let problem = problem.map_err(|error| refused(source, error))?;
     warn_of_mesh(source, &scene, problem.system());
     Ok((scene, problem.system().clone()))
 }

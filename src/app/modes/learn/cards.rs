@@ -182,7 +182,7 @@ pub(crate) const CARDS: &[Card] = &[
                Another element on the same five cells cures this.",
         formula: &["`error` = | u \u{2212} u_{`reference`} | / | u_{`reference`} |"],
         symbols: "u here: displacement of the tip (m). t3, t6: triangles of three and six nodes. q4: quadrilateral of four.",
-        task: "Try t6 and q4, and watch ERROR in the status bar.",
+        task: "Try t6 and q4, and watch the error.",
         setup: Setup { method: MethodKind::Newton, exact: true, ..SETUP },
         content: CardDisplay::Elements,
     },
