@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 23_978),
+    ("app", &["src/app"], 23_578),
     ("study", &["src/study"], 6_616),
     ("model", &["src/model", "src/scene"], 3_173),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
-    ("simulation", &["src/simulation"], 2_546),
-    ("assembly", &["src/assembly"], 2_988),
-    ("cli", &["src/cli"], 2_295),
+    ("simulation", &["src/simulation"], 2_502),
+    ("assembly", &["src/assembly"], 3_005),
+    ("cli", &["src/cli"], 2_300),
     ("dynamics", &["src/dynamics"], 1_922),
     ("render", &["src/render"], 1_896),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_930),
     ("plot", &["src/plot"], 709),
     ("the rest of src", &["src"], 5_038),
-    ("tests", &["tests"], 19_337),
+    ("tests", &["tests"], 19_296),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 58_333;
+const SRC: usize = 57_911;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 237;
 
