@@ -167,9 +167,8 @@ pub use scene::{
     MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SectionLine, SolverSettings, Start, Support,
 };
 // Solve it.
-pub use assembly::SimulationError;
 pub use method::{AutoReport, Certificate, Decision, IterationError, Reason};
-pub use simulation::{Equilibrium, Simulation, Solution, Status};
+pub use simulation::{Equilibrium, Simulation, SimulationError, Solution, Status};
 pub use solver::SolverError;
 // Edit and grab.
 pub use assembly::MouseSpring;

@@ -12,13 +12,13 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser};
 
 use self::args::{Cli, Command};
-use crate::assembly::{Problem, SimulationError, System};
+use crate::assembly::{Problem, System};
 use crate::format::number;
 use crate::scene::{self, Analysis, Scene};
 use crate::section::{Section, SectionError};
-use crate::simulation::Simulation;
 #[cfg(feature = "app")]
 use crate::simulation::Status;
+use crate::simulation::{Simulation, SimulationError};
 
 mod args;
 mod commands;

@@ -20,13 +20,9 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
     let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
-    fits(
-        "--compare",
-        options.compare.is_some(),
-        false,
-        "it shows equilibria; for a motion, --motion shows the energy",
-    )?;
-    fits("--curve", options.curve, false, "it shows equilibria; for a motion, --motion shows the energy")?;
+    for (option, given) in [("--compare", options.compare.is_some()), ("--curve", options.curve)] {
+        fits(option, given, false, "it shows equilibria; for a motion, --motion shows the energy")?;
+    }
     fits("--sections", options.sections, false, "for a motion, use `warpbeam section`")?;
     fits("--motion", options.motion, true, "it shows the energy of a motion; for an equilibrium, use --compare")?;
     fits(
