@@ -18,7 +18,7 @@ use warpbeam::assembly::{Forces, Kinematics, Matrix, Pattern, Problem, System};
 use warpbeam::element::{ELEMENTS, Tangent};
 use warpbeam::method::METHODS;
 use warpbeam::rotation::{Rotation, polar};
-use warpbeam::scene::{LoadId, Scene, Source, open, registry};
+use warpbeam::scene::{Scene, Source, open, registry};
 use warpbeam::solver::Factor;
 use warpbeam::{MethodKind, Simulation};
 
@@ -86,7 +86,7 @@ fn edits(c: &mut Criterion) {
         c.bench_function(&format!("edit a force/{dofs}"), |b| {
             b.iter(|| {
                 force = -2001.0 - force;
-                simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, force])).unwrap();
+                simulation.edit(|scene| scene.set_force(0, [0.0, force])).unwrap();
             });
         });
         let mut material = scene.material;

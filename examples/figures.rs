@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use warpbeam::{ElementKind, LoadId, Material, MethodKind, Reference, Scene, Simulation, Status};
+use warpbeam::{ElementKind, Material, MethodKind, Reference, Scene, Simulation, Status};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -166,7 +166,7 @@ fn rho() -> Result<Figure, Box<dyn Error>> {
     let mut points = Vec::new();
     for i in 1..=20 {
         let alpha = 0.5 * f64::from(i);
-        beam.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -alpha * unit]))?;
+        beam.edit(|scene| scene.set_force(0, [0.0, -alpha * unit]))?;
         if *beam.solve() != Status::Converged {
             return Err(format!("α = {alpha}: {:?}", beam.status()).into());
         }

@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use warpbeam::{ElementKind, LoadId, MethodKind, Scene, Simulation, Status};
+use warpbeam::{ElementKind, MethodKind, Scene, Simulation, Status};
 
 /// Time that the game leaves for the beam in a frame of 16 ms.
 const BUDGET: Duration = Duration::from_micros(500);
@@ -33,7 +33,7 @@ pub fn play() -> Result<(u32, f64), Box<dyn Error>> {
     for frame in 0..FRAMES {
         // A gust that grows and rotates. The edit recomputes nothing but the load.
         let (s, c) = (f64::from(frame) * 0.05).sin_cos();
-        beam.edit(|scene| scene.set_force(LoadId::nth(0), [200.0 * s, -600.0 * s * c]))?;
+        beam.edit(|scene| scene.set_force(0, [200.0 * s, -600.0 * s * c]))?;
         let start = Instant::now();
         while *beam.status() == Status::Running && start.elapsed() < BUDGET {
             beam.step();

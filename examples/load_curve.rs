@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use warpbeam::{LoadId, Material, MethodKind, Reference, Scene, Simulation, Status};
+use warpbeam::{Material, MethodKind, Reference, Scene, Simulation, Status};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "curve.csv".to_owned());
@@ -34,7 +34,7 @@ pub fn curve() -> Result<String, Box<dyn Error>> {
         let alpha = 0.5 * f64::from(i);
         let mut deflections = Vec::new();
         for beam in [&mut linear, &mut newton] {
-            beam.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -alpha * unit]))?;
+            beam.edit(|scene| scene.set_force(0, [0.0, -alpha * unit]))?;
             if *beam.solve() != Status::Converged {
                 return Err(format!("α = {alpha}: {:?}", beam.status()).into());
             }

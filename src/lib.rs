@@ -47,7 +47,7 @@
 //! |---|---|
 //! | describe a scene | [`Scene`] with its builder methods, or [`Scene::from_toml`]; [`Beam`], [`Material`], [`Load`], [`Support`], [`Probe`], [`SolverSettings`], [`DynamicsSettings`]; a mesh of your own: [`Mesh::new`] and [`Simulation::with_mesh`] |
 //! | solve it | [`Simulation::solve`], or [`Simulation::step`] in a loop of your own; [`Status`], [`Solution`], [`Equilibrium`], [`Certificate`] |
-//! | edit and grab | [`Simulation::edit`] takes setters of the scene such as [`Scene::set_force`] with a [`LoadId`] or [`SupportId`]; [`Simulation::grab`] attaches a [`MouseSpring`] to a [`MaterialPoint`]; [`Simulation::change_scene`] |
+//! | edit and grab | [`Simulation::edit`] takes setters of the scene such as [`Scene::set_force`]; [`Simulation::grab`] attaches a [`MouseSpring`] to a [`MaterialPoint`]; [`Simulation::change_scene`] |
 //! | read results | [`Simulation::positions`], [`Simulation::probe`], [`Simulation::point_state`], [`Simulation::section`], [`Field`], [`NodalStress`]; files with [`export`] |
 //! | move in time | [`Scene::moving`], [`Motion`] with its [`Ledger`] of energies, [`Moment`] |
 //! | measure errors and time | [`Reference`], [`Study`], [`Timings`] |
@@ -174,7 +174,6 @@ pub use solver::SolverError;
 pub use assembly::MouseSpring;
 pub use mesh::MaterialPoint;
 pub use rotation::Rotation;
-pub use scene::{LoadId, SupportId};
 pub use state::{State, StateError};
 // Read results.
 pub use section::{Section, SectionError, SectionForces, SectionPoint, Wrench};

@@ -8,39 +8,6 @@ use super::{
 };
 use crate::format::{engineering, rounded};
 
-/// Handle of a load in a scene. It is valid as long as no load before it is removed.
-///
-/// ```
-/// use warpbeam::{LoadId, Scene};
-///
-/// let mut scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]);
-/// let force = scene.load_on("right");
-/// assert_eq!(force, Some(LoadId::nth(0))); // `load.0` of a scene file
-/// # Ok::<(), warpbeam::SimulationError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct LoadId(usize);
-
-impl LoadId {
-    /// Returns the handle of a load by its position among the loads, counted from 0: `load.0`, `load.1`, … of a scene
-    /// file.
-    pub const fn nth(position: usize) -> Self {
-        Self(position)
-    }
-}
-
-/// Handle of a support in a scene. It is valid as long as no support before it is removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SupportId(usize);
-
-impl SupportId {
-    /// Returns the handle of a support by its position among the supports, counted from 0: `support.0`, `support.1`, …
-    /// of a scene file.
-    pub const fn nth(position: usize) -> Self {
-        Self(position)
-    }
-}
-
 impl Scene {
     /// Returns a scene without a mesh, for [`crate::Simulation::with_mesh`].
     pub fn named(name: impl Into<String>) -> Self {
@@ -340,109 +307,79 @@ impl Scene {
         self
     }
 
-    /// Adds a load and returns its handle.
-    ///
-    /// ```
-    /// use warpbeam::{Load, Scene, Simulation};
-    ///
-    /// let mut scene = Scene::beam(10.0, 1.0).clamp("left");
-    /// let force = scene.add_load(Load::force("right", [0.0, -500.0]));
-    /// let mut beam = Simulation::new(&scene)?;
-    /// beam.edit(|scene| scene.set_force(force, [0.0, -800.0]))?;
-    /// # Ok::<(), warpbeam::SimulationError>(())
-    /// ```
-    pub fn add_load(&mut self, load: Load) -> LoadId {
-        self.loads.push(load);
-        LoadId(self.loads.len() - 1)
-    }
-
-    /// Adds a support and returns its handle.
-    ///
-    /// ```
-    /// use warpbeam::{Axis, Material, Scene, Simulation, Support, SupportId};
-    ///
-    /// let mut scene = Scene::beam(10.0, 1.0).with_material(Material::new(1e6, 0.0)).clamp("left");
-    /// let right: SupportId = scene.add_support(Support::new("right", &[Axis::X, Axis::Y]));
-    /// assert_eq!(right, SupportId::nth(1)); // `support.1` of a scene file
-    /// let mut beam = Simulation::new(&scene)?;
-    /// beam.edit(|scene| scene.move_support(right, [0.1, 0.0], 0.0))?;
-    /// beam.solve();
-    /// // A strain of 1 % needs the force E A ε = 1e6 Pa · 1 m² · 0.01.
-    /// assert!((beam.support_reactions()[1].force.x - 10_000.0).abs() < 1e-3);
-    /// # Ok::<(), warpbeam::SimulationError>(())
-    /// ```
-    pub fn add_support(&mut self, support: Support) -> SupportId {
-        self.supports.push(support);
-        SupportId(self.supports.len() - 1)
-    }
-
-    /// Returns the handle of the first force or moment on an edge, by name, or on a point.
-    pub fn load_on(&self, place: impl Into<Place>) -> Option<LoadId> {
+    /// Returns the index in [`Self::loads`] of the first force or moment on an edge, by name, or on a point.
+    pub fn load_on(&self, place: impl Into<Place>) -> Option<usize> {
         let place = place.into();
         let is_there = |load: &Load| match load {
             Load::Force { place: own, .. } => *own == place,
             Load::Moment { edge, .. } => matches!(&place, Place::Edge(name) if name == edge),
             Load::Gravity { .. } => false,
         };
-        self.loads.iter().position(is_there).map(LoadId)
+        self.loads.iter().position(is_there)
     }
 
-    /// Returns the handle of the first support of an edge, by name, or of a point.
-    pub fn support_on(&self, place: impl Into<Place>) -> Option<SupportId> {
-        let place = place.into();
-        self.supports.iter().position(|support| support.place == place).map(SupportId)
-    }
-
-    /// Sets the components of a force, N.
+    /// Sets the components, N, of the force with this index in [`Self::loads`], as in `load.0` of a scene file.
     ///
     /// # Errors
     /// [`Invalid`] if this is not a force of the scene. Values out of range are rejected when the scene is simulated.
-    pub fn set_force(&mut self, load: LoadId, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
-        match self.loads.get_mut(load.0) {
+    pub fn set_force(&mut self, load: usize, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
             Some(Load::Force { force, .. }) => *force = new.into().into(),
             other => return Err(no_such_load(load, "force", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets a moment, N m.
+    /// Sets the moment with this index in [`Self::loads`], N m.
     ///
     /// # Errors
     /// Same errors as [`Self::set_force`].
-    pub fn set_moment(&mut self, load: LoadId, new: f64) -> Result<(), Invalid> {
-        match self.loads.get_mut(load.0) {
+    pub fn set_moment(&mut self, load: usize, new: f64) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
             Some(Load::Moment { moment, .. }) => *moment = new,
             other => return Err(no_such_load(load, "moment", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets the acceleration of a weight, m/s².
+    /// Sets the acceleration of the weight with this index in [`Self::loads`], m/s².
     ///
     /// # Errors
     /// Same errors as [`Self::set_force`].
-    pub fn set_gravity(&mut self, load: LoadId, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
-        match self.loads.get_mut(load.0) {
+    pub fn set_gravity(&mut self, load: usize, new: impl Into<Vector2<f64>>) -> Result<(), Invalid> {
+        match self.loads.get_mut(load) {
             Some(Load::Gravity { acceleration, .. }) => *acceleration = new.into().into(),
             other => return Err(no_such_load(load, "gravity", other.as_deref())),
         }
         Ok(())
     }
 
-    /// Sets the prescribed displacement, m, and rotation, rad, of a support.
+    /// Sets the prescribed displacement, m, and rotation, rad, of the support with this index in [`Self::supports`].
+    ///
+    /// ```
+    /// use warpbeam::{Material, Scene, Simulation};
+    ///
+    /// let scene = Scene::beam(10.0, 1.0).with_material(Material::new(1e6, 0.0)).clamp("left").clamp("right");
+    /// let mut beam = Simulation::new(&scene)?;
+    /// beam.edit(|scene| scene.move_support(1, [0.1, 0.0], 0.0))?; // `support.1` of a scene file
+    /// beam.solve();
+    /// // A strain of 1 % needs the force E A ε = 1e6 Pa · 1 m² · 0.01.
+    /// assert!((beam.support_reactions()[1].force.x - 10_000.0).abs() < 1e-3);
+    /// # Ok::<(), warpbeam::SimulationError>(())
+    /// ```
     ///
     /// # Errors
     /// [`Invalid`] if this is not a support of the scene. Values out of range are rejected when the scene is simulated.
     pub fn move_support(
         &mut self,
-        support: SupportId,
+        support: usize,
         displacement: impl Into<Vector2<f64>>,
         rotation: f64,
     ) -> Result<(), Invalid> {
         let count = self.supports.len();
-        let Some(moved) = self.supports.get_mut(support.0) else {
+        let Some(moved) = self.supports.get_mut(support) else {
             let message = format!("expected one of {}, counted from 0", crate::format::count(count as u64, "support"));
-            return Err(Invalid::new(format!("support.{}", support.0), message));
+            return Err(Invalid::new(format!("support.{support}"), message));
         };
         (moved.displacement, moved.turn) = (displacement.into().into(), rotation);
         Ok(())
@@ -529,7 +466,7 @@ impl Scene {
     }
 }
 
-fn no_such_load(LoadId(load): LoadId, expected: &str, got: Option<&Load>) -> Invalid {
+fn no_such_load(load: usize, expected: &str, got: Option<&Load>) -> Invalid {
     let got = match got {
         Some(Load::Force { .. }) => "a force",
         Some(Load::Moment { .. }) => "a moment",

@@ -9,10 +9,10 @@ use crate::sentence::Sentence;
 /// Value that can be parsed but not used.
 ///
 /// ```
-/// use warpbeam::{Invalid, LoadId, Scene};
+/// use warpbeam::{Invalid, Scene};
 ///
 /// let mut scene = Scene::beam(10.0, 1.0).clamp("left").moment("right", 5.0);
-/// let invalid: Invalid = scene.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap_err();
+/// let invalid: Invalid = scene.set_force(0, [0.0, -1.0]).unwrap_err();
 /// assert_eq!(invalid.key, "load.0");
 /// assert_eq!(invalid.message(), "expected a load of kind \"force\", got a moment");
 /// ```

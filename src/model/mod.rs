@@ -15,7 +15,6 @@ mod place;
 mod table;
 pub mod units;
 
-pub use build::{LoadId, SupportId};
 pub use dynamics::{Damping, DynamicsSettings, IntegratorKind, Pulse, Start};
 pub use error::{Invalid, SceneError};
 pub use place::{Axis, Load, Place, Probe, SectionLine, Support};

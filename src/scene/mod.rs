@@ -16,7 +16,7 @@ pub(crate) use mesh::built_in_mesh;
 pub use open::{STANDARD_INPUT, Source, locate, open};
 
 pub use crate::model::{
-    Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, LoadId,
-    Material, MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SectionLine, SolverSettings, Start,
-    Support, SupportId, keys, limits, units,
+    Analysis, Axis, Beam, Damping, Diagonals, DynamicsSettings, ElementKind, IntegratorKind, Invalid, Load, Material,
+    MeshFile, MethodKind, Place, Plane, Probe, Pulse, Scene, SceneError, SectionLine, SolverSettings, Start, Support,
+    keys, limits, units,
 };

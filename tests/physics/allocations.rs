@@ -54,10 +54,10 @@ fn iterations_allocate_nothing() {
         scene.solver.method = method.kind;
         let mut simulation = ended(&scene);
         for force in [900.0, 920.0, 600.0] {
-            simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -force])).unwrap();
+            simulation.edit(|scene| scene.set_force(0, [0.0, -force])).unwrap();
             simulation.solve();
         }
-        simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -950.0])).unwrap();
+        simulation.edit(|scene| scene.set_force(0, [0.0, -950.0])).unwrap();
         let made = allocations(|| (0..4).for_each(|_| drop(simulation.step().clone())));
         assert_eq!(made, 0, "{} {}", method.kind.id(), element.id);
     }

@@ -135,13 +135,13 @@ fn builders_set_what_a_file_sets() {
 #[test]
 fn setters_name_missing_loads() {
     let mut scene = Scene::beam(4.0, 1.0).clamp("left").force("right", [0.0, -1.0]).moment("right", 2.0);
-    scene.set_force(LoadId::nth(0), [1.0, 2.0]).unwrap();
-    scene.set_moment(LoadId::nth(1), 3.0).unwrap();
+    scene.set_force(0, [1.0, 2.0]).unwrap();
+    scene.set_moment(1, 3.0).unwrap();
     for (error, words) in [
-        (scene.set_force(LoadId::nth(1), [0.0; 2]), "load.1: expected a load of kind \"force\", got a moment"),
-        (scene.set_force(LoadId::nth(2), [0.0; 2]), "load.2: expected a load of kind \"force\", got no load"),
-        (scene.set_moment(LoadId::nth(0), 0.0), "load.0: expected a load of kind \"moment\", got a force"),
-        (scene.set_gravity(LoadId::nth(usize::MAX), [0.0; 2]), "got no load"),
+        (scene.set_force(1, [0.0; 2]), "load.1: expected a load of kind \"force\", got a moment"),
+        (scene.set_force(2, [0.0; 2]), "load.2: expected a load of kind \"force\", got no load"),
+        (scene.set_moment(0, 0.0), "load.0: expected a load of kind \"moment\", got a force"),
+        (scene.set_gravity(usize::MAX, [0.0; 2]), "got no load"),
     ] {
         let text = error.unwrap_err().to_string();
         assert!(text.contains(words), "{text}");

@@ -72,7 +72,7 @@ fn drag(mut scene: Scene, frames: u32, asked: f64) {
     for frame in 0..frames {
         let share = f64::from(frame) / f64::from(frames - 1);
         let turned = Rotation::from_angle(0.5 * share).apply(force.into()) * (0.2 + 0.8 * share);
-        scene.set_force(LoadId::nth(0), turned).unwrap();
+        scene.set_force(0, turned).unwrap();
         let simulation = auto.get_or_insert_with(|| Simulation::new(&scene).unwrap());
         simulation.change_scene(&scene).unwrap();
         simulation.solve();

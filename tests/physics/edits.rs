@@ -40,9 +40,9 @@ fn a_body_whose_loads_vanish_returns_to_rest() {
     for (element, method) in ELEMENTS.iter().flat_map(|e| METHODS.iter().map(move |m| (e.kind, m.kind))) {
         for (id, force) in [("cantilever", [0.0, -3000.0]), ("cantilever", [900.0, -1300.0]), ("article", [5e3, 2e4])] {
             let mut body = Simulation::new(&scene(id).with_element(element).with_method(method)).unwrap();
-            body.edit(|scene| scene.set_force(LoadId::nth(0), force)).unwrap();
+            body.edit(|scene| scene.set_force(0, force)).unwrap();
             body.solve();
-            body.edit(|scene| scene.set_force(LoadId::nth(0), [0.0; 2])).unwrap();
+            body.edit(|scene| scene.set_force(0, [0.0; 2])).unwrap();
             let what = format!("{id} {element:?} {method:?} {force:?}");
             assert_eq!(*body.solve(), Status::Converged, "{what}");
             assert_eq!((largest(body.displacement()), body.residual()), (0.0, 0.0), "{what}");
@@ -55,7 +55,7 @@ fn a_body_whose_loads_vanish_returns_to_rest() {
 fn equations_are_shared_and_kept() {
     let mut body = solved(&scene("cantilever"));
     let system = body.system().clone();
-    body.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -1200.0])).unwrap();
+    body.edit(|scene| scene.set_force(0, [0.0, -1200.0])).unwrap();
     let mut material = body.scene().material;
     material.young *= 2.0;
     body.change_scene(&body.scene().clone().with_material(material)).unwrap();
@@ -102,7 +102,7 @@ fn a_mesh_given_by_the_caller_is_kept_by_every_edit() {
         let dofs = simulation.system().dofs();
         simulation.solve();
         let edits: [&dyn Fn(&mut Scene); 6] = [
-            &|s| s.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap(),
+            &|s| s.set_force(0, [0.0, -1.0]).unwrap(),
             &|s| s.material.young *= 2.0,
             &|s| s.solver.method = MethodKind::Warped,
             &|s| s.loads.push(Load::moment("right", 5.0)),
@@ -135,7 +135,7 @@ fn a_mesh_file_is_read_once() {
     folder.close().unwrap();
     for element in scene.elements() {
         simulation.change_scene(&scene.clone().with_element(element)).unwrap();
-        simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, 50.0])).unwrap();
+        simulation.edit(|scene| scene.set_force(0, [0.0, 50.0])).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged);
         assert!(largest(simulation.displacement()) > 0.0);
     }
@@ -146,11 +146,11 @@ fn a_mesh_file_is_read_once() {
 fn a_refused_edit_changes_nothing() {
     let mut simulation = solved(&scene("cantilever"));
     let (before, state) = (simulation.scene().clone(), simulation.state().clone());
-    assert!(simulation.edit(|scene| scene.set_force(LoadId::nth(0), [f64::NAN, 0.0])).is_err());
-    assert!(simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, 1e16])).is_err());
-    assert!(simulation.edit(|scene| scene.set_force(LoadId::nth(7), [0.0, 1.0])).is_err());
-    assert!(simulation.edit(|scene| scene.set_moment(LoadId::nth(0), 1.0)).is_err());
-    assert!(simulation.edit(|scene| scene.set_gravity(LoadId::nth(0), [0.0, 1.0])).is_err());
+    assert!(simulation.edit(|scene| scene.set_force(0, [f64::NAN, 0.0])).is_err());
+    assert!(simulation.edit(|scene| scene.set_force(0, [0.0, 1e16])).is_err());
+    assert!(simulation.edit(|scene| scene.set_force(7, [0.0, 1.0])).is_err());
+    assert!(simulation.edit(|scene| scene.set_moment(0, 1.0)).is_err());
+    assert!(simulation.edit(|scene| scene.set_gravity(0, [0.0, 1.0])).is_err());
     let mut material = before.material;
     material.poisson = 0.7;
     assert!(simulation.change_scene(&simulation.scene().clone().with_material(material)).is_err());
@@ -178,7 +178,7 @@ fn a_snapshot_is_unchanged_and_can_continue() {
         let off = largest_distance(copy.displacement(), search.displacement());
         assert!(off <= 1e-6 * largest(search.displacement()), "{}: {off}", method.id());
         assert_eq!(copy.certify().stable, search.certify().stable, "{}", method.id());
-        copy.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -1.0])).unwrap();
+        copy.edit(|scene| scene.set_force(0, [0.0, -1.0])).unwrap();
         assert_eq!(*copy.solve(), Status::Converged);
     }
     assert!(Simulation::new(&scene("swing")).unwrap().equilibrium().is_none(), "of a motion");

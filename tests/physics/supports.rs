@@ -57,7 +57,7 @@ fn a_rigid_rotation_of_all_supports_leaves_no_stress() {
                     MethodKind::Linear => Vector2::new(-arm.y, arm.x) * angle,
                     _ => Rotation::from_angle(angle).apply(arm) - arm,
                 };
-                scene.move_support(SupportId::nth(support), increment, angle).unwrap();
+                scene.move_support(support, increment, angle).unwrap();
             }
             let simulation = solved(&scene);
             let solution = simulation.solution();
@@ -99,7 +99,7 @@ fn a_rotated_clamp_equals_a_rotated_gravity() {
 #[test]
 fn a_full_rotation_of_one_end_is_not_rest() {
     let mut scene = Scene::beam(20.0, 0.5).with_cells(40, 1).clamp("left").clamp("right");
-    scene.move_support(SupportId::nth(1), [-8.0, 0.0], TAU).unwrap();
+    scene.move_support(1, [-8.0, 0.0], TAU).unwrap();
     let mut simulation = solved(&scene);
     let right = simulation.system().edges().iter().position(|e| e.name() == "right").unwrap();
     let turn = simulation.state().edge_angles()[right];
@@ -109,7 +109,7 @@ fn a_full_rotation_of_one_end_is_not_rest() {
     let mut angle = TAU;
     while angle > 0.0 {
         angle = f64::max(angle - 0.4, 0.0);
-        simulation.edit(|scene| scene.move_support(SupportId::nth(1), [-8.0 * angle / TAU, 0.0], angle)).unwrap();
+        simulation.edit(|scene| scene.move_support(1, [-8.0 * angle / TAU, 0.0], angle)).unwrap();
         assert_eq!(*simulation.solve(), Status::Converged, "{angle}");
     }
     assert!(simulation.solution().energy.elastic < 1e-9);
@@ -122,7 +122,7 @@ fn reactions_balance_the_loads() {
         let mut scene = clamped().with_element(element.kind).gravity([0.0, -0.1]).force("top", [40.0, -30.0]);
         // A moment on a supported edge goes into its support.
         scene = scene.moment("right", 20.0);
-        scene.move_support(SupportId::nth(1), [-0.3, 0.8], 0.4).unwrap();
+        scene.move_support(1, [-0.3, 0.8], 0.4).unwrap();
         let simulation = solved(&scene);
         let solution = simulation.solution();
         let dead = simulation.problem().loads().dead_force();
@@ -164,7 +164,7 @@ fn displacement_control_agrees_with_force_control() {
 /// Returns a scene in which the right end is displaced and rotated at once.
 fn wrenched(factor: f64) -> Scene {
     let mut scene = clamped();
-    scene.move_support(SupportId::nth(1), [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
+    scene.move_support(1, [-2.0 * factor, 3.0 * factor], 1.2 * factor).unwrap();
     scene
 }
 
@@ -174,7 +174,7 @@ fn reactions_are_derivatives_of_the_energy() {
     const H: f64 = 1e-4;
     let at = |d: [f64; 2], turn: f64| {
         let mut scene = clamped();
-        scene.move_support(SupportId::nth(1), d, turn).unwrap();
+        scene.move_support(1, d, turn).unwrap();
         solved(&scene).solution()
     };
     let ([x, y], turn) = ([-0.4, 1.5], 0.7);
@@ -195,17 +195,17 @@ fn dragged_supports_end_where_they_would_from_rest() {
         let scene = |y: f64| {
             let mut scene = clamped().with_method(method.kind);
             scene.solver.max_error_percent = 1e-6;
-            scene.move_support(SupportId::nth(1), [0.0, y], 0.0).unwrap();
+            scene.move_support(1, [0.0, y], 0.0).unwrap();
             scene
         };
         let mut dragged = solved(&scene(0.0));
         for y in [0.1, 0.4, 0.9, 0.3] {
-            dragged.edit(|scene| scene.move_support(SupportId::nth(1), [0.0, y], 0.0)).unwrap();
+            dragged.edit(|scene| scene.move_support(1, [0.0, y], 0.0)).unwrap();
             assert_eq!(*dragged.solve(), Status::Converged, "{} {y}", method.id);
             let [a, b] = [&dragged, &solved(&scene(y))].map(|s| s.probe("middle").unwrap());
             assert!((a - b).norm() < 1e-6, "{} {y}: {a} {b}", method.id);
         }
-        dragged.edit(|scene| scene.move_support(SupportId::nth(1), [0.0, 0.0], 0.0)).unwrap();
+        dragged.edit(|scene| scene.move_support(1, [0.0, 0.0], 0.0)).unwrap();
         assert_eq!(*dragged.solve(), Status::Converged, "{}", method.id);
         assert!(dragged.displacement().iter().all(|u| u.norm() < 1e-7), "{}", method.id);
     }
@@ -266,7 +266,7 @@ fn the_arch_passes_its_limit_load() {
 #[test]
 fn a_support_that_does_not_exist_cannot_move() {
     let mut beam = Scene::beam(10.0, 1.0).clamp("left");
-    let missing = beam.move_support(SupportId::nth(3), [0.0, 0.0], 0.0);
+    let missing = beam.move_support(3, [0.0, 0.0], 0.0);
     assert!(missing.is_err_and(|e| e.to_string().contains("support.3")));
     assert!(Simulation::new(&beam.force([10.4, 0.0], [0.0, 1.0])).is_ok(), "near a node");
     assert!(!Support::new("left", BOTH).moves());

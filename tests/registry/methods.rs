@@ -125,20 +125,20 @@ fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
         for force in [1e12, -1e12, 1e15] {
             let mut simulation = ended(&scene(id).with_method(method));
             for (horizontal, vertical) in [(0.0, force), (force, 0.0)] {
-                simulation.edit(|scene| scene.set_force(LoadId::nth(0), [horizontal, vertical])).unwrap();
+                simulation.edit(|scene| scene.set_force(0, [horizontal, vertical])).unwrap();
                 simulation.solve();
                 assert!(simulation.state().is_finite());
             }
-            simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, 0.0])).unwrap();
+            simulation.edit(|scene| scene.set_force(0, [0.0, 0.0])).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then nothing");
             let left = largest(simulation.displacement());
             assert!(left < 1e-9, "{id}: {force:e}, then nothing: {left:e} m are left");
-            simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, force])).unwrap();
+            simulation.edit(|scene| scene.set_force(0, [0.0, force])).unwrap();
             simulation.solve();
-            simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -100.0])).unwrap();
+            simulation.edit(|scene| scene.set_force(0, [0.0, -100.0])).unwrap();
             assert_eq!(*simulation.solve(), Status::Converged, "{id}: {force:e}, then 100 N");
             let mut small = scene(id).with_method(method);
-            small.set_force(LoadId::nth(0), [0.0, -100.0]).unwrap();
+            small.set_force(0, [0.0, -100.0]).unwrap();
             let close = if method == MethodKind::Auto { 1e-2 } else { 1e-6 };
             assert!(difference(&simulation, &ended(&small)) < close, "{id}: {force:e}, then 100 N");
         }
@@ -148,10 +148,10 @@ fn a_huge_load_does_not_affect_later_solves(method: MethodKind) {
 fn a_restored_state_continues_as_the_saved_one(method: MethodKind) {
     let mut simulation = ended(&scene("cantilever").with_method(method));
     let saved = simulation.state().clone();
-    simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, 500.0])).unwrap();
+    simulation.edit(|scene| scene.set_force(0, [0.0, 500.0])).unwrap();
     simulation.solve();
     assert_ne!(*simulation.state(), saved);
-    simulation.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -1500.0])).unwrap();
+    simulation.edit(|scene| scene.set_force(0, [0.0, -1500.0])).unwrap();
     simulation.restore(&saved).unwrap();
     // Linear theory solves again; for the other methods the restored state is already converged.
     if method != MethodKind::Linear && method != MethodKind::Auto {

@@ -219,7 +219,7 @@ fn a_dropped_lab_ends_its_background_solve() {
     lab.solve();
     let system = Arc::downgrade(lab.simulation().system());
     let mut heavy = scene;
-    heavy.set_force(LoadId::nth(0), [0.0, -1e4]).unwrap();
+    heavy.set_force(0, [0.0, -1e4]).unwrap();
     heavy.solver.tolerance = 1e-14;
     heavy.solver.max_iterations = 100_000;
     lab.set_scene(heavy).unwrap();

@@ -146,7 +146,7 @@ fn a_dragged_body_stays_in_view() {
 fn beyond_the_limit_the_drawn_body_belongs_to_a_load_of_the_same_direction() {
     let mut ui = open("article");
     let set = |ui: &mut Ui, force: [f64; 2]| {
-        ui.edit(|scene| scene.set_force(LoadId::nth(0), force).unwrap());
+        ui.edit(|scene| scene.set_force(0, force).unwrap());
         ui.run();
         Shown::labels(ui)
     };

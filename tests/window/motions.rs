@@ -175,11 +175,11 @@ fn a_body_that_crosses_itself_is_reported_once() {
     assert!(is_said(&mut clip, 200));
     clip.run_steps(100);
     assert!(clip.query_by_label(CROSSES).is_none(), "it goes away");
-    clip.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -2.2]).unwrap());
+    clip.edit(|scene| scene.set_force(0, [0.0, -2.2]).unwrap());
     assert!(!is_said(&mut clip, 100), "it was said before");
 
     let mut gentle = scene("clip");
-    gentle.set_force(LoadId::nth(0), [0.0, -1.0]).unwrap();
+    gentle.set_force(0, [0.0, -1.0]).unwrap();
     assert!(!is_said(&mut open_of("clip", gentle), 100));
     for id in scene_ids() {
         let said = is_said(&mut open(id), if ids_of(Analysis::Dynamic).contains(&id) { 100 } else { 60 });

@@ -528,7 +528,7 @@ fn the_eased_view_ends_where_the_other_jumps() {
     eases.state_mut().set_easing(true);
     let before = eases.camera();
     for ui in [&mut jumps, &mut eases] {
-        ui.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -30.0]).unwrap());
+        ui.edit(|scene| scene.set_force(0, [0.0, -30.0]).unwrap());
     }
     jumps.run();
     let goal = jumps.camera();
@@ -844,7 +844,7 @@ fn the_colour_bar_is_not_on_the_tip_of_an_arrow() {
             let factor = 1.0 + (most - 1.0) * part;
             ui.edit(|scene| {
                 scene.solver.method = MethodKind::Newton;
-                scene.set_force(LoadId::nth(0), force(scene).map(|v| v * factor)).unwrap();
+                scene.set_force(0, force(scene).map(|v| v * factor)).unwrap();
             });
             ui.run();
             let corner = ui.state().view_rect().right_bottom();

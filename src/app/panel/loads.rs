@@ -73,7 +73,7 @@ const DIRECTION: NumberField =
 /// Sets a force by its magnitude, N, and its direction, degrees.
 fn set_force(panel: &mut Panel<'_>, label: &'static str, load: usize, (magnitude, direction): (f64, f64)) {
     panel.state.force_direction = Some(direction);
-    panel.edit(label, |scene| _ = scene.set_force(LoadId::nth(load), vector(magnitude, direction)));
+    panel.edit(label, |scene| _ = scene.set_force(load, vector(magnitude, direction)));
 }
 
 /// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
@@ -89,7 +89,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
         panel.state.gravity_direction = Some(direction);
         let own = scene.loads.iter().position(|load| matches!(load, Load::Gravity { .. }));
         panel.edit("Gravity", |scene| match own {
-            Some(own) => _ = scene.set_gravity(LoadId::nth(own), vector(new, direction)),
+            Some(own) => _ = scene.set_gravity(own, vector(new, direction)),
             None => scene.loads.push(Load::gravity(vector(new, direction))),
         });
     }
@@ -102,7 +102,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
     let own = scene.loads.iter().position(Load::is_moment);
     let edge = edges::edge_for_moment(scene, input.simulation.system());
     match (own, edge) {
-        (Some(own), _) => panel.edit("Moment", |scene| _ = scene.set_moment(LoadId::nth(own), new)),
+        (Some(own), _) => panel.edit("Moment", |scene| _ = scene.set_moment(own, new)),
         (None, Some(edge)) => panel.edit("Moment", |scene| scene.loads.push(Load::moment(&edge, new))),
         (None, None) => {
             let message = sentence!("expected a straight edge without support; the body has none");

@@ -156,13 +156,13 @@ impl RecoveryCopies {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{self, LoadId};
+    use crate::scene::{self};
 
     fn edits(name: &str, force: f64) -> Unsaved {
         let source = Source { name: name.into(), assignments: Vec::new() };
         let original = scene::open(&source).unwrap();
         let mut scene = original.clone();
-        scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
+        scene.set_force(0, [0.0, force]).unwrap();
         Unsaved { document: Document::new(source, original), scene }
     }
 

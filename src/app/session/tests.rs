@@ -3,7 +3,6 @@
 use std::fs;
 
 use super::*;
-use crate::scene::LoadId;
 
 fn cantilever(force: f64) -> Scene {
     Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")
@@ -32,7 +31,7 @@ fn edited(session: &Session, label: &'static str, change: impl FnOnce(&mut Scene
 }
 
 fn with_force(session: &Session, force: f64) -> Edit {
-    edited(session, "Force", |scene| scene.set_force(LoadId::nth(0), [0.0, force]).unwrap())
+    edited(session, "Force", |scene| scene.set_force(0, [0.0, force]).unwrap())
 }
 
 fn tip(session: &Session) -> f64 {
@@ -239,7 +238,7 @@ fn a_saved_scene_stays_the_same_document_when_edits_are_undone() {
     let mut session = open(Source { name: path("first.toml"), assignments: vec!["load.0.force=[0,-150]".into()] });
     let scene = session.scene().clone();
     for (label, force) in [("Force", -200.0), ("Direction", -300.0), ("Force", -400.0)] {
-        let change = |scene: &mut Scene| scene.set_force(LoadId::nth(0), [0.0, force]).unwrap();
+        let change = |scene: &mut Scene| scene.set_force(0, [0.0, force]).unwrap();
         session.apply(edited(&session, label, change)).unwrap();
     }
     session.apply(Edit::Undo).unwrap();
@@ -393,7 +392,7 @@ fn a_search_that_fails_begins_again_at_rest() {
 #[test]
 fn a_large_body_without_an_equilibrium_comes_to_rest() {
     let mut scene = large(3).with_method(MethodKind::Warped);
-    scene.set_force(LoadId::nth(0), [0.0, -1e6]).unwrap();
+    scene.set_force(0, [0.0, -1e6]).unwrap();
     let mut session = session(scene);
     while session.iterates() {
         session.iterate();
@@ -438,7 +437,7 @@ fn a_large_result_is_certified_in_the_background() {
         session.iterate();
         session.request_facts(ShownFacts::default(), false);
     }
-    own.edit(|scene| scene.set_force(LoadId::nth(0), [0.0, -1200.0])).unwrap();
+    own.edit(|scene| scene.set_force(0, [0.0, -1200.0])).unwrap();
     own.solve();
     assert!((tip(&session) - own.probe("tip").unwrap().y).abs() < 1e-6);
     assert_eq!(certificate(&session).unwrap().stable, Some(true));

@@ -208,9 +208,9 @@ impl Lab {
             let (label, set) = match pull {
                 Pull::Force(magnitude, degrees) => {
                     self.desk.panel.force_direction = Some(degrees);
-                    ("Force", scene.set_force(LoadId::nth(load), vector(magnitude, degrees)))
+                    ("Force", scene.set_force(load, vector(magnitude, degrees)))
                 }
-                Pull::Moment(moment) => ("Moment", scene.set_moment(LoadId::nth(load), moment)),
+                Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
             };
             // An arrow always belongs to an existing load.
             (set.is_ok() && scene != *self.scene()).then_some((label, scene))

@@ -60,7 +60,7 @@ fn force(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<
     let size = x.hypot(y);
     if let Some(new) = field.tip("The size of the force on the tip").show(ui, &mut learn.messages, size, None) {
         let new = [x, y].map(|v| v * new / size);
-        actions.push(Action::edit("Force", scene, |scene| _ = scene.set_force(LoadId::nth(number), new)));
+        actions.push(Action::edit("Force", scene, |scene| _ = scene.set_force(number, new)));
     }
 }
 
