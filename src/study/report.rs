@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::claim::Claim;
-use super::motion::{MotionReference, REAL_TIME};
+use super::motion::MotionReference;
 use super::prelude::*;
 use super::ranking::Tuning;
 use super::trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
@@ -59,60 +59,62 @@ impl Study {
         )
     }
 
-    /// Formats a summary for display: reference solution, Pareto front, and cost of given errors; of a motion also
-    /// results in real time, and energy behaviour.
+    /// Formats a summary for display: reference solution, Pareto front, and cost of given errors; of a motion also the effect
+    /// of its time step and the savings of `auto`.
     #[must_use]
     pub fn summary(&self) -> String {
-        match &self.reference {
-            StudyReference::Rest(_) => self.summary_at_rest(),
-            StudyReference::Motion(reference) => self.motion_summary(reference),
+        let StudyReference::Motion(reference) = &self.reference else {
+            let head = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
+            return head + &self.front_text() + &self.costs_text();
+        };
+        let mut text = format!(
+            "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
+             {:.4} m,\nagainst {reference}\n",
+            self.scene,
+            number(round(reference.duration())),
+            reference.size
+        );
+        if reference.duration() < reference.scene_duration * (1.0 - 1e-6) {
+            let lasts = number(reference.scene_duration);
+            let _ = writeln!(text, "(the scene lasts {lasts} s; the rest is not measured)");
         }
-    }
-
-    fn summary_at_rest(&self) -> String {
-        let mut text = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
-        let columns = "    time, ms    at most, %     measured   mesh error  stopped early  linear theory   setting";
-        self.add_front(&mut text, ["", columns], |m, ErrorSplit { total, discretization, iteration, model }| {
-            let bound = self.error_bound(m);
-            let parts = format!("{total:12.4} {discretization:12.4} {iteration:14.4} {model:14.4}");
-            format!("{:12.4} {bound:12.4} {parts}", m.milliseconds)
-        });
-        self.add_costs(&mut text, |text, percent| {
-            let within = self.within(percent);
-            for (element, method) in
-                ElementKind::all().flat_map(|element| METHODS.iter().map(move |m| (element, m.kind)))
-            {
-                let own = within.iter().find(|m| (m.setting.element, m.setting.method) == (element, method));
-                let cost = match own {
-                    Some(m) => m.time_text(),
-                    None if method == MethodKind::Auto && percent < self.asked_percent => {
-                        format!("solver.max_error_percent is {}", self.asked_percent)
-                    }
-                    None => "not reached".to_owned(),
-                };
-                let _ = writeln!(text, "    {} {:<7} {cost}", element.id(), method.id());
-            }
-        });
+        text += &format!("\n{}{}\n", self.front_text(), self.costs_text());
+        self.add_steps(reference, &mut text);
+        self.add_auto(&mut text);
+        let unfinished = self.measurements.iter().filter(|m| !m.converged).count();
+        if unfinished > 0 {
+            let settings = count(unfinished as u64, "setting");
+            let _ = writeln!(text, "{settings} did not reach the end: see the column `ending` of the table");
+        }
         text
     }
 
-    /// Adds a row for each setting of the Pareto front, fastest first, and a note if the rank of one is undecided. `row`
-    /// formats time and errors of a setting, whose meaning is explained before the names of the columns.
-    fn add_front(&self, text: &mut String, head: [&str; 2], row: impl Fn(&Measurement, ErrorSplit) -> String) {
-        let [time, columns] = head;
-        let _ = writeln!(
-            text,
-            "Pareto front: no measured setting is both faster and more accurate ({time}error: at most the sum of its parts \
-             and of the reference's own error):\n{columns}"
+    /// Formats a row for each setting of the Pareto front, fastest first, and a note if the rank of one is undecided.
+    fn front_text(&self) -> String {
+        let moves = matches!(self.reference, StudyReference::Motion(_));
+        let (unit, iteration) = if moves { (" per simulated second", "time steps") } else { ("", "stopped early") };
+        let mut text = format!(
+            "Pareto front: no measured setting is both faster and more accurate (time{unit}; error: at most the sum of its \
+             parts and of the reference's own error):\n"
         );
-        let ranked = self.measurements.iter().zip(self.undecided()).filter(|(m, _)| m.pareto);
-        let mut front: Vec<_> = ranked.filter_map(|(m, undecided)| Some((m, m.error?, undecided))).collect();
-        front.sort_by(|(a, ..), (b, ..)| a.milliseconds.total_cmp(&b.milliseconds));
-        for (m, error, undecided) in &front {
-            let mark = if *undecided { " (rank undecided)" } else { "" };
-            let _ = writeln!(text, "{}   {}{mark}", row(m, *error), m.setting);
+        let row = |columns: &[String]| columns.iter().map(|text| format!("{text:>14}")).collect::<String>();
+        let columns = ["time, ms", "at most, %", "measured", "mesh error", iteration, "linear theory"];
+        let in_motion = if moves { &["rms", "energy, %"][..] } else { &[] };
+        let columns: Vec<String> = columns.iter().chain(in_motion).map(ToString::to_string).collect();
+        let _ = writeln!(text, "{}   setting", row(&columns));
+        let ranks: Vec<(&Measurement, bool)> = self.measurements.iter().zip(self.undecided()).collect();
+        let mut is_undecided = false;
+        for m in self.front() {
+            let Some(ErrorSplit { total, discretization, iteration, model }) = m.error else { continue };
+            let mut values = vec![m.milliseconds, self.error_bound(m), total, discretization, iteration, model];
+            values.extend(m.motion.iter().flat_map(|motion| [motion.rms_percent, motion.drift_percent]));
+            let values: Vec<String> = values.iter().map(|value| format!("{value:.4}")).collect();
+            let undecided = ranks.iter().any(|(other, undecided)| *other == m && *undecided);
+            is_undecided |= undecided;
+            let _ =
+                writeln!(text, "{}   {}{}", row(&values), m.setting, if undecided { " (rank undecided)" } else { "" });
         }
-        if front.iter().any(|(.., undecided)| *undecided) {
+        if is_undecided {
             let _ = writeln!(
                 text,
                 "rank undecided: a faster setting may be as accurate, because their errors differ by less than the \
@@ -120,79 +122,43 @@ impl Study {
                 percent(self.own_error_percent)
             );
         }
-        text.push('\n');
+        text + "\n"
     }
 
-    /// Adds the fastest setting with an error of at most 10, 1 and 0.1 %, and the `details` of each.
-    fn add_costs(&self, text: &mut String, details: impl Fn(&mut String, f64)) {
-        for percent in [10.0, 1.0, 0.1] {
-            let claim = Claim::of_study(self, percent);
-            let _ = writeln!(text, "{claim}");
-            if self.own_error_percent < percent {
-                details(text, percent);
+    /// Formats the fastest setting with an error of at most 10, 1 and 0.1 %, of all and of each element and method, or
+    /// integrator.
+    fn costs_text(&self) -> String {
+        let rival = |m: &Measurement| {
+            let Setting { element, method, stepping, .. } = m.setting;
+            stepping.map_or_else(|| format!("{} {}", element.id(), method.id()), |s| s.integrator.id().to_owned())
+        };
+        let mut rivals: Vec<String> = Vec::new();
+        for name in self.measurements.iter().map(rival) {
+            if !rivals.contains(&name) {
+                rivals.push(name);
             }
         }
+        let mut text = String::new();
+        for percent in [10.0, 1.0, 0.1] {
+            let _ = writeln!(text, "{}", Claim::of_study(self, percent));
+            let within = self.within(percent);
+            for name in rivals.iter().filter(|_| self.own_error_percent < percent) {
+                let cost = match within.iter().find(|m| rival(m) == *name) {
+                    Some(m) => format!("{}, {}", m.time_text(), m.setting),
+                    None if name.ends_with("auto") && percent < self.asked_percent => {
+                        format!("solver.max_error_percent is {}", self.asked_percent)
+                    }
+                    None => "not reached".to_owned(),
+                };
+                let _ = writeln!(text, "    {name:<16} {cost}");
+            }
+        }
+        text
     }
 
     /// Returns each measurement with its time stepping and figures.
     fn motions(&self) -> impl Iterator<Item = (&Measurement, Stepping, &MotionFigures)> {
         self.measurements.iter().filter_map(|m| Some((m, m.setting.stepping?, m.motion.as_ref()?)))
-    }
-
-    /// Formats a summary for display: reference, Pareto front, results in real time, and energy behaviour.
-    fn motion_summary(&self, reference: &MotionReference) -> String {
-        let mut text = format!(
-            "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
-             {:.4} m,\nagainst {}\n",
-            self.scene,
-            number(round(reference.duration())),
-            reference.size,
-            reference
-        );
-        if reference.duration() < reference.scene_duration * (1.0 - 1e-6) {
-            let lasts = number(reference.scene_duration);
-            let _ = writeln!(text, "(the scene lasts {lasts} s; the rest is not measured)");
-        }
-        text.push('\n');
-        let columns = "    time, ms   at most, %    measured         rms   mesh error  time steps  linear theory   energy, %   setting";
-        let head = ["time: per simulated second; ", columns];
-        self.add_front(&mut text, head, |m, ErrorSplit { total, discretization, iteration, model }| {
-            let bound = self.error_bound(m);
-            let [rms, drift] = m.motion.map_or([0.0; 2], |motion| [motion.rms_percent, motion.drift_percent]);
-            let parts = format!("{total:11.4} {rms:11.4} {discretization:12.4} {iteration:11.4} {model:14.4}");
-            format!("{:12.3} {bound:12.4} {parts} {drift:11.4}", m.milliseconds)
-        });
-        self.add_motion_costs(&mut text);
-        self.add_steps(reference, &mut text);
-        self.add_auto(&mut text);
-        self.add_unfinished(&mut text);
-        text
-    }
-
-    /// Adds the cost of given errors with every integrator.
-    fn add_motion_costs(&self, text: &mut String) {
-        let integrator_of = |m: &Measurement| m.setting.stepping.map(|stepping| stepping.integrator);
-        self.add_costs(text, |text, percent| {
-            let within = self.within(percent);
-            for integrator in INTEGRATORS {
-                let own = within.iter().find(|m| integrator_of(m) == Some(integrator.kind));
-                let cost = own.map_or_else(|| "not reached".to_owned(), |m| cost_text(m));
-                let _ = writeln!(text, "    {:<16} {cost}", integrator.id);
-            }
-        });
-        if self.own_error_percent >= 1.0 {
-            text.push('\n');
-            return;
-        }
-        let cost = match self.within(1.0).first() {
-            None => "no measured setting is within 1 %".to_owned(),
-            Some(m) if m.milliseconds <= REAL_TIME => {
-                let times = REAL_TIME / m.milliseconds;
-                format!("within 1 %, the fastest setting runs at {times:.0} times real time: {}", m.setting)
-            }
-            Some(m) => format!("within 1 %, no measured setting runs in real time; the fastest: {}", cost_text(m)),
-        };
-        let _ = writeln!(text, "{cost}\n");
     }
 
     /// Adds the effect of the time step on error and energy, on the scene's mesh.
@@ -253,27 +219,6 @@ impl Study {
             );
         }
     }
-
-    /// Adds the settings without an error, and the reason.
-    fn add_unfinished(&self, text: &mut String) {
-        for (is_cut_short, label) in
-            [(false, "stopped before the end"), (true, "stopped early: too many steps to the end")]
-        {
-            let of_label = |motion: &MotionFigures| motion.is_cut_short == is_cut_short;
-            let those: Vec<_> = self.motions().filter(|(m, _, motion)| !m.converged && of_label(motion)).collect();
-            if !those.is_empty() {
-                let _ = writeln!(text, "{} {label}:", count(those.len() as u64, "setting"));
-            }
-            for (m, ..) in those {
-                let _ = writeln!(text, "    {} ({:.0} ms per simulated second)", m.setting, m.milliseconds);
-            }
-        }
-        let gained = self.motions().filter(|(.., motion)| motion.energy() == "gained");
-        let most = gained.max_by(|(.., a), (.., b)| a.drift_percent.total_cmp(&b.drift_percent));
-        if let Some((m, _, motion)) = most {
-            let _ = writeln!(text, "the most energy was gained, {:.2} %, by {}", motion.drift_percent, m.setting);
-        }
-    }
 }
 
 fn columns_at_rest(m: &Measurement) -> String {
@@ -286,10 +231,6 @@ fn columns_at_rest(m: &Measurement) -> String {
 
 fn exponents<const N: usize>(values: [f64; N]) -> String {
     values.map(|value| format!("{value:e}")).join(",")
-}
-
-fn cost_text(m: &Measurement) -> String {
-    format!("{}, {}", m.time_text(), m.setting)
 }
 
 /// Rounds to six decimal places, for sums of steps.
