@@ -39,7 +39,6 @@ pub(crate) use results::ProbeStress;
 use results::area_change;
 pub use results::{
     Deformation, Energy, ProbeResult, StressResult, SupportReaction, probe_results, reaction, support_reactions,
-    supports_power,
 };
 pub use status::Status;
 
@@ -493,6 +492,7 @@ impl Simulation {
         let Body { problem, state, .. } = &self.body;
         let search = self.equilibrium();
         let load_factor = search.map_or(1.0, Equilibrium::load_factor);
+        let (elastic, external) = (problem.elastic_energy(state), -problem.loads().potential(state, load_factor));
         let supports = self.support_reactions();
         Solution {
             dofs: problem.system().dofs(),
@@ -506,15 +506,16 @@ impl Simulation {
             deformation: Deformation::of(problem, state, &self.nodal_stress()),
             probes: probe_results(problem, state),
             energy: Energy {
-                elastic: problem.elastic_energy(state),
-                external: -problem.loads().potential(state, load_factor),
+                elastic,
+                external,
                 supports: match (problem.supports().move_the_body(), self.is_linear()) {
                     (false, _) => Some(0.0),
-                    (true, true) => Some(0.5 * supports_power(problem, &supports)),
+                    // Loads that grow with the displacement do half of their final work.
+                    (true, true) => Some(elastic - 0.5 * external),
                     (true, false) => None,
                 },
             },
-            reaction: reaction(problem, state, self.kinematics(), self.forces()),
+            reaction: reaction(problem, self.kinematics(), &supports),
             supports,
             auto: search.and_then(Equilibrium::auto_report),
         }

@@ -113,20 +113,14 @@ pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
     see.collect()
 }
 
-/// Returns the total reaction, f_int − f_ext on the fixed unknowns and at held points, with lever arms about the origin:
-/// those at rest in linear theory, else current ones.
-pub fn reaction(problem: &Problem, state: &State, kinematics: Kinematics, forces: &Forces) -> Wrench {
+/// Returns the sum of the reactions of all supports, with lever arms about the origin: those at rest in linear theory, else
+/// current ones.
+pub fn reaction(problem: &Problem, kinematics: Kinematics, reactions: &[SupportReaction]) -> Wrench {
     let mut total = Wrench::default();
-    let (mesh, mask) = (problem.system().mesh(), problem.system().pattern().mask());
-    let supports = problem.supports();
-    let moved = if kinematics == Kinematics::Linear { 0.0 } else { 1.0 };
-    let residual = supports.with_point_forces(forces.residual());
-    let nodes = mesh.nodes().iter().zip(&state.displacement).zip(mask.iter().zip(residual.iter()));
-    for ((x, u), (mask, residual)) in nodes {
-        total.add(x + u * moved, -residual.zip_map(mask, |f, free| if free > 0.0 { 0.0 } else { f }));
-    }
-    for (support, force) in supports.point_forces(forces.residual()) {
-        total.add(support.middle + support.mean(&state.displacement) * moved, force);
+    for (support, reaction) in problem.supports().all().iter().zip(reactions) {
+        let middle = if kinematics == Kinematics::Linear { support.middle } else { reaction.middle };
+        total.add(middle, reaction.force);
+        total.moment += reaction.moment;
     }
     total
 }
@@ -162,13 +156,6 @@ pub fn support_reactions(
         SupportReaction { place: support.place.clone(), middle, force, moment }
     });
     react.collect()
-}
-
-/// Returns the derivative of the work of moving supports with respect to the load factor, J: their current reactions
-/// times the whole displacement and rotation of each.
-pub fn supports_power(problem: &Problem, reactions: &[SupportReaction]) -> f64 {
-    let pairs = problem.supports().all().iter().zip(reactions);
-    pairs.map(|(s, r)| r.force.dot(&s.displacement) + r.moment * s.rotation).sum()
 }
 
 /// Largest von Mises stress of the recovered Cauchy stresses.

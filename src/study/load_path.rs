@@ -11,7 +11,7 @@ use crate::method::{
     support_stiffness,
 };
 use crate::scene::Support;
-use crate::simulation::{Equilibrium, SupportReaction, supports_power};
+use crate::simulation::{Equilibrium, SupportReaction};
 use crate::state::{State, largest, largest_distance};
 use crate::stress::LAW_HOLDS;
 
@@ -125,7 +125,7 @@ pub struct LoadPath {
     pub driven: Option<usize>,
     /// Quantities that the load factors refer to.
     pub drive: Drive,
-    /// Work of moving supports, the integral of their reactions along the path, J.
+    /// Work of moving supports along the path, J.
     pub supports_work: f64,
     /// End of the path before the full load; `None` if it was followed to its end.
     pub end: Option<PathEnd>,
@@ -133,8 +133,6 @@ pub struct LoadPath {
 
 /// Number of rows of a path, which are drawn and between which the work of supports is integrated.
 const ROWS: u32 = 60;
-/// Largest number of times that an interval between rows is halved for the work of supports.
-const MAX_HALVINGS: u32 = 5;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
@@ -304,14 +302,8 @@ struct Tracer {
     timings: Timings,
     /// Number of the next row.
     row: u32,
-    /// Derivative of the work of moving supports with respect to the load factor at the last state, J.
-    power: f64,
-    /// Slope of this derivative over the last interval, and the length of the interval.
-    power_slope: Option<[f64; 2]>,
-    /// Sum of the magnitudes of the work over all intervals, J.
-    exchanged: f64,
-    /// Load factor up to which the work is integrated.
-    reached: f64,
+    /// Load factor, elastic energy and potential of the whole loads, J, at the last equilibrium of this part of the path.
+    energies: Option<[f64; 3]>,
     /// Last equilibrium, and its stability under force control.
     last: Option<(Point, Option<bool>)>,
     /// Displacement under the full load, m.
@@ -330,10 +322,7 @@ impl Tracer {
             timings: Timings::default(),
             problem,
             row: 1,
-            power: 0.0,
-            power_slope: None,
-            exchanged: 0.0,
-            reached: 0.0,
+            energies: None,
             last: None,
             end: None,
         })
@@ -345,7 +334,7 @@ impl Tracer {
         let now = sentence!("following the load path");
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
         follower.path.locates_all = true;
-        self.visit(&follower, [&follower.last; 2], &follower.last, 0);
+        self.visit(&follower, &follower.last);
         self.mark();
         let end = loop {
             if observe(Progress { fraction: follower.last.factor / to, now: Some(&now) }).is_break() {
@@ -360,10 +349,9 @@ impl Tracer {
                         if follower.events.jump.is_some() && landing.factor <= 1.0 {
                             self.path.states_before_jump.get_or_insert(self.path.states.len());
                         }
-                        self.last = None;
-                        self.visit(&follower, [&landing; 2], &landing, 0);
+                        (self.last, self.energies) = (None, None);
+                        self.visit(&follower, &landing);
                         self.mark();
-                        self.power_slope = None;
                     }
                 }
             }
@@ -393,36 +381,21 @@ impl Tracer {
             if at > from.factor
                 && let Some(row) = follower.path.clone().between(&mut self.equations(), from, to, at)
             {
-                self.visit(follower, [from, to], &row, MAX_HALVINGS);
+                self.visit(follower, &row);
                 self.mark();
             }
         }
-        self.visit(follower, [from, to], to, MAX_HALVINGS);
+        self.visit(follower, to);
         if factor(self.row) == to.factor {
             self.mark();
         }
     }
 
-    /// Integrates the work of moving supports to an equilibrium between two points of the path; an interval in which their
-    /// power bends sharply is halved up to `halvings` times. If the body loses or regains its stability under force control
-    /// since the last equilibrium, the state between them at which this happens is recorded.
-    fn visit(&mut self, follower: &PathFollower, [from, to]: [&Point; 2], point: &Point, halvings: u32) {
-        /// Work that depends on the bend of the power, relative to all work so far.
-        const RESOLVED: f64 = 2e-3;
+    /// Adds the work of moving supports up to the next equilibrium of the path. If the body loses or regains its stability
+    /// under force control since the last equilibrium, the state between them at which this happens is recorded.
+    fn visit(&mut self, follower: &PathFollower, point: &Point) {
         if point.factor > 1.0 {
             return;
-        }
-        let power = self.power_at(point);
-        for halvings in (0..halvings).rev() {
-            let length = point.factor - self.reached;
-            let bend = (power - self.power) / length - self.power_slope.map_or(0.0, |[before, _]| before);
-            let matters = length > 0.0 && bend.abs() * length * length > RESOLVED * self.exchanged;
-            if !matters {
-                break;
-            }
-            let middle = self.reached + 0.5 * length;
-            let Some(middle) = follower.path.clone().between(&mut self.equations(), from, to, middle) else { break };
-            self.visit(follower, [from, to], &middle, halvings);
         }
         let stable = self.is_stable(point);
         if let Some((last, Some(before))) = self.last.take()
@@ -430,31 +403,23 @@ impl Tracer {
             && stable.is_some_and(|stable| stable != before)
             && let Some(limit) = self.limit_under_force(follower, &last, before, point)
         {
-            let own = self.power_at(&limit);
-            self.integrate(&limit, own);
+            self.add_work(&limit);
             self.last = Some((limit, Some(true)));
             self.mark();
         }
-        self.integrate(point, power);
+        self.add_work(point);
         self.last = Some((point.clone(), stable));
     }
 
-    /// Integrates the work of moving supports to a state beyond the last one, by the parabola through their power there and
-    /// at the two states before.
-    fn integrate(&mut self, point: &Point, power: f64) {
-        /// Smallest length of an interval, relative to the next one, whose slope is not the error of its ends.
-        const RESOLVED: f64 = 0.1;
-        let length = point.factor - self.reached;
-        if length > 0.0 {
-            let slope = (power - self.power) / length;
-            let last = self.power_slope.filter(|[_, last]| *last > RESOLVED * length);
-            let curvature = last.map_or(0.0, |[before, last]| (slope - before) / (length + last));
-            let work = 0.5 * length * (self.power + power) - curvature * length.powi(3) / 6.0;
-            self.path.supports_work += work;
-            self.exchanged += work.abs();
-            self.power_slope = Some([slope, length]);
+    /// Adds the work of moving supports since the last equilibrium: the change of the elastic energy less the work of the
+    /// loads, which grow with the load factor, by the trapezoidal rule.
+    fn add_work(&mut self, Point { state, factor, .. }: &Point) {
+        if self.path.driven.is_some() {
+            let (elastic, potential) = (self.problem.elastic_energy(state), self.problem.loads().potential(state, 1.0));
+            if let Some([last, stored, before]) = self.energies.replace([*factor, elastic, potential]) {
+                self.path.supports_work += elastic - stored + 0.5 * (last + factor) * (potential - before);
+            }
         }
-        (self.power, self.reached) = (power, point.factor);
     }
 
     /// Records the last equilibrium, unless it is recorded already.
@@ -493,15 +458,6 @@ impl Tracer {
             *side = point;
         }
         Some(if stable { low } else { high })
-    }
-
-    /// Returns the derivative of the supports' work by the load factor, J; 0 if none moves.
-    fn power_at(&mut self, point: &Point) -> f64 {
-        if self.path.driven.is_none() {
-            return 0.0;
-        }
-        let reactions = self.reactions(point);
-        supports_power(&self.problem, &reactions)
     }
 
     fn reactions(&mut self, point: &Point) -> Vec<SupportReaction> {
