@@ -97,10 +97,15 @@ struct RigidMotion {
 }
 
 impl RigidMotion {
+    /// Returns the displacement of a point.
+    fn displacement(&self, x: Vector2<f64>) -> Vector2<f64> {
+        rotated_by(x - self.from, self.angle) + (self.to - self.from)
+    }
+
     /// Moves a body.
     fn apply(&self, mesh: &Mesh, state: &mut State) {
         for (node, x) in mesh.nodes().iter().enumerate() {
-            let by = rotated_by(x + state.displacement[node] - self.from, self.angle) + (self.to - self.from);
+            let by = self.displacement(x + state.displacement[node]);
             (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis]));
         }
         let rotation = Rotation::from_angle(self.angle);
@@ -395,10 +400,23 @@ impl Supports {
     }
 
     /// Moves the body with the supports' frame from one load factor to another. Only the rest of the supports' motion
-    /// deforms it.
-    pub(crate) fn carry_with_frame(&self, mesh: &Mesh, factors: [f64; 2], state: &mut State) {
-        if factors[0] != factors[1] {
-            self.frame_motion(mesh, factors).apply(mesh, state);
+    /// deforms it. A component beside a fixed one of the same node moves as it does on the body at rest: it cannot be
+    /// rotated with the frame, and the sum of its motions in several steps is thus that in one.
+    pub(crate) fn carry_with_frame(&self, system: &System, factors: [f64; 2], state: &mut State) {
+        if factors[0] == factors[1] {
+            return;
+        }
+        let mesh = system.mesh();
+        let (before, motion) = (self.frame(mesh, factors[0]), self.frame_motion(mesh, factors));
+        let nodes = mesh.nodes().iter().zip(system.pattern().mask()).enumerate();
+        let beside = nodes.filter(|(_, (_, mask))| mask.x != mask.y).map(|(node, (x, mask))| {
+            let at_rest = motion.displacement(x + before.displacement(*x));
+            (node, (at_rest - motion.displacement(x + state.displacement[node])).component_mul(mask))
+        });
+        let beside: Vec<_> = beside.collect();
+        motion.apply(mesh, state);
+        for (node, by) in beside {
+            (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis]));
         }
     }
 

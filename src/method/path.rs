@@ -57,7 +57,7 @@ impl<'a> StaticEquations<'a> {
 fn put(problem: &Problem, state: &mut State, factors: [f64; 2]) {
     let (supports, mesh) = (problem.supports(), problem.system().mesh());
     if supports.move_the_body() {
-        supports.carry_with_frame(mesh, factors, state);
+        supports.carry_with_frame(problem.system(), factors, state);
         supports.put(mesh, factors[1], Kinematics::Corotated, &mut state.displacement);
     }
 }
