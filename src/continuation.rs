@@ -372,7 +372,12 @@ impl<S: Clone> Continuation<S> {
             // Beyond the first bifurcation, the critical mode at `from` may be the one of the bifurcation before.
             let (mut low, mut high, before) = (0.0, step, self.linearizations);
             for _ in 0..if self.locates_all { MAX_BISECTIONS } else { 0 } {
-                let Some((middle, point)) = self.correct_between(equations, &from, [low, high], 0.5) else { break };
+                // Next to the singular tangent, the last point before it is a better start.
+                let found = self.correct_between(equations, &from, [low, high], 0.5).or_else(|| {
+                    let (step, point) = self.correct_between(equations, &best, [0.0, high - low], 0.5)?;
+                    Some((low + step, point))
+                });
+                let Some((middle, point)) = found else { break };
                 if point.modes == from.modes { (low, best) = (middle, point) } else { high = middle }
             }
             self.located += self.linearizations - before;
