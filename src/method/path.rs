@@ -656,5 +656,5 @@ fn solve_downhill(linear: &mut LinearSystem) -> bool {
         }
         modes.push(mode);
     }
-    free.iter().all(|v| v.is_finite()) && dot(&force, free) > 0.0
+    found == negative && free.iter().all(|v| v.is_finite()) && dot(&force, free) > 0.0
 }
