@@ -406,17 +406,13 @@ impl Supports {
         if factors[0] == factors[1] {
             return;
         }
-        let mesh = system.mesh();
+        let (mesh, u) = (system.mesh(), state.displacement.to_vec());
         let (before, motion) = (self.frame(mesh, factors[0]), self.frame_motion(mesh, factors));
-        let nodes = mesh.nodes().iter().zip(system.pattern().mask()).enumerate();
-        let beside = nodes.filter(|(_, (_, mask))| mask.x != mask.y).map(|(node, (x, mask))| {
-            let at_rest = motion.displacement(x + before.displacement(*x));
-            (node, (at_rest - motion.displacement(x + state.displacement[node])).component_mul(mask))
-        });
-        let beside: Vec<_> = beside.collect();
         motion.apply(mesh, state);
-        for (node, by) in beside {
-            (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis]));
+        for (node, mask) in system.pattern().mask().iter().enumerate().filter(|(_, mask)| mask.x != mask.y) {
+            let x = mesh.nodes()[node];
+            let by = motion.displacement(x + before.displacement(x)) - motion.displacement(x + u[node]);
+            (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis] * mask[axis]));
         }
     }
 

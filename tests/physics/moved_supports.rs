@@ -30,6 +30,17 @@ fn turned_both(degrees: f64, length: f64, stretched: f64) -> Vec<String> {
     ]
 }
 
+/// The path of a slender cantilever whose tip is moved across needs no short steps: at the tip one component is prescribed.
+#[test]
+fn a_moved_tip_takes_long_steps() {
+    for (length, most) in [(20.0, 120), (100.0, 220)] {
+        let scene = Scene::beam(length, 1.0).with_cells(length as u32, 2).with_element(ElementKind::Q4).clamp("left");
+        let scene = scene.support([length, 0.0], &[Axis::Y]).moved([0.0, -0.8 * length], 0.0);
+        let iterations = solved(&scene.with_method(MethodKind::Newton)).iterations();
+        assert!(iterations <= most, "L/H = {length}: {iterations} iterations");
+    }
+}
+
 /// A column held at points has an answer or a sentence beyond its critical load, where the body jumps.
 #[test]
 fn a_column_held_at_points_ends_with_a_sentence() {
