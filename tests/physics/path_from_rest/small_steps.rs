@@ -2,7 +2,8 @@
 //! the tangent of the elements. Each step extrapolates the last ones, and corrects that by full Newton steps at a constant
 //! load factor. Steps are halved where a correction is long or converges slowly, and where the number of unstable modes
 //! changes; beyond that, they go on from a longer one. Where no step is short enough, the next extrapolation ignores the
-//! earlier points: the steps then pass a sharp turn, but no limit point.
+//! earlier points: the steps then pass a sharp turn, but no limit point. A limit point beside which the body comes to rest
+//! with as many unstable modes is none, as in the path, and so is a turn that no step resolves.
 
 use crate::common::*;
 use warpbeam::assembly::NodalSupport;
@@ -12,6 +13,11 @@ use warpbeam::solver::Factor;
 const STEPS: f64 = 160.0;
 /// Length of steps that resolve sharp turns.
 pub const SHARP: f64 = 1e-8;
+
+/// Ratio of successive corrections that converge fast.
+const FAST: f64 = 0.3;
+/// Distance of two places that are the same, relative to the size of the body: a shorter jump is none.
+const SAME_PLACE: f64 = 1e-3;
 
 type Field = Vec<Vector2<f64>>;
 
@@ -46,7 +52,7 @@ pub struct SmallSteps {
 pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     let mut judge = Judge::new(simulation.problem());
     let rest = vec![Vector2::zeros(); simulation.displacement().len()];
-    let mut points = vec![judge.equilibrium(rest, 0.0, f64::INFINITY)?];
+    let mut points = vec![judge.equilibrium(rest, 0.0, [f64::INFINITY, FAST])?];
     let (mut bifurcations, mut work, mut exchanged, longest) = (Vec::new(), [0.0; 2], 0.0, 1.0 / STEPS);
     // The first step has nothing to extrapolate.
     let (mut step, mut speed) = (1e-2 * longest, f64::INFINITY);
@@ -65,7 +71,10 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         // In a sharp turn of the path, the displacement soon grows much faster than before.
         let sudden = if step <= SHARP { 1e-5 * simulation.system().size() } else { 0.0 };
         let allowed = if is_alone { (4.0 * speed * (factor - last.factor)).max(sudden) } else { 0.25 * ahead };
-        let next = judge.equilibrium(start, factor, allowed);
+        let next = judge.equilibrium(start, factor, [allowed, FAST]);
+        // In the shortest steps, a jump to the same place is none.
+        let lands = step <= SHARP && is_alone && next.is_none();
+        let next = next.or_else(|| lands.then(|| judge.landing(&last))?);
         // Beside a singular tangent, rounding displaces points or hides them: the steps go on from one farther beyond,
         // unless they are short enough for a sharp turn of the path.
         let next = next.or_else(|| beyond.last().filter(|_| is_short && shortest > SHARP)?.last().cloned());
@@ -175,14 +184,29 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// Returns the first equilibrium a little beyond a point that is in the same place, but for the motion of the supports,
+    /// and has as many unstable modes.
+    fn landing(&mut self, from: &Point) -> Option<Point> {
+        let near = SAME_PLACE * self.problem.system().size();
+        [SHARP, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3].into_iter().find_map(|step| {
+            let factor = (from.factor + step).min(1.0);
+            let mut carried = from.u.clone();
+            self.put_supports(&mut carried, factor);
+            let by_supports = largest_distance(&carried, &from.u);
+            let next = self.equilibrium(carried, factor, [f64::INFINITY; 2])?;
+            let is_near = largest_distance(&next.u, &from.u) <= near + by_supports;
+            (next.modes == from.modes && is_near).then_some(next)
+        })
+    }
+
     /// Returns the equilibrium at a load factor that full steps from `u` lead to, unless the first is longer than `allowed`,
-    /// m, or they do not converge fast.
-    fn equilibrium(&mut self, mut u: Field, factor: f64, allowed: f64) -> Option<Point> {
+    /// m, or the ratio of two of them is larger than `contraction`.
+    fn equilibrium(&mut self, mut u: Field, factor: f64, [allowed, contraction]: [f64; 2]) -> Option<Point> {
         let system = self.problem.system();
         let (pattern, size) = (system.pattern(), system.size());
         self.put_supports(&mut u, factor);
         let mut allowed = allowed.max(1e-9 * size);
-        for _ in 0..12 {
+        for _ in 0..40 {
             let state = system.state_of(&u).ok()?;
             self.problem.linearize(&state, &mut self.forces, Some((Tangent::EXACT, &mut self.matrix)));
             self.problem.balance(&state, Kinematics::Corotated, factor, &mut self.forces);
@@ -199,7 +223,7 @@ impl<'a> Judge<'a> {
                 let forces = [self.forces.external().to_vec(), supports];
                 return Some(Point { factor, u, forces, modes: self.factor.negative_eigenvalues() });
             }
-            allowed = 0.3 * length;
+            allowed = contraction * length;
         }
         None
     }
