@@ -508,7 +508,7 @@ fn the_values_under_the_pointer_are_shown_and_a_click_keeps_them() {
     assert!(!is_open(&ui));
     ui.click_at(pos);
     assert!(is_open(&ui));
-    ui.push("Close the card");
+    ui.push("Close window");
     assert!(!is_open(&ui), "the button does not close the card");
     // A quick click is pressed and released between two frames.
     ui.hover(pos);

@@ -1,6 +1,6 @@
 //! Values at the point under the pointer, and at a pinned point.
 
-use egui::{Area, Grid, Order};
+use egui::{Grid, Window};
 use nalgebra::Matrix2;
 
 use crate::app::interface::*;
@@ -37,39 +37,16 @@ fn matrix_rows(m: &Matrix2<f64>) -> String {
     format!("{} {}\n{} {}", number(m.m11), number(m.m12), number(m.m21), number(m.m22))
 }
 
-/// Sizes of a card while its matrices are folded, points: with the value of the displayed field and the displacement, and
-/// with all values.
-const FEW: Vec2 = vec2(324.0, 110.0);
-const ALL: Vec2 = vec2(300.0, 262.0);
-/// Room for the line key above a card, and for the scale and the colour bar below, points.
-const KEY: f32 = 44.0;
-const SCALE_AND_BAR: f32 = 84.0;
-
 /// Choices of the user on the cards of points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CardChoice {
     /// `true` if stresses are in the axes x and y of the material at rest, rotated by R; they are in those of space else.
     in_material: bool,
-    /// `true` if all values are shown where they hide much of the body too.
-    pub shows_all: bool,
     shows_matrices: bool,
-}
-
-/// Request of a card.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum CardRequest {
-    /// Closes the card.
-    Close,
-    /// Adds a probe to the scene at the point.
-    Keep,
 }
 
 /// Row of a card: name, value and tooltip.
 type Row = (&'static str, String, &'static str);
-
-fn displacement_row(point: &PointState) -> Row {
-    ("u", metres(point.displacement), "Displacement")
-}
 
 /// Returns the values of a point, with the stresses in the axes of space or of the material.
 fn rows_of(point: &PointState, in_material: bool) -> Vec<Row> {
@@ -89,7 +66,7 @@ fn rows_of(point: &PointState, in_material: bool) -> Vec<Row> {
     } else {
         (["ε_X, ε_Y", "γ_XY"], "Strain ε = S − I, in the axes X, Y of the material")
     };
-    let mut rows = vec![displacement_row(point)];
+    let mut rows = vec![("u", metres(point.displacement), "Displacement")];
     if !point.is_linear {
         rows.push(("θ", none(one(Field::RotationAngle)), "Angle of the rotation R"));
     }
@@ -155,118 +132,53 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
-/// Returns points that are spread over triangles evenly: centroids and the middles of edges.
-pub(crate) fn spread(corners: &[Pos2], triangles: &[[u32; 3]]) -> Vec<Pos2> {
-    let corner = |p: u32| corners.get(p as usize).map(|at| at.to_vec2());
-    let of = |&[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [corner(a)?, corner(b)?, corner(c)?];
-        Some([(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0])
-    };
-    triangles.iter().filter_map(of).flatten().map(Vec2::to_pos2).collect()
-}
-
-/// Place of the card of a pinned point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PointCard {
-    pub point: MaterialPoint,
-    view: Rect,
-    shows_all: bool,
-    size: Vec2,
-    align: Align2,
-}
-
-impl PointCard {
-    /// Places a card in a view where it hides least: not its point at `at`, as few of the points spread over a body as
-    /// possible, and the `tips` of arrows only for many of these. It has few values if all would hide much of the body, or
-    /// are higher than the view, and the user has not asked for them. All positions are in the window.
-    pub(crate) fn new(
-        point: MaterialPoint,
-        view: Rect,
-        choice: CardChoice,
-        (body, at, tips): (&[Pos2], Pos2, &[Pos2]),
-    ) -> Self {
-        /// Part of a body for which a tip is hidden.
-        const TIP: f32 = 0.15;
-        /// Part of a body that all values may hide.
-        const HIDDEN: f32 = 0.1;
-        let hidden = |points: &[Pos2], card: Rect| points.iter().filter(|at| card.contains(**at)).count() as f32;
-        let best = |size: Vec2| {
-            let card = PointCard { point, view, shows_all: choice.shows_all, size, align: Align2::RIGHT_TOP };
-            let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::LEFT_TOP];
-            let aligned = corners.into_iter().map(|align| {
-                let card = PointCard { align, ..card };
-                let area = card.area();
-                let part = hidden(body, area) / body.len().max(1) as f32;
-                (card, if area.contains(at) { f32::INFINITY } else { part }, TIP * hidden(tips, area))
-            });
-            let least = aligned.min_by(|a, b| (a.1 + a.2).total_cmp(&(b.1 + b.2)));
-            least.map_or((card, 0.0), |(card, part, _)| (card, part))
-        };
-        let (all, part) = best(ALL);
-        let fits = part <= HIDDEN && view.height() >= ALL.y + KEY + SCALE_AND_BAR;
-        if choice.shows_all || fits { all } else { best(FEW).0 }
-    }
-
-    /// Returns `true` if the card was placed for the point, the view and the choice, and does not cover the point, which is
-    /// at `at` in the window.
-    pub(crate) fn suits(&self, point: MaterialPoint, view: Rect, choice: CardChoice, at: Pos2) -> bool {
-        (self.point, self.view, self.shows_all) == (point, view, choice.shows_all) && !self.area().contains(at)
-    }
-
-    /// Returns the position of the aligned point of the card, in the window.
-    fn position(&self) -> Pos2 {
-        const SIDE: f32 = 14.0;
-        // All values that the user asks for hide the key and the bar rather than the body.
-        let (above, below) = if self.shows_all { (SIDE, SIDE) } else { (KEY, SCALE_AND_BAR) };
-        self.align
-            .pos_in_rect(&Rect::from_min_max(self.view.min + vec2(SIDE, above), self.view.max - vec2(SIDE, below)))
-    }
-
-    /// Returns the area of the card in the window while its matrices are folded.
-    fn area(&self) -> Rect {
-        self.align.anchor_size(self.position(), self.size)
-    }
-}
-
 /// Pinned point.
 pub(crate) struct Pinned<'a> {
     /// Values at the point.
     pub state: &'a PointState,
-    /// Displayed field, and its value at the point.
-    pub field: (Field, Option<f64>),
     /// Position in the window.
     pub at: Pos2,
     /// `true` if the scene has a probe there.
     pub is_kept: bool,
 }
 
-/// Shows the card of a pinned point.
+/// Shows the card of a pinned point, which the user can move in the `view` and close; returns `true` if a probe is to be
+/// added to the scene at the point.
 pub(crate) fn show_card(
-    ui: &Ui,
     painter: &Painter,
-    card: PointCard,
-    pinned: &Pinned<'_>,
-    choice: &mut CardChoice,
-) -> Option<CardRequest> {
-    let (id, at) = (egui::Id::unique("probe"), pinned.at);
-    let visuals = ui.visuals();
+    visuals: &Visuals,
+    (view, pinned): (Rect, &Pinned<'_>),
+    (choice, is_open): (&mut CardChoice, &mut bool),
+) -> bool {
+    /// Room for the line key above a card, space below it, and space between card and point, points.
+    const KEY: f32 = 44.0;
+    const BESIDE: f32 = 20.0;
+    const BELOW: f32 = 14.0;
+    /// Usual size of a card, points.
+    const SIZE: Vec2 = vec2(284.0, 288.0);
+    let Pinned { state, at, .. } = *pinned;
     let color = visuals.strong_text_color();
-    let area = ui.memory(|memory| memory.area_rect(id)).unwrap_or(card.area());
-    painter.line_segment([at, area.clamp(at)], Stroke::new(1.2, color));
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
-    paint_principal(painter, at, pinned.state, color);
-    let area = Area::new(id).order(Order::Middle).pivot(card.align).fixed_pos(card.position()).constrain_to(card.view);
-    let shown = area.show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).show(ui, |ui| card_content(ui, card.size == FEW, pinned, choice)).inner
-    });
-    shown.inner
+    paint_principal(painter, at, state, color);
+    // Above and to the right of a low point, else below and to the left, where a body that hangs down from its left side
+    // is not; on the other side of the point if there is no room.
+    let (is_low, room) = (at.y > view.center().y, SIZE.x + BESIDE);
+    let is_right = if is_low { at.x + room <= view.right() } else { at.x - room < view.left() };
+    let x = if is_right { at.x + BESIDE } else { at.x - room };
+    let y = if is_low { view.top() + KEY } else { view.bottom() - BELOW - SIZE.y };
+    let title = fill!("Point %{place}", place = metres(state.rest));
+    let window = Window::new(RichText::new(title).size(BODY)).open(is_open).resizable(false).default_size(SIZE);
+    let window = window.default_pos(pos2(x, y)).constrain_to(view);
+    let Some(shown) = window.show(painter.ctx(), |ui| card_content(ui, pinned, choice)) else { return false };
+    painter.line_segment([at, shown.response.rect.clamp(at)], Stroke::new(1.2, color));
+    shown.inner == Some(true)
 }
 
-fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut CardChoice) -> Option<CardRequest> {
-    let (point, mut request) = (pinned.state, None);
+/// Shows the values of a pinned point, and returns `true` if a probe is to be added there.
+fn card_content(ui: &mut Ui, pinned: &Pinned<'_>, choice: &mut CardChoice) -> bool {
+    let point = pinned.state;
     ui.spacing_mut().item_spacing.y = 3.0;
-    let title = fill!("Point %{place}", place = metres(point.rest));
     let (kind, tip) = match point.values {
         PointValues::Recovered => (
             "recovered at the nodes",
@@ -274,21 +186,9 @@ fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut C
         ),
         PointValues::Raw => ("element value, not smoothed", "Strain and rotation of the element itself, not smoothed"),
     };
-    let matrices = matrices_of(point);
-    let rows = rows_of(point, choice.in_material);
-    ui.horizontal(|ui| {
-        ui.strong(&title);
-        let close = ui.small_button("×").on_hover_text(tr("Click or Escape closes it"));
-        close.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr("Close the card")));
-        if close.clicked() {
-            request = Some(CardRequest::Close);
-        }
-        ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
-    });
-    let few = [(pinned.field.0.name(), field_text(pinned.field), "Value of the colour"), displacement_row(point)];
-    let shown: &[Row] = if is_short { &few } else { &rows };
+    ui.label(RichText::new(tr(kind)).weak().size(12.0)).on_hover_text(tr(tip));
     // In linear theory the axes of the material do not rotate.
-    if !is_short && !point.is_linear {
+    if !point.is_linear {
         ui.horizontal(|ui| {
             ui.label(RichText::new(tr("Stress in the axes of")).weak().size(12.0));
             for (own, name) in [(false, "space x, y"), (true, "material X, Y")] {
@@ -300,28 +200,22 @@ fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut C
         // Rows of text need less height than those of controls.
         ui.spacing_mut().interact_size.y = 16.0;
         Grid::new("probe values").num_columns(2).spacing([12.0, 1.0]).show(ui, |ui| {
-            for (name, text, tip) in shown {
+            for (name, text, tip) in rows_of(point, choice.in_material) {
                 ui.label(RichText::new(tr(name)).weak()).on_hover_text(tr(tip));
                 ui.label(text).on_hover_text(tr(tip));
                 ui.end_row();
             }
         });
     });
-    ui.horizontal(|ui| {
+    let matrices = matrices_of(point);
+    let keeps = ui.horizontal(|ui| {
         let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
-        if !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked() {
-            request = Some(CardRequest::Keep);
-        }
-        if is_short || choice.shows_all {
-            let tip = "Shows all values, over the body too";
-            ui.toggle_value(&mut choice.shows_all, tr("All values")).on_hover_text(tr(tip));
-        }
-        if !is_short {
-            let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
-            ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
-        }
+        let keeps = !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked();
+        let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+        ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
+        keeps
     });
-    if choice.shows_matrices && !is_short {
+    if choice.shows_matrices {
         Grid::new("probe matrices").spacing([12.0, 3.0]).show(ui, |ui| {
             for (name, matrix, tip) in &matrices {
                 ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
@@ -330,7 +224,7 @@ fn card_content(ui: &mut Ui, is_short: bool, pinned: &Pinned<'_>, choice: &mut C
             }
         });
     }
-    request
+    keeps.inner
 }
 
 /// Returns the matrices of a point, with their names and tooltips.
@@ -343,25 +237,4 @@ fn matrices_of(point: &PointState) -> Vec<(&'static str, Matrix2<f64>, &'static 
     // Linear theory has neither R nor S.
     matrices.truncate(if point.is_linear { 1 } else { 3 });
     matrices
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use egui::pos2;
-
-    /// Whatever point of a beam is pinned, its card hides neither the beam nor the tip of its force.
-    #[test]
-    fn a_card_hides_nothing() {
-        let view = Rect::from_min_max(pos2(0.0, 36.0), pos2(996.0, 738.0));
-        let nodes = (0..=40_u8).flat_map(|i| [330.0, 374.0].map(|y| pos2(76.0 + 21.0 * f32::from(i), y)));
-        let (nodes, tip) = (nodes.collect::<Vec<_>>(), pos2(919.0, 422.0));
-        let point = MaterialPoint { element: 0, at: [0.3; 2] };
-        for &at in &nodes {
-            let card = PointCard::new(point, view, CardChoice::default(), (&nodes, at, &[tip]));
-            assert_eq!(card.size, ALL);
-            let card = card.area();
-            assert!(nodes.iter().chain([&tip]).all(|at| !card.contains(*at)), "{at:?}: {card:?}");
-        }
-    }
 }

@@ -11,7 +11,7 @@ use crate::app::viewport::handle::Handle;
 use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
 use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
-use crate::app::viewport::probe::{self, CardChoice, CardRequest, Pinned, PointCard};
+use crate::app::viewport::probe::{self, CardChoice, Pinned};
 use crate::app::viewport::projection::{Projection, viewport};
 use crate::render::Frame;
 use crate::section::{Section, SectionForces};
@@ -98,8 +98,6 @@ pub(crate) struct BodyView {
     pointer: Pointer,
     /// Pinned material point, whose values are shown.
     pub probe: Option<MaterialPoint>,
-    /// Card of the pinned point, if it is shown.
-    card: Option<PointCard>,
     /// Choices of the user on the cards of points.
     card_choice: CardChoice,
     /// Rest position of the point whose menu was opened, m.
@@ -126,7 +124,6 @@ impl BodyView {
             rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
             pointer: Pointer::default(),
             probe: None,
-            card: None,
             card_choice: CardChoice::default(),
             menu: None,
             body: BodyMesh::default(),
@@ -367,28 +364,11 @@ impl BodyView {
         let place = Place::At(menu::rounded(system, state.rest).into());
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || scene.probes.iter().any(|probe| probe.place == place);
-        // Another point begins with the values that fit.
-        if self.card.is_none_or(|card| card.point != point) {
-            self.card_choice.shows_all = false;
-        }
-        // The card stays where it is while the body moves, unless the point comes under it.
-        let is_well_placed = |card: &PointCard| card.suits(point, self.rect, self.card_choice, at);
-        let card = self.card.filter(is_well_placed).unwrap_or_else(|| {
-            let projection = self.projection();
-            let tips: Vec<Pos2> = self.arrows(content).into_iter().map(|arrow| arrow.tip()).collect();
-            let corners: Vec<_> = self.body.points.iter().map(|point| projection.point(*point)).collect();
-            let body = probe::spread(&corners, &content.session.geometry().triangles);
-            PointCard::new(point, self.rect, self.card_choice, (&body, at, &tips))
-        });
-        self.card = Some(card);
-        let pinned = Pinned { state: &state, field: self.field_at(content, point), at, is_kept };
-        match probe::show_card(ui, painter, card, &pinned, &mut self.card_choice)? {
-            CardRequest::Close => self.probe = None,
-            CardRequest::Keep => {
-                return Some(Action::edit(menu::EDIT, scene, |scene| menu::add_probe(scene, system, state.rest)));
-            }
-        }
-        None
+        let (pinned, mut is_open) = (Pinned { state: &state, at, is_kept }, true);
+        let choice = (&mut self.card_choice, &mut is_open);
+        let keeps = probe::show_card(painter, ui.visuals(), (self.rect, &pinned), choice);
+        self.probe = self.probe.filter(|_| is_open);
+        keeps.then(|| Action::edit(menu::EDIT, scene, |scene| menu::add_probe(scene, system, state.rest)))
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
