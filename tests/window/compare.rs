@@ -139,7 +139,7 @@ fn the_view_of_the_panes_grows_while_a_load_is_dragged() {
     wait_for_panes(&mut ui);
     let at = |ui: &Ui, x: Vector2<f64>| {
         let [x, y] = ui.state().camera().to_view(x).map(|v| v as f32);
-        ui.state().panes()[1].place.unwrap().center() + egui::vec2(x, y)
+        ui.state().panes()[1].place().center() + egui::vec2(x, y)
     };
     // The shaft of the arrow, which begins in the middle of the end.
     let from = at(&ui, ui.state().panes()[1].run.end.as_ref().unwrap().probes[0].x) + egui::vec2(0.0, 25.0);
@@ -151,7 +151,7 @@ fn the_view_of_the_panes_grows_while_a_load_is_dragged() {
         let pane = &ui.state().panes()[1];
         let simulation = pane.simulation().unwrap();
         for (x, u) in simulation.mesh().nodes().iter().zip(simulation.displacement()) {
-            assert!(pane.place.unwrap().contains(at(&ui, x + u)), "{:?}: {}", ui.force(), at(&ui, x + u));
+            assert!(pane.place().contains(at(&ui, x + u)), "{:?}: {}", ui.force(), at(&ui, x + u));
         }
     }
     assert_ne!(ui.force(), [0.0, -1500.0]);
@@ -183,7 +183,7 @@ fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
     let drawn = picture(&gpu, ui.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     let lab = ui.state();
     let background = lab.frame().background;
-    for (place, simulation) in lab.panes().iter().filter_map(|pane| pane.place.zip(pane.simulation())) {
+    for (place, simulation) in lab.panes().iter().filter_map(|pane| Some((pane.place(), pane.simulation()?))) {
         let mesh = simulation.system().mesh();
         let at = |n: u32| mesh.nodes()[n as usize] + simulation.displacement()[n as usize] * magnification;
         let mut seen = 0;
@@ -243,7 +243,7 @@ fn panes_of_motions_magnify_the_displacement() {
 fn panning_one_pane_pans_all() {
     let mut ui = compared("article", "linear,warped,newton,newton:t6");
     let before = ui.camera();
-    let from = ui.state().panes()[1].place.unwrap().left_bottom() + vec2(20.0, -20.0);
+    let from = ui.state().panes()[1].place().left_bottom() + vec2(20.0, -20.0);
     ui.hold(from);
     ui.move_to(from + vec2(15.0, -9.0));
     ui.release(from + vec2(15.0, -9.0));
@@ -270,7 +270,7 @@ fn compare_fits_small_windows() {
                 assert!(window.contains_rect(rect), "{size:?}: {name} at {rect:?}");
             }
             ui.contains([format!("Close pane {number}")]);
-            let place = ui.state().panes()[number - 1].place.unwrap();
+            let place = ui.state().panes()[number - 1].place();
             let is_large = place.width() >= 260.0 && place.height() >= 90.0;
             assert!(window.contains_rect(place) && is_large, "{size:?}: {place:?}");
         }
@@ -303,7 +303,7 @@ fn beginning(ui: &Ui, begin: &str) -> Vec<(Pos2, String)> {
 #[test]
 fn every_pane_shows_its_value_at_the_point_under_the_pointer() {
     let mut ui = compared("article", "linear,warped,newton:t6");
-    let places: Vec<Rect> = ui.state().panes().iter().map(|pane| pane.place.unwrap()).collect();
+    let places: Vec<Rect> = ui.state().panes().iter().map(|pane| pane.place()).collect();
     // Near the clamp, the bodies of all panes overlap.
     let pane = ui.state().panes()[1].simulation().unwrap();
     let rest = Vector2::new(1.0, 0.1);

@@ -715,7 +715,7 @@ fn integrators_are_compared_in_panes() {
     let mut ui = window_of("swing", scene_with("swing", &["beam.cells=[6,1]"]));
     ui.key_press(Key::K);
     ui.run_steps(4);
-    assert!(ui.state().panes().iter().all(|pane| pane.place.is_some()));
+    assert!(ui.state().panes().iter().all(|pane| pane.place().is_positive()));
     let times =
         |lab: &Lab| -> Vec<f64> { lab.panes().iter().map(|pane| pane.simulation().unwrap().state().time()).collect() };
     let before = ui.simulation().state().time();

@@ -83,7 +83,7 @@ impl Lab {
     /// Returns the area of the view in the window, points.
     #[must_use]
     pub fn view_rect(&self) -> Rect {
-        self.desk.viewport.rect
+        self.desk.viewport.view.rect
     }
 
     /// Returns the tips of the load arrows in the window, points, with the index of each load in the scene.
@@ -196,14 +196,15 @@ impl Lab {
     /// Returns the input of the body's render pass, as of the last [`Self::ui`].
     #[must_use]
     pub fn frame(&self) -> Frame<'_> {
-        self.desk.viewport.frame(&self.content())
+        self.desk.viewport.view.body.frame(self.desk.view.wireframe)
     }
 
     /// Returns the displayed bodies, as of the last [`Self::ui`], at this number of pixels per point.
     pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
-        match self.desk.view.mode {
-            Mode::Compare => self.desk.compare.views(self.desk.view.wireframe, pixels_per_point),
-            _ => vec![self.desk.viewport.view(&self.content(), pixels_per_point)],
+        let Desk { viewport, view: ViewOptions { mode, wireframe, .. }, compare, .. } = &self.desk;
+        match mode {
+            Mode::Compare => compare.views(*wireframe, pixels_per_point),
+            _ => vec![viewport.view.view(viewport.camera.shown, *wireframe, pixels_per_point)],
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
 use crate::app::shell::settings::Settings;
-use crate::app::viewport::view::{BodyView, CardContent, Content};
+use crate::app::viewport::main_view::{CardContent, Content, MainView};
 
 /// Request of the lab to the window that shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub enum Request {
 pub struct Desk {
     /// Model.
     pub session: Session,
-    pub(crate) viewport: BodyView,
+    pub(crate) viewport: MainView,
     /// Display options.
     pub view: ViewOptions,
     pub(super) panel: PanelState,
@@ -43,7 +43,7 @@ pub struct Desk {
 impl Desk {
     pub(super) fn new(session: Session) -> Self {
         Self {
-            viewport: BodyView::new(session.simulation().system().mesh()),
+            viewport: MainView::new(session.simulation().system().mesh()),
             view: ViewOptions::default(),
             panel: PanelState::default(),
             compare: Compare::new(session.is_motion()),
@@ -231,7 +231,7 @@ impl Lab {
         content(session, view, panel, aside.is_some().then_some(learn))
     }
 
-    pub(super) fn viewport_and_content(&mut self) -> (&mut BodyView, Content<'_>) {
+    pub(super) fn viewport_and_content(&mut self) -> (&mut MainView, Content<'_>) {
         let Self { desk: Desk { session, viewport, view, panel, .. }, learn, aside, .. } = self;
         (viewport, content(session, view, panel, aside.is_some().then_some(learn)))
     }
@@ -250,7 +250,7 @@ impl Lab {
                     *simulation.status() == Status::Converged && simulation.mouse_spring().is_none()
                 })
                 .map(|path| path.to(session.simulation().displacement())),
-            value_range: viewport.body.value_range(),
+            value_range: viewport.view.body.value_range(),
             scene: session.scene(),
             simulation: session.simulation(),
             shown: session.drawn(),

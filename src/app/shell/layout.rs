@@ -202,7 +202,7 @@ impl Lab {
     /// Shows the compared panes in place of the body.
     fn comparison(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let rect = ui.available_rect_before_wrap();
-        self.desk.viewport.rect = rect;
+        self.desk.viewport.view.rect = rect;
         // The reference solution does not depend on the iteration of the panel's own setting.
         let is_wanted = !self.desk.session.is_motion() && !ui.input(|i| i.pointer.any_down());
         if is_wanted && !self.desk.compare.goes_on() && self.desk.session.obtain_reference(false) {
@@ -256,7 +256,7 @@ impl Lab {
         }
         let (viewport, content) = self.viewport_and_content();
         let (response, interaction) = viewport.interact(ui, &content);
-        let rect = viewport.rect;
+        let rect = viewport.view.rect;
         actions.extend(viewport.show_menu(&response, &content).or(viewport.drop_base(&interaction, &content)));
         self.desk.session.grab(interaction.grab);
         self.edit_loads(ui.ctx(), &interaction);
@@ -264,7 +264,7 @@ impl Lab {
         viewport.update(ui.visuals(), &content);
         if self.aside.is_some() && self.learn.is_apart() {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.body.displace(|points| self.learn.place(session.drawn(), session.geometry(), points));
+            viewport.view.body.displace(|points| self.learn.place(session.drawn(), session.geometry(), points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -293,7 +293,7 @@ impl Lab {
             let view = learn::CardView {
                 simulation: session.drawn(),
                 geometry: session.geometry(),
-                points: &viewport.body.points,
+                points: &viewport.view.body.points,
                 projection: viewport.projection(),
                 palette: Palette::new(ui.visuals()),
             };

@@ -26,7 +26,7 @@ impl Lab {
         let Some(session) = session else { return };
         let mut desk = Desk::new(session);
         desk.viewport.eases = own.viewport.eases;
-        desk.viewport.rect = own.viewport.rect;
+        desk.viewport.view.rect = own.viewport.view.rect;
         // A card has the controls that it needs, so the panel is closed until the user opens it.
         let (mode, panel, raw) = (Mode::Learn, false, true);
         desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };

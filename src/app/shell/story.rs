@@ -190,7 +190,7 @@ impl Lab {
         let Desk { session, viewport, .. } = &mut self.desk;
         let (low, high) = session.simulation().system().mesh().bounds();
         let (low, high) = (low - Vector2::new(0.0, BEYOND.y), high + Vector2::new(BEYOND.x, 0.0));
-        let rect = viewport.rect;
+        let rect = viewport.view.rect;
         let size @ [_, height] = [rect.width(), rect.height()].map(f64::from);
         let [top, bottom] = MARGINS.map(|part| part * height);
         viewport.camera.set_camera(Camera::fit(low, high, size, Margins { sides: 76.0, top, bottom }));

@@ -15,7 +15,7 @@ pub(crate) struct BodyMesh {
     /// Positions of the drawn points, m.
     pub points: Vec<Vector2<f64>>,
     /// Factor of the displacement of nodes and points.
-    magnification: f64,
+    pub magnification: f64,
     /// Revision number of points and values.
     pub stamp: u64,
     /// Displayed field.
@@ -32,8 +32,11 @@ pub(crate) struct BodyMesh {
     recent_field: Option<Field>,
     /// Largest magnitude of the field in the last seconds of a motion.
     recent: Recent,
-    /// Equations of the body that the components belong to; `None` if they must be computed again.
-    system: Option<Arc<System>>,
+    /// Equations of the body; `None` before the first update.
+    pub system: Option<Arc<System>>,
+    pub geometry: Arc<DisplayGeometry>,
+    /// `true` if points and values have been moved since they were computed.
+    is_displaced: bool,
     pub palette: Palette,
 }
 
@@ -88,7 +91,7 @@ impl BodyMesh {
     pub(crate) fn update(
         &mut self,
         simulation: &Simulation,
-        geometry: &DisplayGeometry,
+        geometry: &Arc<DisplayGeometry>,
         (view, reference): (&ViewOptions, Option<&Reference>),
         magnification: f64,
         played: Option<f64>,
@@ -100,14 +103,16 @@ impl BodyMesh {
         // frame.
         let reference = reference.filter(|_| view.field == Field::ReferenceDistance);
         let probe = reference.and_then(Reference::first);
-        let is_known = self.system.as_ref().is_some_and(|system| Arc::ptr_eq(system, simulation.system()))
+        if self.system.as_ref().is_none_or(|system| !Arc::ptr_eq(system, simulation.system())) {
+            *self = Self { system: Some(simulation.system().clone()), geometry: geometry.clone(), ..Self::default() };
+        }
+        let is_known = !self.is_displaced
             && self.field.has_settings(simulation, view.field, values)
             && self.magnification == magnification
             && self.reference == probe
             && self.nodes.iter().copied().eq(places.clone());
         if !is_known {
-            self.system = Some(simulation.system().clone());
-            (self.magnification, self.reference) = (magnification, probe);
+            (self.is_displaced, self.magnification, self.reference) = (false, magnification, probe);
             self.nodes.clear();
             self.nodes.extend(places);
             let nodes = &self.nodes;
@@ -131,8 +136,7 @@ impl BodyMesh {
     /// Moves the drawn points until the next [`Self::update`].
     pub(crate) fn displace(&mut self, place: impl FnOnce(&mut [Vector2<f64>])) {
         place(&mut self.points);
-        self.stamp = stamp();
-        self.system = None;
+        (self.stamp, self.is_displaced) = (stamp(), true);
     }
 
     /// Returns the range of the field's values in the current state.
@@ -146,7 +150,8 @@ impl BodyMesh {
     }
 
     /// Returns the input of the body's render pass.
-    pub(crate) fn frame<'a>(&'a self, geometry: &'a DisplayGeometry, wireframe: bool) -> Frame<'a> {
+    pub(crate) fn frame(&self, wireframe: bool) -> Frame<'_> {
+        let geometry = &self.geometry;
         let opaque = |color: Color32| [color.r(), color.g(), color.b()];
         Frame {
             stamp: self.stamp,

@@ -20,6 +20,18 @@ pub(crate) fn grow([low, high]: Box2, point: &Vector2<f64>) -> Box2 {
     [low.inf(point), high.sup(point)]
 }
 
+/// Movement of the camera by the pointer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum CameraMove {
+    /// No movement.
+    #[default]
+    None,
+    /// Movement to another camera.
+    To(Camera),
+    /// Return to the camera that fits the whole body.
+    Fit,
+}
+
 /// Camera of a view, and the target of its animation.
 #[derive(Clone, Debug)]
 pub(crate) struct CameraController {
@@ -71,6 +83,15 @@ impl CameraController {
         self.own = Some(camera);
         self.shown = camera;
         self.is_new = false;
+    }
+
+    /// Moves the camera as the pointer has asked for.
+    pub(crate) fn follow(&mut self, pointer: CameraMove) {
+        match pointer {
+            CameraMove::None => {}
+            CameraMove::To(camera) => self.set_camera(camera),
+            CameraMove::Fit => self.fit(),
+        }
     }
 
     /// Returns the range of useful magnifications in a view of size `view`, points.

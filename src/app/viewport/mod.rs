@@ -3,8 +3,10 @@
 pub(crate) mod arrow;
 pub(crate) mod base;
 pub(crate) mod body_mesh;
+pub(crate) mod body_view;
 pub(crate) mod camera_controller;
 pub(crate) mod handle;
+pub(crate) mod main_view;
 pub(crate) mod menu;
 pub(crate) mod moment_arrow;
 pub(crate) mod overlay;
@@ -12,4 +14,3 @@ pub(crate) mod pointer;
 pub(crate) mod probe;
 pub(crate) mod projection;
 pub(crate) mod time_line;
-pub(crate) mod view;

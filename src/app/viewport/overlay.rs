@@ -4,7 +4,7 @@ use crate::app::diagnosis::{Errors, error_text, load_text};
 use crate::app::interface::*;
 use crate::app::session::history::MotionSample;
 use crate::app::viewport::arrow::{self, ForceArrows};
-use crate::app::viewport::handle::HotHandle;
+use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::moment_arrow::MomentArrow;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
@@ -14,15 +14,13 @@ use crate::simulation::SupportReaction;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
+    pub view: &'a BodyView,
+    pub projection: Projection,
     /// Drawn body with the loads of its scene.
     pub body: ForceArrows<'a>,
     /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
-    pub geometry: &'a DisplayGeometry,
     pub options: &'a ViewOptions,
-    pub camera: Camera,
-    /// Factor of the drawn displacement.
-    pub magnification: f64,
     /// `true` if the elements are drawn apart from each other: nothing is painted at the body's own place then.
     pub apart: bool,
     /// Displacement of the linear solution, m, if its outline is drawn.
@@ -31,12 +29,10 @@ pub(crate) struct Overlay<'a> {
     pub exact: &'a [Vec<Vector2<f64>>],
     /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
     pub live: Option<bool>,
-    /// Load arrow under the pointer, or grabbed and dragged by it.
-    pub hot: Option<HotHandle>,
     /// Grab of the body, and its force, N.
     pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
-    /// Recorded past of the motion, and the same motion under other integrators.
-    pub playback: &'a Playback,
+    /// Recorded past of the motion.
+    pub playback: Option<&'a Playback>,
     /// Sections of the scene, each with its forces as text.
     pub sections: &'a [(Section, String)],
     /// Reactions of the supports, if one of them moves.
@@ -70,7 +66,8 @@ pub(crate) struct Legends<'a> {
 }
 
 /// Paints all overlays; those of a pane are at the body only.
-pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visuals: &Visuals) {
+pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals) {
+    let rect = overlay.view.rect;
     if rect.width() < 8.0 || rect.height() < 8.0 {
         return;
     }
@@ -78,45 +75,39 @@ pub(crate) fn paint(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, visual
     if overlay.wanted.is_some() {
         dim(painter, rect, &palette);
     }
-    outlines(painter, rect, overlay, &palette);
+    outlines(painter, overlay, &palette);
     let mut labels = Labels { painter, visuals, taken: Vec::new() };
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     if let Some(legends) = &overlay.legends {
         labels.taken.extend(key(painter, rect, overlay, legends, &palette));
         labels.taken.extend(legend(painter, rect, overlay, legends, &palette));
     }
-    on_body(&mut labels, rect, overlay);
+    on_body(&mut labels, overlay);
     if overlay.legends.is_some() {
-        scale_bar(painter, rect, &overlay.camera, &palette);
+        scale_bar(painter, rect, &overlay.projection.camera, &palette);
     }
-    pull(&mut labels, &Projection { camera: overlay.camera, rect }, overlay);
+    pull(&mut labels, overlay);
     if let Some((note, color)) = overlay.note {
         let (below, above, beside) = if overlay.legends.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
         let places = [
             (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
             (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
         ];
-        let (at, anchor) = beside_body(&labels, rect, overlay, note, &places);
+        let (at, anchor) = beside_body(&labels, overlay, note, &places);
         labels.add(at, anchor, note, color, rect.width() - beside);
     }
 }
 
-/// Returns the first of several places at which a text does not cross the body's outline in `rect`, else the first one.
-fn beside_body(
-    labels: &Labels<'_>,
-    rect: Rect,
-    overlay: &Overlay<'_>,
-    text: &str,
-    places: &[(Pos2, Align2)],
-) -> (Pos2, Align2) {
-    let projection = Projection { camera: overlay.camera, rect };
+/// Returns the first of several places at which a text does not cross the body's outline, else the first one.
+fn beside_body(labels: &Labels<'_>, overlay: &Overlay<'_>, text: &str, places: &[(Pos2, Align2)]) -> (Pos2, Align2) {
+    let (projection, geometry) = (&overlay.projection, &overlay.view.body.geometry);
     let position = |node: u32| overlay.body.positions[node as usize];
-    let on_line = |point| projection.point(overlay.geometry.point(point, &position));
+    let on_line = |point| projection.point(geometry.point(point, &position));
     let size = labels.painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::WHITE).size();
     let is_free = |(at, anchor): &&(Pos2, Align2)| {
         let frame = anchor.anchor_size(*at, size).expand(4.0);
         let crosses = |ends: &[_]| Rect::from_points(&[on_line(ends[0]), on_line(ends[1])]).intersects(frame);
-        !overlay.geometry.outline.iter().any(|line| line.windows(2).any(crosses))
+        !geometry.outline.iter().any(|line| line.windows(2).any(crosses))
     };
     *places.iter().find(is_free).unwrap_or(&places[0])
 }
@@ -127,9 +118,8 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 }
 
 /// Paints the outlines of the body, of the body at rest, and of other solutions.
-fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
-    let Overlay { geometry, camera, .. } = *overlay;
-    let projection = Projection { camera, rect };
+fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
+    let (projection, geometry) = (&overlay.projection, &overlay.view.body.geometry);
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &geometry.outline {
             // Shorter pieces, points, would fade in the antialiasing; they are joined to the next one.
@@ -149,7 +139,7 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
         }
     };
     let rest = |n: u32| overlay.body.system.mesh().nodes()[n as usize];
-    let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.magnification;
+    let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.view.body.magnification;
     if overlay.options.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
@@ -161,20 +151,19 @@ fn outlines(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, palette: &Pale
     }
     for line in overlay.exact.iter().filter(|_| overlay.live != Some(true)) {
         // A background stroke keeps the line visible over the body.
-        dashed(painter, &projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
-        dashed(painter, &projection, line, Stroke::new(1.7, palette.exact));
+        dashed(painter, projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
+        dashed(painter, projection, line, Stroke::new(1.7, palette.exact));
     }
     if overlay.options.trail {
-        trail(painter, &projection, overlay, palette);
+        trail(painter, overlay, palette);
     }
 }
 
 /// Paints supports, loads, probes and sections.
-fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
+fn on_body(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
-    let projection = Projection { camera: overlay.camera, rect };
     if let Some(edge) = &overlay.options.edge {
-        for segment in edge_segments(&projection, overlay, edge) {
+        for segment in edge_segments(overlay, edge) {
             painter.line_segment(segment, Stroke::new(9.0, palette.load.gamma_multiply(0.35)));
             painter.line_segment(segment, Stroke::new(3.5, palette.load));
         }
@@ -185,46 +174,42 @@ fn on_body(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>) {
             if let Load::Force { place: Place::Edge(edge), .. } = load
                 && arrow::is_seen(load, overlay.body.time)
             {
-                for segment in edge_segments(&projection, overlay, edge) {
+                for segment in edge_segments(overlay, edge) {
                     painter.line_segment(segment, Stroke::new(2.5, palette.load));
                 }
             }
         }
-        supports(painter, &projection, overlay, &palette);
-        if is_tiny(overlay.options, rect.size()) {
+        supports(painter, overlay, &palette);
+        if is_tiny(overlay.options, overlay.view.rect.size()) {
             return;
         }
-        loads(labels, &projection, overlay, &palette);
-        weights(labels, rect, overlay, &palette);
-        moved_supports(labels, &projection, overlay, &palette);
-        probes(labels, &projection, overlay);
-        sections(labels, &projection, overlay, &palette);
+        loads(labels, overlay, &palette);
+        weights(labels, overlay, &palette);
+        moved_supports(labels, overlay, &palette);
+        probes(labels, overlay);
+        sections(labels, overlay, &palette);
     }
 }
 
 /// Returns the drawn sides of a named edge.
-fn edge_segments<'a>(
-    projection: &'a Projection,
-    overlay: &'a Overlay<'_>,
-    edge: &str,
-) -> impl Iterator<Item = [Pos2; 2]> + use<'a> {
+fn edge_segments<'a>(overlay: &'a Overlay<'_>, edge: &str) -> impl Iterator<Item = [Pos2; 2]> + use<'a> {
     let segments = overlay.body.system.mesh().edges().get(edge).into_iter().flatten();
     segments.flat_map(|side| side.nodes().windows(2)).filter_map(|piece| {
         let [from, to] = [*piece.first()?, *piece.get(1)?].map(|n| overlay.body.positions.get(n as usize).copied());
-        projection.segment(from?, to?)
+        overlay.projection.segment(from?, to?)
     })
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
-fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
-    let (is_roomy, painter) = (has_legend(projection.rect.size()), labels.painter);
+    let (is_roomy, painter) = (has_legend(overlay.projection.rect.size()), labels.painter);
     for (i, (section, text)) in overlay.sections.iter().enumerate() {
-        let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.magnification;
-        let [from, to] = [0, 1].map(|i| projection.point(end(i)));
+        let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.view.body.magnification;
+        let [from, to] = [0, 1].map(|i| overlay.projection.point(end(i)));
         // The axes of the cut as it is drawn: a magnified body has other ones.
         let (middle, tangent) = (from + (to - from) * 0.5, (to - from).normalized());
         let normal = -tangent.rot90();
@@ -272,7 +257,7 @@ fn sections(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<
 }
 
 /// Marks the probes at points, with their names. Those of edges are at the arrows of the loads, as a rule.
-fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
+fn probes(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
     const RADIUS: f32 = 3.5;
     /// Distances, points, by which a label moves down to a place beside the body.
     const SHIFTS: [f32; 9] = [0.0, -8.0, 28.0, -16.0, 36.0, -24.0, 44.0, -32.0, 52.0];
@@ -280,11 +265,11 @@ fn probes(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_
     let drawn = |at: [f64; 2]| probe::place(mesh, overlay.body.positions, mesh.locate(at.into())?);
     for own in &overlay.body.scene.probes {
         let Place::At(at) = own.place else { continue };
-        let Some(at) = drawn(at).map(|at| projection.point(at)) else { continue };
+        let Some(at) = drawn(at).map(|at| overlay.projection.point(at)) else { continue };
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
         // A label inside a thin body would hide it.
         let places = SHIFTS.map(|shift| (at + vec2(8.0, -4.0 + shift), Align2::LEFT_BOTTOM));
-        let (at, anchor) = beside_body(labels, projection.rect, overlay, tr(&own.name), &places);
+        let (at, anchor) = beside_body(labels, overlay, tr(&own.name), &places);
         labels.add(at, anchor, tr(&own.name), color, 160.0);
     }
 }
@@ -311,20 +296,20 @@ fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], str
 }
 
 /// Paints the fading trail of the first probe over the last seconds.
-fn trail(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn trail(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
     /// Duration of the trail, s.
     const DURATION: f64 = 2.0;
     const MAX_PIECES: usize = 400;
-    let playback = overlay.playback;
+    let Some(playback) = overlay.playback else { return };
     let color = palette.solution(overlay.body.scene);
     let end = playback.shown.unwrap_or(f64::INFINITY);
     let end = end.min(playback.history.samples.back().map_or(0.0, |s| s.time));
-    let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.magnification - 1.0);
+    let drawn = |s: &MotionSample| s.position + s.displacement * (overlay.view.body.magnification - 1.0);
     let points: Vec<Vector2<f64>> = playback.history.before(end, DURATION).map(drawn).collect();
     let stride = points.len().div_ceil(MAX_PIECES).max(1);
     let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
     for (i, ends) in kept.windows(2).enumerate() {
-        if let Some(segment) = projection.segment(*ends[0], *ends[1]) {
+        if let Some(segment) = overlay.projection.segment(*ends[0], *ends[1]) {
             let age = i as f32 / kept.len() as f32;
             painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
         }
@@ -332,7 +317,7 @@ fn trail(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, pale
 }
 
 /// Paints the mouse spring from the body to the pointer, with its force.
-fn pull(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>) {
+fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
     /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
@@ -341,7 +326,7 @@ fn pull(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>)
     let mesh = overlay.body.system.mesh();
     let weights = mesh.weights(spring.point()).unwrap_or_default();
     let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.body.positions[n as usize] * w).sum();
-    let [from, to] = [held, spring.target()].map(|p| projection.point(p));
+    let [from, to] = [held, spring.target()].map(|p| overlay.projection.point(p));
     painter.circle_filled(from, 4.5, palette.mouse_spring);
     painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.mouse_spring));
     let vector = to - from;
@@ -373,18 +358,18 @@ fn pull(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>)
 
 /// Paints the supports. Fixed edges are hatched if both directions are fixed, and have rollers if one is. Other fixed
 /// nodes and points have a triangle, which stands on a line if only one direction is fixed.
-fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn supports(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
     const HATCH: f32 = 7.0;
     const ROLLER: f32 = 3.5;
     let (positions, pattern) = (overlay.body.positions, overlay.body.system.pattern());
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; positions.len()];
-    for side in &overlay.geometry.boundary {
+    for side in &overlay.view.body.geometry.boundary {
         let both = [0, 1].map(|axis| side.ends().iter().all(|&end| pattern.fixed(end)[axis]));
         if both == [false, false] {
             continue;
         }
-        let [p, q] = side.ends().map(|n| projection.point(positions[n as usize]));
+        let [p, q] = side.ends().map(|n| overlay.projection.point(positions[n as usize]));
         // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y axis points
         // down.
         let along = (q - p).normalized();
@@ -414,7 +399,7 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
         }
         // A roller stands on the line that it moves along.
         let away = if fixed == [true, false] { vec2(-1.0, 0.0) } else { vec2(0.0, 1.0) };
-        let (p, across) = (projection.point(at), 7.0 * away.rot90());
+        let (p, across) = (overlay.projection.point(at), 7.0 * away.rot90());
         let foot = p + 11.0 * away;
         let triangle = vec![p, foot - across, foot + across];
         painter.add(egui::Shape::convex_polygon(triangle, palette.support.gamma_multiply(0.6), stroke));
@@ -425,8 +410,9 @@ fn supports(painter: &Painter, projection: &Projection, overlay: &Overlay<'_>, p
     }
 }
 
-fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn loads(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     let (painter, visuals) = (labels.painter, labels.visuals);
+    let projection = &overlay.projection;
     let of = |scene| ForceArrows { scene, ..overlay.body };
     // The filled arrow belongs to the body, and the outline is the load that was asked for.
     let forces = of(overlay.wanted.unwrap_or(overlay.body.scene));
@@ -436,7 +422,8 @@ fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>
         arrows.iter().for_each(|own| own.paint_body_load(painter, palette.load, visuals));
         moments.into_iter().for_each(|own| _ = own.paint_arrow(painter, palette.load, 3.0));
     }
-    let is_hot = |load: usize| overlay.hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
+    let hot = overlay.view.pointer.hot_handle();
+    let is_hot = |load: usize| hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
     let arrows = forces.arrows(projection);
     for arrow in &arrows {
         arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline));
@@ -444,13 +431,13 @@ fn loads(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>
     for arrow in forces.moment_arrows(projection) {
         arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline), &arrows);
     }
-    if let Some((taken, drag)) = overlay.hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
+    if let Some((taken, drag)) = hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
         taken.paint(painter, drag, palette.load);
     }
 }
 
 /// Paints the arrows of gravity in a corner.
-fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: &Palette) {
+fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow, which shows the direction only, and its shortest length in a low view, points.
     const WEIGHT: f32 = 58.0;
     const SHORTEST: f32 = 18.0;
@@ -464,8 +451,8 @@ fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: 
             continue;
         }
         // An arrow that points up begins where one that points down ends.
-        let vector = direction * WEIGHT.min(rect.height() - TOP - UNDER).max(SHORTEST);
-        let from = rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
+        let vector = direction * WEIGHT.min(overlay.view.rect.height() - TOP - UNDER).max(SHORTEST);
+        let from = overlay.view.rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
         let tip = arrow::paint_arrow(labels.painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
         labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load, 200.0);
@@ -473,7 +460,7 @@ fn weights(labels: &mut Labels<'_>, rect: Rect, overlay: &Overlay<'_>, palette: 
 }
 
 /// Paints the reaction of every moving support as an arrow.
-fn moved_supports(labels: &mut Labels<'_>, projection: &Projection, overlay: &Overlay<'_>, palette: &Palette) {
+fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
     for (support, reaction) in overlay.body.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
@@ -481,7 +468,7 @@ fn moved_supports(labels: &mut Labels<'_>, projection: &Projection, overlay: &Ov
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
         }
-        let middle = projection.point(reaction.middle);
+        let middle = overlay.projection.point(reaction.middle);
         // A reaction along the prescribed displacement pushes, and its arrow ends at the support; otherwise it begins
         // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
@@ -611,8 +598,8 @@ fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, legends: &Legends<'
         Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], legends.areas[0]),
     };
     let mut lines = Vec::new();
-    if overlay.magnification != 1.0 {
-        lines.push((palette.text, None, magnified(overlay.magnification)));
+    if overlay.view.body.magnification != 1.0 {
+        lines.push((palette.text, None, magnified(overlay.view.body.magnification)));
     }
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
     if overlay.ghost.is_some() {

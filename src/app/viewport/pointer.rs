@@ -1,30 +1,18 @@
 //! Interaction of the pointer with the view. A drag of an arrow sets its load, a drag of the base of an
 //! object moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
 
-use std::ops::RangeInclusive;
-
 use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
 use crate::app::session::Grab;
 use crate::app::viewport::base::{self, Base, HotBase, Object};
+use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::mesh::{MaterialPoint, Mesh, Segment};
-use crate::render::Camera;
-
-/// Movement of the camera by the pointer.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum CameraMove {
-    /// No movement.
-    #[default]
-    None,
-    /// Movement to another camera.
-    To(Camera),
-    /// Return to the camera that fits the whole body.
-    Fit,
-}
+use crate::assembly::System;
+use crate::mesh::{MaterialPoint, Mesh};
 
 /// Target of the current press.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,7 +94,9 @@ const DRAG_DISTANCE: f64 = 4.0;
 /// Interaction that the body allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interactivity {
-    /// No interaction.
+    /// Nothing can be hit: the elements are drawn apart, or the body is no result.
+    Absent,
+    /// No interaction; the values of the point under the pointer can be shown.
     None,
     /// The values of a point can be shown; the body cannot be grabbed.
     Visible,
@@ -114,31 +104,32 @@ pub(crate) enum Interactivity {
     Grabbable,
 }
 
-/// Hit targets of the pointer in the view.
+/// Hit targets of the pointer in a view with this response: those of the last frame, because that is what the user sees.
 pub(crate) struct HitTargets<'a> {
-    pub camera: Camera,
-    /// Mesh of the body; `None` if its elements are drawn apart: nothing can be hit then.
-    pub mesh: Option<&'a Mesh>,
-    /// Positions of the nodes, m.
-    pub positions: &'a [Vector2<f64>],
-    pub outline: &'a [Segment],
+    pub response: &'a Response,
+    pub camera: &'a CameraController,
+    pub body: &'a BodyMesh,
+    pub interactivity: Interactivity,
     /// Handles of the load arrows.
     pub handles: &'a [Handle],
     /// Bases of the objects that can be moved.
     pub bases: &'a [Base],
-    /// Magnifications that the wheel can reach.
-    pub scales: RangeInclusive<f64>,
 }
 
 impl HitTargets<'_> {
+    /// Returns the mesh of the body; `None` if nothing can be hit.
+    fn mesh(&self) -> Option<&Mesh> {
+        self.body.system.as_deref().map(System::mesh).filter(|_| self.interactivity != Interactivity::Absent)
+    }
+
     /// Returns the position in the plane of a point of the view, m.
-    fn place(&self, response: &Response, at: Pos2) -> Vector2<f64> {
-        Projection { camera: self.camera, rect: response.rect }.place(at)
+    fn place(&self, at: Pos2) -> Vector2<f64> {
+        Projection { camera: self.camera.shown, rect: self.response.rect }.place(at)
     }
 
     /// Returns the vector from a material point to a position in the plane, m; `None` if the mesh has no such point.
     fn offset(&self, point: MaterialPoint, place: Vector2<f64>) -> Option<Vector2<f64>> {
-        Some(place - probe::place(self.mesh?, self.positions, point)?)
+        Some(place - probe::place(self.mesh()?, &self.body.nodes, point)?)
     }
 
     /// Returns the handle that a press grabs; a base comes before the shaft that begins at it.
@@ -148,7 +139,8 @@ impl HitTargets<'_> {
     }
 
     fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
-        self.mesh?.pick(self.positions, self.outline, place, NEAR / self.camera.scale)
+        let outline = &self.body.geometry.boundary;
+        self.mesh()?.pick(&self.body.nodes, outline, place, NEAR / self.camera.shown.scale)
     }
 }
 
@@ -189,14 +181,9 @@ impl Pointer {
         matches!(self.held, Held::Body(PressedPoint { grabs: true, .. }))
     }
 
-    /// Processes the pointer over the view with this `response`.
-    pub(crate) fn process(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        targets: &HitTargets<'_>,
-        body: Interactivity,
-    ) -> Interaction {
+    /// Processes the pointer over the view.
+    pub(crate) fn process(&mut self, ui: &Ui, targets: &HitTargets<'_>) -> Interaction {
+        let response = targets.response;
         let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
             let pointer = &i.pointer;
             let fingers = i.multi_touch().map(|touch| touch.translation_delta);
@@ -217,11 +204,11 @@ impl Pointer {
         if pressed && is_here && fingers.is_none() {
             // The pointer may have moved since the press.
             let at = origin.or(at);
-            self.held = at.map_or(Held::Nothing, |at| Self::take(response, targets, body, at));
+            self.held = at.map_or(Held::Nothing, |at| Self::take(targets, at));
         }
         // The pointer may also have moved after the release.
         if let Some(at) = let_go_at.or(at) {
-            self.drag(response, targets, body, (at, keys), &mut interaction);
+            self.drag(targets, (at, keys), &mut interaction);
         }
         if response.double_clicked() {
             match self.held {
@@ -247,26 +234,26 @@ impl Pointer {
             }
             self.held = Held::Nothing;
         }
-        self.hover(ui, response, targets, body, down);
+        self.hover(ui, targets, down);
         if interaction.camera == CameraMove::None {
-            interaction.camera = self.move_camera(ui, response, targets, fingers);
+            interaction.camera = self.move_camera(ui, targets, fingers);
         }
         interaction
     }
 
     /// Returns the target of a press; load handles and bases come before the body, which they may cover.
-    fn take(response: &Response, targets: &HitTargets<'_>, body: Interactivity, at: Pos2) -> Held {
+    fn take(targets: &HitTargets<'_>, at: Pos2) -> Held {
         if let Some(handle) = targets.handle(at) {
             return Held::Tip(Grip::new(handle, at));
         }
-        let place = targets.place(response, at);
+        let place = targets.place(at);
         if let Some(base) = base::near(targets.bases, at) {
             return Held::Base(PressedBase { base: *base, pressed: at, point: targets.point(place), dragged: None });
         }
-        let reached = targets.point(place).filter(|_| body != Interactivity::None);
+        let reached = targets.point(place).filter(|_| targets.interactivity != Interactivity::None);
         let Some(point) = reached else { return Held::Space };
         match targets.offset(point, place) {
-            Some(offset) if body == Interactivity::Grabbable => {
+            Some(offset) if targets.interactivity == Interactivity::Grabbable => {
                 Held::Body(PressedPoint { point, offset, grabs: false })
             }
             _ => Held::Point(point),
@@ -274,14 +261,7 @@ impl Pointer {
     }
 
     /// Moves the pressed target with the pointer.
-    fn drag(
-        &mut self,
-        response: &Response,
-        targets: &HitTargets<'_>,
-        body: Interactivity,
-        (at, keys): (Pos2, Modifiers),
-        interaction: &mut Interaction,
-    ) {
+    fn drag(&mut self, targets: &HitTargets<'_>, (at, keys): (Pos2, Modifiers), interaction: &mut Interaction) {
         match &mut self.held {
             Held::Tip(grip) => {
                 grip.drag_to(at, keys.alt || keys.ctrl);
@@ -296,12 +276,12 @@ impl Pointer {
                     interaction.dropped = is_cut.then_some((held.base.object, at));
                 }
             }
-            Held::Body(press) if body == Interactivity::Grabbable => {
-                let place = targets.place(response, at);
+            Held::Body(press) if targets.interactivity == Interactivity::Grabbable => {
+                let place = targets.place(at);
                 if !press.grabs {
                     // In a motion, the body can also move away from a pointer that stands still.
                     let moved = targets.offset(press.point, place).map_or(0.0, |offset| (offset - press.offset).norm());
-                    press.grabs = moved * targets.camera.scale > DRAG_DISTANCE;
+                    press.grabs = moved * targets.camera.shown.scale > DRAG_DISTANCE;
                     interaction.grab.start = press.grabs.then_some(press.point);
                 }
                 interaction.grab.target = press.grabs.then_some(place);
@@ -311,23 +291,23 @@ impl Pointer {
     }
 
     /// Finds the target under the pointer, and sets the cursor.
-    fn hover(&mut self, ui: &Ui, response: &Response, targets: &HitTargets<'_>, body: Interactivity, down: bool) {
+    fn hover(&mut self, ui: &Ui, targets: &HitTargets<'_>, down: bool) {
         (self.over_tip, self.over_base, self.over_body) = (None, None, None);
         let cursor = match self.held {
             Held::Tip(..) => Some(CursorIcon::Move),
             Held::Body(_) | Held::Base(_) => Some(CursorIcon::Grabbing),
             Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
-            Held::Nothing => response.hover_pos().filter(|_| !down).map(|at| {
+            Held::Nothing => targets.response.hover_pos().filter(|_| !down).map(|at| {
                 self.over_tip = targets.handle(at);
                 if self.over_tip.is_some() {
                     return CursorIcon::Move;
                 }
-                self.over_body = targets.point(targets.place(response, at));
+                self.over_body = targets.point(targets.place(at));
                 self.over_base = base::near(targets.bases, at).copied();
                 if self.over_base.is_some() {
                     return CursorIcon::Move;
                 }
-                match (self.over_body, body) {
+                match (self.over_body, targets.interactivity) {
                     (Some(_), Interactivity::Grabbable) => CursorIcon::Grab,
                     (Some(_), Interactivity::None) => CursorIcon::Crosshair,
                     _ => CursorIcon::Default,
@@ -340,14 +320,8 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn move_camera(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        targets: &HitTargets<'_>,
-        fingers: Option<Vec2>,
-    ) -> CameraMove {
-        let mut camera = targets.camera;
+    fn move_camera(&mut self, ui: &Ui, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> CameraMove {
+        let (response, mut camera) = (targets.response, targets.camera.shown);
         let mut look = CameraMove::None;
         // Two fingers move the view, whatever is under them.
         // A click whose pointer moves by a few points does not move the view.
@@ -369,7 +343,9 @@ impl Pointer {
             // A resting pointer must not stop the view from following the body.
             if factor != 1.0 {
                 let at = pointer - response.rect.center();
-                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], targets.scales.clone());
+                let size = response.rect.size();
+                let scales = targets.camera.scales([f64::from(size.x), f64::from(size.y)]);
+                camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], scales);
                 look = CameraMove::To(camera);
             }
         }

@@ -140,7 +140,8 @@ impl Compare {
 
     /// Returns the bodies of the panes for the render pass.
     pub(crate) fn views(&self, wireframe: bool, pixels_per_point: f32) -> Vec<View<'_>> {
-        self.panes.iter().filter_map(|pane| pane.view(self.camera(), wireframe, pixels_per_point)).collect()
+        let shown = self.panes.iter().map(|pane| &pane.view).filter(|view| view.rect.is_positive());
+        shown.map(|view| view.view(self.camera(), wireframe, pixels_per_point)).collect()
     }
 
     /// Restarts all panes from rest, or from the start of the motion.
@@ -337,7 +338,7 @@ impl Compare {
         let probes = if self.in_motion { 0 } else { header::shown_probes(input.scene, input.view) };
         let grid = Grid::new(whole, self.panes.len(), probes);
         for (pane, cell) in self.panes.iter_mut().zip(&grid.cells) {
-            (pane.body_mesh.range, pane.place) = (range, Some(grid.body_place(*cell)));
+            (pane.view.body.range, pane.view.rect) = (range, grid.body_place(*cell));
         }
         let reference = input.reference.filter(|_| input.view.exact);
         let exact = reference.map(|reference| overlay::magnified_outline(reference, self.magnification));
@@ -348,7 +349,7 @@ impl Compare {
         }
         let interaction = self.show_panes(ui, &grid, input, &exact);
         if !self.in_motion {
-            self.show_values(ui, input.view);
+            self.show_values(ui);
         }
         header::key(ui, grid.key, input.view, (range, self.magnification), self.in_motion);
         ui.advance_cursor_after_rect(whole);
@@ -375,7 +376,7 @@ impl Compare {
             });
             changes.extend(shown.inner.map(|change| (number, change)));
             if let (Some(controller), Some(pane)) = (&mut self.controller, self.panes.get_mut(number)) {
-                let own = pane.show_body(ui, number, controller, input, (exact, self.magnification));
+                let own = pane.show_body(ui, number, controller, input, exact);
                 if own.load.is_some() || own.restore.is_some() {
                     interaction = own;
                 }
@@ -418,18 +419,18 @@ impl Compare {
     }
 
     /// Shows the values at the point of the body under the pointer, in every pane.
-    fn show_values(&self, ui: &Ui, view: &ViewOptions) {
+    fn show_values(&self, ui: &Ui) {
         let panes = self.panes.iter().enumerate();
         let under = panes.clone().find_map(|(number, pane)| Some((number, pane.under_pointer()?)));
-        let Some((number, (rest, at))) = under else { return };
+        let Some(((number, (rest, at)), camera)) = under.zip(self.controller.as_ref()) else { return };
         for (i, pane) in panes {
-            pane.show_value(ui, view, rest, self.camera(), (i == number).then_some(at));
+            pane.show_value(ui, rest, camera, (i == number).then_some(at));
         }
     }
 
     /// Fits the camera to all bodies and the outline `exact` of the reference solution, m, unless the user has moved it.
     fn fit_camera(&mut self, ui: &Ui, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) {
-        let sizes = self.panes.iter().filter_map(|pane| Some(pane.place?.size()));
+        let sizes = self.panes.iter().map(|pane| pane.view.rect.size());
         let Some(size) = sizes.reduce(Vec2::min).map(|size| [size.x, size.y].map(f64::from)) else { return };
         let rest: Box2 = input.session.simulation().mesh().bounds().into();
         let (whole, margins) = match self.in_motion {
@@ -439,8 +440,8 @@ impl Compare {
         // While panes iterate, only a camera that has not been fitted yet moves.
         let is_settled = self.in_motion || !self.goes_on();
         // While a load is dragged, the view only grows: the arrow that the pointer holds stays in it.
-        let drags = self.panes.iter().any(|pane| pane.pointer.drags_tip());
-        let holds = !drags && self.panes.iter().any(|pane| pane.pointer.holds());
+        let drags = self.panes.iter().any(|pane| pane.view.pointer.drags_tip());
+        let holds = !drags && self.panes.iter().any(|pane| pane.view.pointer.holds());
         let controller = self.controller.get_or_insert_with(|| CameraController::new(rest));
         if !holds && (is_settled || drags || controller.whole == rest) {
             let before = if drags { controller.whole } else { rest };
@@ -460,9 +461,9 @@ impl Compare {
         let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
             self.panes.iter().filter(|pane| pane.run.is_sound()).partition(|pane| is_linear(pane));
         let bounds = exact.iter().flatten().fold(rest, grow);
-        let bounds = others.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
+        let bounds = others.iter().flat_map(|pane| &pane.view.body.points).fold(bounds, grow);
         let size_of = |[low, high]: Box2| (high - low).norm();
-        let with = linear.iter().flat_map(|pane| &pane.body_mesh.points).fold(bounds, grow);
+        let with = linear.iter().flat_map(|pane| &pane.view.body.points).fold(bounds, grow);
         let has_reference = input.reference.is_some() && input.view.exact;
         let is_known = !others.is_empty() || has_reference;
         if !is_known || size_of(with) < LARGEST * size_of(bounds) { with } else { bounds }
@@ -479,7 +480,7 @@ impl Compare {
         let count = sound().count();
         // A body that has left is not looked for.
         let before = self.swept.filter(|_| count >= self.sound).unwrap_or(rest);
-        let swept = sound().flat_map(|pane| &pane.body_mesh.points).filter(is_near).fold(before, grow);
+        let swept = sound().flat_map(|pane| &pane.view.body.points).filter(is_near).fold(before, grow);
         (self.sound, self.swept) = (count, Some(swept));
         swept
     }
@@ -488,7 +489,7 @@ impl Compare {
     /// their labels.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
-        let forces = self.panes.first().and_then(|pane| pane.forces(pane.run.wanted.as_ref()?, 0.0, input));
+        let forces = self.panes.first().and_then(|pane| pane.forces(input));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
             let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector)));

@@ -13,12 +13,11 @@ use crate::app::session::run::{Condition, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::ForceArrows;
-use crate::app::viewport::body_mesh::BodyMesh;
-use crate::app::viewport::camera_controller::CameraController;
+use crate::app::viewport::body_view::BodyView;
+use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::overlay::{self, Overlay};
-use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
+use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::{Projection, viewport};
 use crate::exact_beam::error_percent;
 
 /// Scene with settings of its own, compared with others.
@@ -38,15 +37,9 @@ pub struct Pane {
     /// `true` while the load is dragged, and the pane iterates as fast as it can.
     pub(super) is_dragged: bool,
     cost: Keyed<CostFact>,
-    /// Equations of the displayed body, and its mesh.
-    system: Option<Arc<System>>,
-    geometry: Arc<DisplayGeometry>,
-    pub(super) body_mesh: BodyMesh,
+    pub(super) view: BodyView,
     /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     pub(super) range: Option<[f64; 2]>,
-    /// Area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
-    pub place: Option<Rect>,
-    pub(super) pointer: Pointer,
 }
 
 impl Pane {
@@ -87,7 +80,13 @@ impl Pane {
     /// [`crate::app::Lab::ui`].
     #[must_use]
     pub fn color_range(&self) -> [f64; 2] {
-        self.body_mesh.range
+        self.view.body.range
+    }
+
+    /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
+    #[must_use]
+    pub fn place(&self) -> Rect {
+        self.view.rect
     }
 
     /// Returns the simulation; `None` while it is solved in the background.
@@ -98,26 +97,25 @@ impl Pane {
 
     /// Returns the rest position, m, of the material point under the pointer, and the pointer's position.
     pub(super) fn under_pointer(&self) -> Option<(Vector2<f64>, Pos2)> {
-        let (point, at) = self.pointer.over_body()?;
-        let mesh = self.system.as_ref()?.mesh();
+        let (point, at) = self.view.pointer.over_body()?;
+        let mesh = self.view.body.system.as_ref()?.mesh();
         Some((probe::place(mesh, mesh.nodes(), point)?, at))
     }
 
     /// Shows the value at the material point with the rest position `rest`, m: next to the pointer at `at`, or else
     /// next to the point.
-    pub(super) fn show_value(&self, ui: &Ui, view: &ViewOptions, rest: Vector2<f64>, camera: Camera, at: Option<Pos2>) {
-        let (Some(system), Some(place)) = (&self.system, self.place) else { return };
-        let mesh = system.mesh();
-        let Some(point) = mesh.locate(rest).filter(|_| self.run.is_sound()) else { return };
-        let Some(now) = probe::place(mesh, &self.body_mesh.nodes, point) else { return };
-        let painter = ui.painter_at(place);
+    pub(super) fn show_value(&self, ui: &Ui, rest: Vector2<f64>, camera: &CameraController, at: Option<Pos2>) {
+        let sound = self.run.displayed().filter(|_| self.run.is_sound());
+        let Some(body) = sound.map(|model| &model.simulation) else { return };
+        let Some(point) = body.mesh().locate(rest) else { return };
+        let Some(now) = probe::place(body.mesh(), &self.view.body.nodes, point) else { return };
         let at = at.unwrap_or_else(|| {
-            let there = Projection { camera, rect: place }.point(now);
-            painter.circle_stroke(there, 4.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
+            let there = self.view.projection(camera).point(now);
+            let stroke = Stroke::new(2.0, ui.visuals().strong_text_color());
+            ui.painter_at(self.view.rect).circle_stroke(there, 4.5, stroke);
             there
         });
-        let value = self.body_mesh.field.at(mesh, point);
-        probe::paint_hover(ui, &painter, at, (view.field, value), now - rest);
+        self.view.show_value(ui, body, point, at);
     }
 
     /// Keeps the bodies that are drawn where a search finds no equilibrium: `last`, if the panel describes it for the same
@@ -145,19 +143,15 @@ impl Pane {
         played: Option<f64>,
         visuals: &egui::Visuals,
     ) {
-        let mut mesh = std::mem::take(&mut self.body_mesh);
+        let mut body = std::mem::take(&mut self.view.body);
         let displayed = self.run.displayed().map(|model| &model.simulation);
         if let (Some(simulation), Some(Model { geometry, .. })) = (self.in_place().or(displayed), self.run.model()) {
-            if self.system.as_ref().is_none_or(|system| !Arc::ptr_eq(system, simulation.system())) {
-                mesh = BodyMesh::default();
-            }
             let reference = reference.filter(|_| self.run.is_sound());
-            mesh.update(simulation, geometry, (view, reference), magnification, played);
-            (self.system, self.geometry) = (Some(simulation.system().clone()), geometry.clone());
-            self.range = Some(mesh.range);
+            body.update(simulation, geometry, (view, reference), magnification, played);
+            self.range = Some(body.range);
         }
-        mesh.palette = Palette::new(visuals);
-        self.body_mesh = mesh;
+        body.palette = Palette::new(visuals);
+        self.view.body = body;
     }
 
     /// Returns the equations of the model, for other panes with the same mesh.
@@ -165,22 +159,10 @@ impl Pane {
         self.run.model().map(Model::equations)
     }
 
-    /// Returns the input of the render pass, at this number of pixels per point; `None` before the pane was shown.
-    pub(super) fn view(&self, camera: Camera, wireframe: bool, pixels_per_point: f32) -> Option<View<'_>> {
-        let viewport = viewport(self.place?, pixels_per_point);
-        Some(View { viewport, frame: self.body_mesh.frame(&self.geometry, wireframe), camera })
-    }
-
-    /// Returns the loads `scene` of the displayed body at a simulated time, s.
-    pub(super) fn forces<'a>(
-        &'a self,
-        scene: &'a Scene,
-        time: f64,
-        input: &CompareInput<'_>,
-    ) -> Option<ForceArrows<'a>> {
-        let (system, positions) = (self.system.as_ref()?, &self.body_mesh.nodes);
-        let opening = input.session.document().opened;
-        Some(ForceArrows { scene, system, positions, time, direction: input.direction, opening })
+    /// Returns the load arrows on the displayed body: those of the scene that was asked for.
+    pub(super) fn forces<'a>(&'a self, input: &CompareInput<'a>) -> Option<ForceArrows<'a>> {
+        let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
+        self.view.forces(self.run.wanted.as_ref()?, time, (input.session, input.direction))
     }
 
     /// Computes the error of the result, if the reference solution is known. One that follows the load may be of a load
@@ -207,6 +189,7 @@ impl Pane {
             self.error_percent = error(Some(*u));
         }
     }
+
     /// Shows the overlays of the body in its place, with the outline `exact` of the reference solution, m, and a scale bar
     /// if it is the `first` pane. Moving the view moves it in all panes.
     pub(super) fn show_body(
@@ -215,68 +198,52 @@ impl Pane {
         number: usize,
         controller: &mut CameraController,
         input: &CompareInput<'_>,
-        (exact, magnification): (&[Vec<Vector2<f64>>], f64),
+        exact: &[Vec<Vector2<f64>>],
     ) -> Interaction {
-        let Some(place) = self.place else { return Interaction::default() };
-        let mut pointer = std::mem::take(&mut self.pointer);
+        let place = self.view.rect;
         let condition = self.run.condition();
+        let forces = self.forces(input);
+        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&self.view.projection(controller)));
+        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
+        // States that are no result show no values.
+        let interactivity = if condition == Condition::Result { Interactivity::None } else { Interactivity::Absent };
+        let BodyView { pointer, body, .. } = &mut self.view;
+        let (camera, handles) = (&*controller, &handles);
+        let targets = HitTargets { response: &response, camera, body, interactivity, handles, bases: &[] };
+        let interaction = pointer.process(ui, &targets);
+        if interaction.camera != CameraMove::None {
+            controller.follow(interaction.camera);
+            ui.ctx().request_repaint();
+        }
+        let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
         let in_place = self.in_place().map(Simulation::scene);
         // The scene whose state diverges, if an equilibrium is displayed in its place.
         let wanted = self.run.wanted.as_ref().filter(|_| in_place.is_some());
-        let scene = in_place.or(self.run.wanted.as_ref());
-        let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
-        let projection = Projection { camera: controller.shown, rect: place };
-        let forces = wanted.or(scene).and_then(|scene| self.forces(scene, time, input));
-        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&projection));
-        let system = self.system.as_deref();
-        let targets = HitTargets {
-            // States that are no result show no values.
-            mesh: system.filter(|_| condition == Condition::Result).map(System::mesh),
-            camera: projection.camera,
-            positions: &self.body_mesh.nodes,
-            outline: &self.geometry.boundary,
-            handles: &handles,
-            bases: &[],
-            scales: controller.scales([place.width(), place.height()].map(f64::from)),
-        };
-        let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
-        let interaction = pointer.process(ui, &response, &targets, Interactivity::None);
-        match interaction.camera {
-            CameraMove::None => {}
-            CameraMove::To(camera) => {
-                controller.set_camera(camera);
-                ui.ctx().request_repaint();
-            }
-            CameraMove::Fit => controller.fit(),
-        }
-        let camera = controller.shown;
-        let (palette, painter) = (Palette::new(ui.visuals()), ui.painter_at(place));
-        if let Some(body) = scene.and_then(|scene| self.forces(scene, time, input)) {
+        if let Some(forces) = self.forces(input) {
+            let body = ForceArrows { scene: in_place.unwrap_or(forces.scene), ..forces };
             let note = wanted.map(|wanted| equilibrium_text(body.scene, wanted));
             let overlay = Overlay {
+                view: &self.view,
+                projection: self.view.projection(controller),
                 sections: &[],
                 apart: false,
                 body,
                 wanted,
-                geometry: &self.geometry,
                 options: input.view,
-                camera,
-                magnification,
                 ghost: None,
                 exact: if wanted.is_some() { &[] } else { exact },
                 live: None,
-                hot: pointer.hot_handle(),
                 mouse_spring: None,
                 reactions: &[],
                 // The past of a motion is not drawn.
-                playback: &Playback::default(),
+                playback: None,
                 note: note.as_deref().map(|note| (note, palette.text)),
                 legends: None,
             };
-            overlay::paint(&painter, place, &overlay, ui.visuals());
+            overlay::paint(&painter, &overlay, ui.visuals());
         }
         if number == 0 {
-            overlay::scale_bar(&painter, place, &camera, &palette);
+            overlay::scale_bar(&painter, place, &controller.shown, &palette);
         }
         match condition {
             Condition::Result | Condition::Unfinished => {}
@@ -289,7 +256,6 @@ impl Pane {
                 painter.text(place.center(), Align2::CENTER_CENTER, tr("solving…"), font, palette.text);
             }
         }
-        self.pointer = pointer;
         interaction
     }
 }

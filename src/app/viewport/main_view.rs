@@ -1,19 +1,18 @@
-//! View of one body: camera, drawn mesh, pointer, and overlays.
+//! View of the body of Explore and Learn: its camera, menu, pinned point, and overlays.
 
 use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::{Bases, CLOSE};
-use crate::app::viewport::body_mesh::BodyMesh;
+use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow};
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
-use crate::app::viewport::pointer::{CameraMove, HitTargets, Interaction, Interactivity, Pointer};
+use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe::{self, CardChoice, Pinned};
-use crate::app::viewport::projection::{Projection, viewport};
-use crate::render::Frame;
+use crate::app::viewport::projection::Projection;
 use crate::section::{Section, SectionForces};
 use crate::state::largest;
 use crate::study::section_chart;
@@ -69,10 +68,12 @@ impl<'a> Content<'a> {
         session.known_reference().filter(|_| is_at_rest)
     }
 
-    /// Returns the displacement of the linear solution, m, if it is displayed.
+    /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
         let is_wanted = self.options.ghost && self.simulation().scene().solver.method != MethodKind::Linear;
-        self.session.linear().map(Simulation::displacement).filter(|_| is_wanted)
+        // Linear theory does not have the force of the mouse spring.
+        let is_of_drawn = self.session.fallback().is_none() && self.simulation().mouse_spring().is_none();
+        self.session.linear().map(Simulation::displacement).filter(|_| is_wanted && is_of_drawn)
     }
 }
 
@@ -86,26 +87,21 @@ struct Crossing {
     stamp: u64,
 }
 
-/// View of one body.
+/// View of the body of Explore and Learn.
 #[derive(Debug)]
-pub(crate) struct BodyView {
+pub(crate) struct MainView {
+    pub view: BodyView,
     pub camera: CameraController,
     margins: Margins,
     /// `true` if camera movements are animated, as in a window, and not in images.
     pub eases: bool,
-    /// Area in the window, points.
-    pub rect: Rect,
-    pointer: Pointer,
     /// Pinned material point, whose values are shown.
     pub probe: Option<MaterialPoint>,
     /// Choices of the user on the cards of points.
     card_choice: CardChoice,
     /// Rest position of the point whose menu was opened, m.
     menu: Option<Vector2<f64>>,
-    pub body: BodyMesh,
-    /// Factor of the drawn displacement.
-    magnification: f64,
-    /// Choice of that factor at the last update.
+    /// Choice of the factor of the drawn displacement at the last update.
     choice: Magnification,
     /// Largest displacement of a motion so far, m.
     largest_displacement: f64,
@@ -114,20 +110,17 @@ pub(crate) struct BodyView {
     crossing: Crossing,
 }
 
-impl BodyView {
+impl MainView {
     /// Creates a view of a body at rest.
     pub(crate) fn new(mesh: &Mesh) -> Self {
         Self {
+            view: BodyView::default(),
             camera: CameraController::new(mesh.bounds().into()),
             margins: FIT_MARGINS,
             eases: false,
-            rect: Rect::from_min_size(Pos2::ZERO, egui::vec2(1.0, 1.0)),
-            pointer: Pointer::default(),
             probe: None,
             card_choice: CardChoice::default(),
             menu: None,
-            body: BodyMesh::default(),
-            magnification: 1.0,
             choice: Magnification::None,
             largest_displacement: 0.0,
             swept: None,
@@ -148,42 +141,28 @@ impl BodyView {
         self.largest_displacement = 0.0;
     }
 
-    /// Returns the input of the body's render pass, as of the last [`Self::update`].
-    pub(crate) fn frame<'a>(&'a self, content: &Content<'a>) -> Frame<'a> {
-        self.body.frame(content.session.geometry(), content.options.wireframe)
-    }
-
-    /// Returns the same with the camera and the area in pixels.
-    pub(crate) fn view<'a>(&'a self, content: &Content<'a>, pixels_per_point: f32) -> View<'a> {
-        let viewport = viewport(self.rect, pixels_per_point);
-        View { viewport, frame: self.frame(content), camera: self.camera.shown }
-    }
-
     /// Returns the projection of the last [`Self::fit_camera`].
     pub(crate) fn projection(&self) -> Projection {
-        Projection { camera: self.camera.shown, rect: self.rect }
+        self.view.projection(&self.camera)
     }
 
-    /// Processes the pointer. A press hits the targets of the last frame, because that is what the user sees.
+    /// Processes the pointer.
     pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let projection = self.projection();
-        let handles = self.handles(content, &projection);
+        let handles = self.arrows(content);
         let bases = self.bases(content).map_or_else(Vec::new, |bases| bases.all());
-        let targets = HitTargets {
-            camera: projection.camera,
-            mesh: (!content.is_apart()).then_some(content.mesh()),
-            positions: &self.body.nodes,
-            outline: &content.session.geometry().boundary,
-            handles: &handles,
-            bases: &bases,
-            scales: self.camera.scales([rect.width(), rect.height()].map(f64::from)),
-        };
-        self.rect = rect;
+        self.view.rect = rect;
         // A magnified body is not where the pointer would pull it.
-        let is_fixed = content.session.is_in_background() || self.magnification != 1.0;
-        let body = if is_fixed { Interactivity::Visible } else { Interactivity::Grabbable };
-        let interaction = self.pointer.process(ui, &response, &targets, body);
+        let is_fixed = content.session.is_in_background() || self.view.body.magnification != 1.0;
+        let interactivity = match is_fixed {
+            _ if content.is_apart() => Interactivity::Absent,
+            true => Interactivity::Visible,
+            false => Interactivity::Grabbable,
+        };
+        let BodyView { pointer, body, .. } = &mut self.view;
+        let (camera, handles, bases) = (&self.camera, &handles, &bases);
+        let targets = HitTargets { response: &response, camera, body, interactivity, handles, bases };
+        let interaction = pointer.process(ui, &targets);
         (response, interaction)
     }
 
@@ -195,11 +174,11 @@ impl BodyView {
         if std::mem::replace(&mut self.choice, content.options.magnification) != content.options.magnification {
             self.swept = None;
         }
-        self.magnification = self.magnification_of(simulation, content);
+        let magnification = self.magnification_of(simulation, content);
         let is_of_drawn = content.session.live().is_none() && content.session.fallback().is_none();
         let shown = (content.options, content.reference().filter(|_| is_of_drawn));
-        self.body.update(simulation, content.session.geometry(), shown, self.magnification, played);
-        self.body.palette = Palette::new(visuals);
+        self.view.body.update(simulation, &content.session.model.geometry, shown, magnification, played);
+        self.view.body.palette = Palette::new(visuals);
     }
 
     /// Returns the factor of the drawn displacement: 1 under a card of Learn and while the body is grabbed.
@@ -219,32 +198,23 @@ impl BodyView {
 
     /// Returns the drawn positions of a body's nodes, m.
     fn drawn_positions<'b>(&self, body: &'b Simulation) -> impl Iterator<Item = Vector2<f64>> + 'b {
-        let magnification = self.magnification;
+        let magnification = self.view.body.magnification;
         body.system().mesh().nodes().iter().zip(body.displacement()).map(move |(x, u)| x + u * magnification)
     }
 
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
         let reference = content.reference().filter(|_| content.options.exact);
-        reference.map(|reference| overlay::magnified_outline(reference, self.magnification)).unwrap_or_default()
-    }
-
-    /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
-    fn ghost<'a>(&self, content: &Content<'a>) -> Option<&'a [Vector2<f64>]> {
-        // Linear theory does not have the force of the mouse spring.
-        let is_grabbed = content.session.simulation().mouse_spring().is_some();
-        content.ghost().filter(|_| content.session.fallback().is_none() && !is_grabbed)
+        reference
+            .map(|reference| overlay::magnified_outline(reference, self.view.body.magnification))
+            .unwrap_or_default()
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
     pub(crate) fn take(&mut self, interaction: &Interaction, response: &Response, content: &Content<'_>) {
         /// Distance within which a click hits a pinned point, points.
         const NEAR: f32 = 9.0;
-        match interaction.camera {
-            CameraMove::None => {}
-            CameraMove::To(camera) => self.camera.set_camera(camera),
-            CameraMove::Fit => self.camera.fit(),
-        }
+        self.camera.follow(interaction.camera);
         // On a card of Learn a click selects a triangle.
         let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
@@ -257,8 +227,8 @@ impl BodyView {
     /// Returns `true` if the user has moved the view so that it does not have the whole body.
     pub(crate) fn misses_body(&self) -> bool {
         let projection = self.projection();
-        let is_out = |point: &Vector2<f64>| !self.rect.contains(projection.point(*point));
-        self.camera.is_moved() && self.body.points.iter().any(is_out)
+        let is_out = |point: &Vector2<f64>| !self.view.rect.contains(projection.point(*point));
+        self.camera.is_moved() && self.view.body.points.iter().any(is_out)
     }
 
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
@@ -268,7 +238,7 @@ impl BodyView {
         (!is_fixed).then(|| Bases {
             scene: content.session.scene(),
             system: content.simulation().system(),
-            positions: &self.body.nodes,
+            positions: &self.view.body.nodes,
             outline: &content.session.geometry().boundary,
             projection: self.projection(),
         })
@@ -290,7 +260,7 @@ impl BodyView {
             self.menu = None;
         } else if response.secondary_clicked() {
             // The tip of a short arrow covers the point where its force acts.
-            let handle = self.pointer.hot_handle().map(|hot| hot.handle.load());
+            let handle = self.view.pointer.hot_handle().map(|hot| hot.handle.load());
             let of_handle = handle.and_then(|load| match content.session.scene().loads.get(load)? {
                 Load::Force { place: Place::At(at), .. } => content.mesh().locate((*at).into()),
                 _ => None,
@@ -299,9 +269,9 @@ impl BodyView {
             let beside = || {
                 let at = self.projection().place(response.interact_pointer_pos()?);
                 let outline = &content.session.geometry().boundary;
-                content.mesh().pick(&self.body.nodes, outline, at, NEAR / self.camera.shown.scale)
+                content.mesh().pick(&self.view.body.nodes, outline, at, NEAR / self.camera.shown.scale)
             };
-            let clicked = self.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
+            let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
             let (system, outline) = (content.simulation().system(), &content.session.geometry().boundary);
             let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
             self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
@@ -311,36 +281,22 @@ impl BodyView {
     }
 
     /// Returns the loads of the last frame's arrows.
-    fn forces<'a>(&'a self, content: &Content<'a>) -> ForceArrows<'a> {
+    fn forces<'a>(&'a self, content: &Content<'a>) -> Option<ForceArrows<'a>> {
         let simulation = content.simulation();
-        ForceArrows {
-            scene: simulation.scene(),
-            system: simulation.system(),
-            positions: &self.body.nodes,
-            time: simulation.state().time(),
-            direction: content.direction,
-            opening: content.session.document().opened,
-        }
-    }
-
-    fn handles(&self, content: &Content<'_>, projection: &Projection) -> Vec<Handle> {
-        if content.is_apart() { Vec::new() } else { self.forces(content).handles(projection) }
+        let time = simulation.state().time();
+        self.view.forces(simulation.scene(), time, (content.session, content.direction))
     }
 
     /// Returns the load handles, as of the last frame.
     pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<Handle> {
-        self.handles(content, &self.projection())
+        let forces = self.forces(content).filter(|_| !content.is_apart());
+        forces.map_or_else(Vec::new, |forces| forces.handles(&self.projection()))
     }
 
     /// Returns the window position of a material point.
     fn in_view(&self, content: &Content<'_>, point: MaterialPoint) -> Option<Pos2> {
-        let place = probe::place(content.mesh(), &self.body.nodes, point)?;
+        let place = probe::place(content.mesh(), &self.view.body.nodes, point)?;
         Some(self.projection().point(place))
-    }
-
-    /// Returns the displayed field and its value at a material point.
-    fn field_at(&self, content: &Content<'_>, point: MaterialPoint) -> (Field, Option<f64>) {
-        (content.options.field, self.body.field.at(content.mesh(), point))
     }
 
     /// Shows the values at the pointer and at the pinned point; returns the edit that keeps a probe.
@@ -349,13 +305,12 @@ impl BodyView {
             return None;
         }
         let shown = content.session.drawn();
-        if let Some((point, at)) = self.pointer.over_body()
+        if let Some((point, at)) = self.view.pointer.over_body()
             && !egui::Popup::is_any_open(ui.ctx())
             && let point = rounded(content, point)
             && self.probe != Some(point)
-            && let Some(u) = probe::place(content.mesh(), shown.displacement(), point)
         {
-            probe::paint_hover(ui, painter, at, self.field_at(content, point), u);
+            self.view.show_value(ui, shown, point, at);
         }
         let point = self.probe?;
         let state = shown.point_state(point, content.options.point_values())?;
@@ -366,7 +321,7 @@ impl BodyView {
         let is_kept = content.session.is_in_background() || scene.probes.iter().any(|probe| probe.place == place);
         let (pinned, mut is_open) = (Pinned { state: &state, at, is_kept }, true);
         let choice = (&mut self.card_choice, &mut is_open);
-        let keeps = probe::show_card(painter, ui.visuals(), (self.rect, &pinned), choice);
+        let keeps = probe::show_card(painter, ui.visuals(), (self.view.rect, &pinned), choice);
         self.probe = self.probe.filter(|_| is_open);
         keeps.then(|| Action::edit(menu::EDIT, scene, |scene| menu::add_probe(scene, system, state.rest)))
     }
@@ -374,9 +329,9 @@ impl BodyView {
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
     /// converged are not followed, because they may be anywhere. While an arrow is dragged, it moves away, never nearer.
     pub(crate) fn fit_camera(&mut self, ui: &Ui, content: &Content<'_>) {
-        let drags = self.pointer.drags_tip();
+        let drags = self.view.pointer.drags_tip();
         // Moving the camera would also move the point that the pointer has grabbed.
-        if self.pointer.holds() && !drags {
+        if self.view.pointer.holds() && !drags {
             return;
         }
         let size = self.size();
@@ -387,7 +342,7 @@ impl BodyView {
         if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
             let before = if drags { Some(self.camera.whole) } else { self.swept.filter(|_| is_motion) };
             let exact = self.exact(content);
-            let points = before.iter().flatten().chain(&self.body.points).chain(exact.iter().flatten()).copied();
+            let points = before.iter().flatten().chain(&self.view.body.points).chain(exact.iter().flatten()).copied();
             let points = points.chain(content.reach().into_iter().flat_map(|reach| self.drawn_positions(reach)));
             let whole = points.fold(content.mesh().bounds().into(), |whole, point| grow(whole, &point));
             self.swept = Some(whole).filter(|_| is_motion);
@@ -402,7 +357,7 @@ impl BodyView {
     /// Returns `true` if the drawn body is at most `times` as large as at rest; a diverging iterate may be larger.
     fn is_of_usual_size(&self, content: &Content<'_>, times: f64) -> bool {
         let (low, high) = content.mesh().bounds();
-        let [from, to] = self.body.points.iter().fold([low, high], grow);
+        let [from, to] = self.view.body.points.iter().fold([low, high], grow);
         (to - from).norm() < times * (high - low).norm()
     }
 
@@ -412,13 +367,13 @@ impl BodyView {
         let low = low - Vector2::new(0.3, 1.15) * (high.x - low.x);
         self.camera.set_whole([low, high]);
         let least = least_margins(self.size());
-        let arrow = f64::from(0.25 * self.rect.height()).clamp(30.0, 120.0);
+        let arrow = f64::from(0.25 * self.view.rect.height()).clamp(30.0, 120.0);
         self.margins = Margins { bottom: least.bottom + arrow, ..least };
     }
 
     /// Returns width and height, points.
     fn size(&self) -> [f64; 2] {
-        [self.rect.width(), self.rect.height()].map(f64::from)
+        [self.view.rect.width(), self.view.rect.height()].map(f64::from)
     }
 
     /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
@@ -429,12 +384,12 @@ impl BodyView {
         mut high: Vector2<f64>,
         view: [f64; 2],
     ) -> Camera {
-        if let Some(linear) = self.ghost(content) {
+        if let Some(linear) = content.ghost() {
             // Largest size that the box may grow to for the linear solution, relative to the body: under a large load
             // that solution is far too long.
             const LARGEST: f64 = 1.5;
             let size = (high - low).norm();
-            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u * self.magnification);
+            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u * self.view.body.magnification);
             let (ghost_low, ghost_high) = ghost.fold((low, high), |(low, high), p| (low.inf(&p), high.sup(&p)));
             if (ghost_high - ghost_low).norm() < LARGEST * size {
                 (low, high) = (ghost_low, ghost_high);
@@ -459,10 +414,10 @@ impl BodyView {
         }
         let camera = Camera::fit(low, high, view, least);
         let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
-        let mut arrows = self.forces(content).whole_arrows(&projection);
+        let Some(own) = self.forces(content) else { return least };
+        let mut arrows = own.whole_arrows(&projection);
         if let Some(reach) = content.reach() {
             let positions: Vec<_> = self.drawn_positions(reach).collect();
-            let own = self.forces(content);
             let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.whole_arrows(&projection));
         }
@@ -489,32 +444,31 @@ impl BodyView {
         errors: Errors,
         note: Option<(&str, Color32)>,
     ) {
+        let Some(forces) = self.forces(content) else { return };
         let session = content.session;
         let simulation = session.simulation();
         let (shown, fallback) = (content.session.drawn(), session.fallback());
         let moves_support = simulation.problem().supports().move_the_body();
         let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
         for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
-            reaction.middle = support.middle + (reaction.middle - support.middle) * self.magnification;
+            reaction.middle = support.middle + (reaction.middle - support.middle) * self.view.body.magnification;
         }
         let sections = sections(shown);
-        let (ghost, exact) = (self.ghost(content), self.exact(content));
+        let (ghost, exact) = (content.ghost(), self.exact(content));
         let live = session.live().map(|live| live.is_late(shown));
         let overlay = Overlay {
-            body: ForceArrows { scene: shown.scene(), ..self.forces(content) },
+            view: &self.view,
+            projection: self.projection(),
+            body: ForceArrows { scene: shown.scene(), ..forces },
             wanted: fallback.map(|_| simulation.scene()),
-            geometry: session.geometry(),
             options: content.options,
-            camera: self.camera.shown,
-            magnification: self.magnification,
             apart: content.is_apart(),
             ghost,
             exact: &exact,
             live,
-            hot: self.pointer.hot_handle(),
             // The force of a paused motion would be that of the pointer's velocity alone.
             mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
-            playback: &session.playback,
+            playback: Some(&session.playback),
             sections: &sections,
             reactions: &reactions,
             note,
@@ -522,12 +476,12 @@ impl BodyView {
                 exact_scene: session.live().map_or(simulation.scene(), |live| &live.key),
                 errors,
                 areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
-                color_range: self.body.range,
-                has_values: self.body.has_values(),
+                color_range: self.view.body.range,
+                has_values: self.view.body.has_values(),
             }),
         };
-        overlay::paint(painter, self.rect, &overlay, visuals);
-        if let Some((hot, bases)) = self.pointer.hot_base().zip(self.bases(content)) {
+        overlay::paint(painter, &overlay, visuals);
+        if let Some((hot, bases)) = self.view.pointer.hot_base().zip(self.bases(content)) {
             bases.paint(painter, hot, visuals, Palette::new(visuals).load);
         }
     }
@@ -544,13 +498,13 @@ impl BodyView {
             Status::Running | Status::Finished => session.is_motion(),
             _ => false,
         };
-        let is_another = self.crossing.stamp != self.body.stamp;
-        if self.magnification != 1.0 || self.crossing.is_reported || !(is_due && is_sound && is_another) {
+        let is_another = self.crossing.stamp != self.view.body.stamp;
+        if self.view.body.magnification != 1.0 || self.crossing.is_reported || !(is_due && is_sound && is_another) {
             return false;
         }
-        (self.crossing.checked, self.crossing.stamp) = (now, self.body.stamp);
+        (self.crossing.checked, self.crossing.stamp) = (now, self.view.body.stamp);
         self.crossing.is_reported =
-            content.mesh().passes_through_itself(&session.geometry().boundary, &self.body.nodes);
+            content.mesh().passes_through_itself(&session.geometry().boundary, &self.view.body.nodes);
         self.crossing.is_reported
     }
 }
