@@ -186,10 +186,6 @@ impl Session {
         self.model.linear.as_ref()
     }
 
-    pub(crate) fn geometry(&self) -> &DisplayGeometry {
-        &self.model.geometry
-    }
-
     pub(crate) fn quality(&self) -> &Quality {
         &self.model.quality
     }
@@ -313,38 +309,34 @@ impl Session {
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
         let before = self.present.clone();
         let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
-        match edit {
-            Edit::Scene(label, scene) => {
-                self.set_scene(*scene).map_err(refusal)?;
-                self.record(before, Some(label));
-                self.background.before.iter_mut().for_each(|before| before.label = Some(label));
+        let (mut label, is_step) = (None, matches!(edit, Edit::Undo | Edit::Redo));
+        let applied = match edit {
+            Edit::Scene(control, scene) => {
+                label = Some(control);
+                self.set_scene(*scene)
             }
             Edit::Open(source) => {
                 // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
                 let is_kept = source.built_in().is_some() && source != before.document.source;
-                let kept = self.undo.last_of(&source).filter(|_| is_kept).cloned();
-                let version = match kept {
+                let version = match self.undo.last_of(&source).filter(|_| is_kept).cloned() {
                     Some(version) => version,
                     None => {
                         let document = Document::open(source)?;
                         Version { scene: document.original.clone(), document }
                     }
                 };
-                self.replace(version).map_err(refusal)?;
-                self.record(before, None);
+                self.replace(version)
             }
-            Edit::Restore(version) => {
-                self.replace(*version).map_err(refusal)?;
-                self.record(before, None);
-            }
-            Edit::Undo => {
-                let step = self.undo.undo(before);
-                self.go_to(step).map_err(refusal)?;
-            }
-            Edit::Redo => {
-                let step = self.undo.redo(before);
-                self.go_to(step).map_err(refusal)?;
-            }
+            Edit::Restore(version) => self.replace(*version),
+            Edit::Undo => self.undo.undo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
+            Edit::Redo => self.undo.redo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
+        };
+        applied.map_err(refusal)?;
+        if !is_step && before != self.present {
+            self.undo.record(before, label);
+        }
+        if label.is_some() {
+            self.background.before.iter_mut().for_each(|before| before.label = label);
         }
         // With other settings an exploded body would still be kilometres long.
         if has_exploded && self.is_motion() {
@@ -354,18 +346,9 @@ impl Session {
         Ok(self.changed)
     }
 
-    fn record(&mut self, before: Version, label: Option<&'static str>) {
-        if before != self.present {
-            self.undo.record(before, label);
-        }
-    }
-
-    fn go_to(&mut self, step: Option<Version>) -> Result<(), SimulationError> {
-        match step {
-            Some(step) if step.document.source == self.present.document.source => self.set_scene(step.scene),
-            Some(step) => self.replace(step),
-            None => Ok(()),
-        }
+    fn go_to(&mut self, step: Version) -> Result<(), SimulationError> {
+        let is_same = step.document.source == self.present.document.source;
+        if is_same { self.set_scene(step.scene) } else { self.replace(step) }
     }
 
     /// Changes the scene of the body, which continues from its current state if possible.

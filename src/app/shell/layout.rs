@@ -264,7 +264,7 @@ impl Lab {
         viewport.update(ui.visuals(), &content);
         if self.aside.is_some() && self.learn.is_apart() {
             let Desk { session, viewport, .. } = &mut self.desk;
-            viewport.view.body.displace(|points| self.learn.place(session.drawn(), session.geometry(), points));
+            viewport.view.body.displace(|points| self.learn.place(session.drawn(), &session.model.geometry, points));
         }
         let (viewport, content) = self.viewport_and_content();
         viewport.take(&interaction, &response, &content);
@@ -292,7 +292,7 @@ impl Lab {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::CardView {
                 simulation: session.drawn(),
-                geometry: session.geometry(),
+                geometry: &session.model.geometry,
                 points: &viewport.view.body.points,
                 projection: viewport.projection(),
                 palette: Palette::new(ui.visuals()),

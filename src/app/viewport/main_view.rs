@@ -239,7 +239,7 @@ impl MainView {
             scene: content.session.scene(),
             system: content.simulation().system(),
             positions: &self.view.body.nodes,
-            outline: &content.session.geometry().boundary,
+            outline: &content.session.model.geometry.boundary,
             projection: self.projection(),
         })
     }
@@ -268,11 +268,11 @@ impl MainView {
             // The marks of supports are beside the body.
             let beside = || {
                 let at = self.projection().place(response.interact_pointer_pos()?);
-                let outline = &content.session.geometry().boundary;
+                let outline = &content.session.model.geometry.boundary;
                 content.mesh().pick(&self.view.body.nodes, outline, at, NEAR / self.camera.shown.scale)
             };
             let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
-            let (system, outline) = (content.simulation().system(), &content.session.geometry().boundary);
+            let (system, outline) = (content.simulation().system(), &content.session.model.geometry.boundary);
             let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
             self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
@@ -504,7 +504,7 @@ impl MainView {
         }
         (self.crossing.checked, self.crossing.stamp) = (now, self.view.body.stamp);
         self.crossing.is_reported =
-            content.mesh().passes_through_itself(&session.geometry().boundary, &self.view.body.nodes);
+            content.mesh().passes_through_itself(&session.model.geometry.boundary, &self.view.body.nodes);
         self.crossing.is_reported
     }
 }
