@@ -7,6 +7,7 @@ use crate::app::modes::compare::{Pane, PaneSetting};
 use crate::app::modes::learn;
 use crate::app::shell::lab::{Desk, Lab};
 use crate::app::shell::settings::Settings;
+use crate::app::viewport::camera_controller::Box2;
 use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::render::Frame;
@@ -64,8 +65,8 @@ impl Lab {
     }
 
     /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
-    pub(crate) fn fit(&self, low: Vector2<f64>, high: Vector2<f64>, view: [f64; 2]) -> Camera {
-        self.desk.viewport.fitted(&self.content(), low, high, view)
+    pub(crate) fn fit(&self, whole: Box2, view: [f64; 2]) -> Camera {
+        self.desk.viewport.fitted(&self.content(), whole, view)
     }
 
     /// Returns the scene with its edits.

@@ -292,10 +292,8 @@ impl Lab {
             let Desk { session, viewport, .. } = &self.desk;
             let view = learn::CardView {
                 simulation: session.drawn(),
-                geometry: &session.model.geometry,
-                points: &viewport.view.body.points,
+                body: &viewport.view.body,
                 projection: viewport.projection(),
-                palette: Palette::new(ui.visuals()),
             };
             if let (true, Some(at)) = (response.clicked(), response.interact_pointer_pos()) {
                 self.learn.pick(&view, at);

@@ -20,6 +20,16 @@ pub(crate) fn grow([low, high]: Box2, point: &Vector2<f64>) -> Box2 {
     [low.inf(point), high.sup(point)]
 }
 
+/// Returns a box that also contains the points of linear theory, unless it would be much larger: the other bodies would be
+/// shown too small then.
+pub(crate) fn grow_to_linear(whole: Box2, linear: impl Iterator<Item = Vector2<f64>>) -> Box2 {
+    /// Largest size of the box with these points, relative to the box without them.
+    const LARGEST: f64 = 1.5;
+    let size_of = |[low, high]: Box2| (high - low).norm();
+    let with = linear.fold(whole, |with, point| grow(with, &point));
+    if size_of(with) < LARGEST * size_of(whole) { with } else { whole }
+}
+
 /// Movement of the camera by the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum CameraMove {

@@ -6,7 +6,7 @@ use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_view::BodyView;
-use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow};
+use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::handle::Handle;
 use crate::app::viewport::menu;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
@@ -205,9 +205,7 @@ impl MainView {
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
         let reference = content.reference().filter(|_| content.options.exact);
-        reference
-            .map(|reference| overlay::magnified_outline(reference, self.view.body.magnification))
-            .unwrap_or_default()
+        overlay::magnified_outline(reference, self.view.body.magnification)
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
@@ -349,8 +347,7 @@ impl MainView {
             self.camera.set_whole(whole);
             self.margins = self.with_room_for_arrows(content, least_margins(size), whole, size);
         }
-        let [low, high] = self.camera.whole;
-        let fitted = self.fitted(content, low, high, size);
+        let fitted = self.fitted(content, self.camera.whole, size);
         self.camera.turn_to(ui, fitted, self.eases, drags);
     }
 
@@ -377,24 +374,10 @@ impl MainView {
     }
 
     /// Returns the camera that shows a box, m, and the linear solution, in a view of size `view`, points.
-    pub(crate) fn fitted(
-        &self,
-        content: &Content<'_>,
-        mut low: Vector2<f64>,
-        mut high: Vector2<f64>,
-        view: [f64; 2],
-    ) -> Camera {
-        if let Some(linear) = content.ghost() {
-            // Largest size that the box may grow to for the linear solution, relative to the body: under a large load
-            // that solution is far too long.
-            const LARGEST: f64 = 1.5;
-            let size = (high - low).norm();
-            let ghost = content.mesh().nodes().iter().zip(linear).map(|(x, u)| x + u * self.view.body.magnification);
-            let (ghost_low, ghost_high) = ghost.fold((low, high), |(low, high), p| (low.inf(&p), high.sup(&p)));
-            if (ghost_high - ghost_low).norm() < LARGEST * size {
-                (low, high) = (ghost_low, ghost_high);
-            }
-        }
+    pub(crate) fn fitted(&self, content: &Content<'_>, whole: Box2, view: [f64; 2]) -> Camera {
+        let linear = content.session.linear().filter(|_| content.ghost().is_some());
+        let points = linear.into_iter().flat_map(|linear| self.drawn_positions(linear));
+        let [low, high] = grow_to_linear(whole, points);
         Camera::fit(low, high, view, self.margins)
     }
 

@@ -565,7 +565,8 @@ pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
 }
 
 /// Returns the outline of a reference solution that is drawn with a multiple of its displacement, m.
-pub(crate) fn magnified_outline(reference: &Reference, factor: f64) -> Cow<'_, [Vec<Vector2<f64>>]> {
+pub(crate) fn magnified_outline(reference: Option<&Reference>, factor: f64) -> Cow<'_, [Vec<Vector2<f64>>]> {
+    let Some(reference) = reference else { return Cow::default() };
     if factor == 1.0 {
         return Cow::Borrowed(&reference.outline);
     }

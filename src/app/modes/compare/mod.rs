@@ -11,7 +11,7 @@ use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::QUIET_POLL;
-use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow};
+use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
@@ -341,8 +341,7 @@ impl Compare {
             (pane.view.body.range, pane.view.rect) = (range, grid.body_place(*cell));
         }
         let reference = input.reference.filter(|_| input.view.exact);
-        let exact = reference.map(|reference| overlay::magnified_outline(reference, self.magnification));
-        let exact = exact.unwrap_or_default();
+        let exact = overlay::magnified_outline(reference, self.magnification);
         self.fit_camera(ui, input, &exact);
         if self.in_motion {
             self.is_timing = !ui.input(|i| i.pointer.any_down()) && self.request_times(ui.ctx());
@@ -454,19 +453,15 @@ impl Compare {
 
     /// Returns the bounding box of the results and of the outline `exact` of the reference solution, m.
     fn bounds(&self, rest: Box2, input: &CompareInput<'_>, exact: &[Vec<Vector2<f64>>]) -> Box2 {
-        /// Largest size of the box with the solution of linear theory, which may be so large that the other bodies would be
-        /// shown too small, relative to the box without it.
-        const LARGEST: f64 = 1.5;
         let is_linear = |pane: &Pane| pane.run.wanted.as_ref().is_some_and(|s| s.solver.method == MethodKind::Linear);
         let (linear, others): (Vec<&Pane>, Vec<&Pane>) =
             self.panes.iter().filter(|pane| pane.run.is_sound()).partition(|pane| is_linear(pane));
         let bounds = exact.iter().flatten().fold(rest, grow);
         let bounds = others.iter().flat_map(|pane| &pane.view.body.points).fold(bounds, grow);
-        let size_of = |[low, high]: Box2| (high - low).norm();
-        let with = linear.iter().flat_map(|pane| &pane.view.body.points).fold(bounds, grow);
+        let linear = linear.iter().flat_map(|pane| &pane.view.body.points);
         let has_reference = input.reference.is_some() && input.view.exact;
         let is_known = !others.is_empty() || has_reference;
-        if !is_known || size_of(with) < LARGEST * size_of(bounds) { with } else { bounds }
+        if is_known { grow_to_linear(bounds, linear.copied()) } else { linear.fold(bounds, grow) }
     }
 
     /// Extends the bounding box of all states of the motions so far, m, by the present ones, and returns it.

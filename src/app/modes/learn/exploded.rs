@@ -40,7 +40,7 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
             let corners = &rest[..mesh.entry().cell.corners.len().min(rest.len())];
             let shift = mean(view.points_of(element)) - mean(corners);
             let line: Vec<_> = corners.iter().map(|p| view.projection.point(p + shift)).collect();
-            for (width, color) in [(3.2_f32, view.palette.canvas), (1.5, view.palette.exact)] {
+            for (width, color) in [(3.2_f32, view.body.palette.canvas), (1.5, view.body.palette.exact)] {
                 painter.add(Shape::closed_line(line.clone(), Stroke::new(width, color.gamma_multiply(strength))));
             }
         }

@@ -21,13 +21,13 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
             continue;
         }
         let wide = if element == learn.picked { 2.4 } else { 1.6 };
-        for (axis, color) in [(Vector2::x(), view.palette.load), (Vector2::y(), view.palette.exact)] {
+        for (axis, color) in [(Vector2::x(), view.body.palette.load), (Vector2::y(), view.body.palette.exact)] {
             let along = rotation.apply(axis);
             let tip = center + length * vec2(along.x as f32, -along.y as f32);
-            arrow(painter, center, tip, Stroke::new(wide + 2.0, view.palette.canvas));
+            arrow(painter, center, tip, Stroke::new(wide + 2.0, view.body.palette.canvas));
             arrow(painter, center, tip, Stroke::new(wide, color));
         }
-        painter.circle_filled(center, wide + 0.6, view.palette.text);
+        painter.circle_filled(center, wide + 0.6, view.body.palette.text);
     }
     paint_picked(painter, view, learn);
 }
@@ -36,8 +36,8 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
 pub(super) fn paint_picked(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
     let corners = view.corners(learn.picked);
     if corners.len() >= 3 {
-        painter.add(Shape::closed_line(corners.clone(), Stroke::new(5.0, view.palette.canvas)));
-        painter.add(Shape::closed_line(corners, Stroke::new(2.5, view.palette.accent)));
+        painter.add(Shape::closed_line(corners.clone(), Stroke::new(5.0, view.body.palette.canvas)));
+        painter.add(Shape::closed_line(corners, Stroke::new(2.5, view.body.palette.accent)));
     }
 }
 

@@ -5,6 +5,7 @@ use cards::CardDisplay;
 use egui::Panel;
 
 use crate::app::interface::*;
+use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::at_right;
 
@@ -52,11 +53,8 @@ pub(crate) struct Learn {
 /// View that a card paints over.
 pub(crate) struct CardView<'a> {
     pub simulation: &'a Simulation,
-    pub geometry: &'a DisplayGeometry,
-    /// Positions of the drawn points, m.
-    pub points: &'a [Vector2<f64>],
+    pub body: &'a BodyMesh,
     pub projection: Projection,
-    pub palette: Palette,
 }
 
 impl CardView<'_> {
@@ -66,8 +64,8 @@ impl CardView<'_> {
     }
 
     fn points_of(&self, element: usize) -> &[Vector2<f64>] {
-        let each = self.points.len() / self.simulation.system().mesh().element_count().max(1);
-        self.points.get(element * each..(element + 1) * each).unwrap_or_default()
+        let each = self.body.points.len() / self.simulation.system().mesh().element_count().max(1);
+        self.body.points.get(element * each..(element + 1) * each).unwrap_or_default()
     }
 
     /// Returns the outline of an element as drawn.
@@ -129,14 +127,14 @@ impl Learn {
 
     /// Selects the element that is drawn at a position in the window.
     pub(crate) fn pick(&mut self, view: &CardView<'_>, at: Pos2) {
-        let place = |p: u32| view.points.get(p as usize).map(|&p| view.projection.point(p));
+        let place = |p: u32| view.body.points.get(p as usize).map(|&p| view.projection.point(p));
         let side = |a: Pos2, b: Pos2| (b - a).x * (at - a).y - (b - a).y * (at - a).x;
-        let found = view.geometry.triangles.iter().position(|corners| {
+        let found = view.body.geometry.triangles.iter().position(|corners| {
             let [Some(a), Some(b), Some(c)] = corners.map(place) else { return false };
             let sides = [side(a, b), side(b, c), side(c, a)];
             sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
         });
-        let each = view.geometry.triangles.len() / view.simulation.system().mesh().element_count().max(1);
+        let each = view.body.geometry.triangles.len() / view.simulation.system().mesh().element_count().max(1);
         if let Some(triangle) = found {
             self.picked = triangle / each.max(1);
         }

@@ -168,7 +168,7 @@ pub fn record(
         lab.settings.language = options.look.language;
         if let Some(preview) = &preview {
             lab.desk.view.bars = false;
-            let camera = lab.fit(preview.low, preview.high, options.size.map(f64::from));
+            let camera = lab.fit([preview.low, preview.high], options.size.map(f64::from));
             lab.desk.viewport.camera.set_camera(camera);
             lab.desk.view.fixed_range = Some(preview.range);
         } else {
