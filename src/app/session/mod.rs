@@ -24,7 +24,7 @@ use crate::app::session::facts::{Facts, Follower, Live, ShownFacts, first_probe}
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{Press, UndoHistory, Version};
-use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, note_residual, solve_linear};
+use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, solve_linear};
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::mesh::MaterialPoint;
 use crate::render::display_geometry::DisplayGeometry;
@@ -565,9 +565,8 @@ impl Session {
 
     fn iterate_once(&mut self) {
         if *self.model.simulation.status() == Status::Running {
-            self.model.simulation.step();
+            self.model.step();
             self.timings.add(self.model.simulation.last_iteration());
-            note_residual(&self.model.simulation, &mut self.model.residuals);
             self.fallback.keep(&self.model.simulation);
         }
     }

@@ -47,6 +47,15 @@ impl Model {
         Self { simulation, linear: None, geometry, residuals: Vec::new(), quality: Quality::default() }
     }
 
+    /// Makes an iteration, and records its residual; a new solve starts a new list.
+    pub(crate) fn step(&mut self) {
+        self.simulation.step();
+        if self.simulation.iterations() <= 1 || self.residuals.len() >= MAX_RESIDUALS {
+            self.residuals.clear();
+        }
+        self.residuals.push(self.simulation.residual());
+    }
+
     /// Returns a copy to display while the solve goes on; `None` for a motion, which has no search.
     pub(crate) fn snapshot(&self) -> Option<Self> {
         Some(Self {
@@ -221,14 +230,6 @@ impl BackgroundSolve {
     }
 }
 
-/// Records the residual of an iteration; a new solve starts a new list.
-pub(crate) fn note_residual(simulation: &Simulation, residuals: &mut Vec<f64>) {
-    if simulation.iterations() <= 1 || residuals.len() >= MAX_RESIDUALS {
-        residuals.clear();
-    }
-    residuals.push(simulation.residual());
-}
-
 /// Returns the scene with linear theory as the method.
 pub(crate) fn linear_scene(scene: &Scene) -> Scene {
     let solver = SolverSettings { method: MethodKind::Linear, ..scene.solver.clone() };
@@ -299,8 +300,7 @@ fn run(request: SolveRequest, report: &dyn Fn(Phase) -> ControlFlow<()>) -> Solv
         && iterations.is_none_or(|most| made < most)
         && report(Phase::Iterating(model.simulation.iterations())).is_continue()
     {
-        model.simulation.step();
-        note_residual(&model.simulation, &mut model.residuals);
+        model.step();
         made += 1;
     }
     let has_ended = is_search && *model.simulation.status() != Status::Running;
