@@ -84,23 +84,9 @@ pub fn engineering(value: f64, unit: &str) -> String {
 /// Formats like [`engineering`] to `digits` significant digits.
 fn engineering_digits(value: f64, unit: &str, digits: i32) -> String {
     let (power, symbol) = prefix(&[value], unit);
-    with_unit(&significant(scaled(value, power), digits), symbol, unit)
-}
-
-/// Appends the unit to a number, without a space before a degree sign.
-fn with_unit(number: &str, symbol: &str, unit: &str) -> String {
+    let number = significant(scaled(value, power), digits);
+    // A degree sign follows its number without a space.
     if unit == "°" { format!("{number}°") } else { format!("{number} {symbol}{unit}").trim_end().to_owned() }
-}
-
-/// Formats a tick of an axis with the prefix of all its ticks, which is that of the axis's larger end.
-///
-/// ```
-/// use warpbeam::format::tick;
-/// assert_eq!([0.0, 500.0].map(|value| tick(value, [0.0, 1200.0], "N")), ["0 kN", "0.5 kN"]);
-/// ```
-pub fn tick(value: f64, ends: [f64; 2], unit: &str) -> String {
-    let (power, symbol) = prefix(&ends, unit);
-    with_unit(&in_power(value, power), symbol, unit)
 }
 
 /// Formats an editable value in engineering units: with all of its digits if six are enough, as for typed values, else

@@ -1,8 +1,9 @@
 //! A stability atlas as a drawing.
 
-use super::drawing::{Anchor, Drawing, Text};
+use super::drawing::{Anchor, Canvas, Drawing, Text};
 use crate::scene::ElementKind;
 use crate::study::extremes::{Case, Entry, Outcome, counts, labels};
+use crate::study::figure::Ink;
 
 const CELL: [f64; 2] = [52.0, 20.0];
 
@@ -23,7 +24,7 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
     ]);
     for (i, outcome) in C::OUTCOMES.into_iter().enumerate() {
         let x = 20.0 + LEGEND * i as f64;
-        drawing.rect([[x, 14.0], [14.0; 2]], outcome.entry().1);
+        drawing.rect([[x, 14.0], [14.0; 2]], Ink::Fixed(outcome.entry().1), 1.0);
         text(&mut drawing, 12.0, [x + 20.0, 26.0], Anchor::Start, &outcome.id().replace('_', " "));
     }
     for (j, name) in names.iter().enumerate() {
@@ -44,7 +45,7 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
                     let (total, mut left) = (counts.iter().sum::<usize>(), x + CELL[0] * column as f64);
                     for (outcome, &count) in C::OUTCOMES.into_iter().zip(counts).filter(|(_, count)| **count > 0) {
                         let width = (CELL[0] - 2.0) * count as f64 / total as f64;
-                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], outcome.entry().1);
+                        drawing.rect([[left, y], [width, CELL[1] - 2.0]], Ink::Fixed(outcome.entry().1), 1.0);
                         left += width;
                     }
                 }

@@ -1,22 +1,74 @@
-//! Lines, shapes and texts on white paper, written as SVG.
+//! Lines, shapes and texts, written as SVG on white paper; the window paints them in the colours of its theme.
 
 use std::fmt::Write as _;
 
-/// Red, green and blue.
-pub(super) type Color = [u8; 3];
+use crate::study::color;
+use crate::study::figure::Ink;
 
-pub(super) const WHITE: Color = [0xff; 3];
-pub(super) const BLACK: Color = [0; 3];
-/// Lines of a grid.
-pub(super) const GRID: Color = [0xdd; 3];
-/// Lines of a chart that belong to no series.
-pub(super) const INK: Color = [0x33; 3];
+/// Width and dashes of a line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stroke {
+    pub width: f64,
+    /// Lengths of dashes and gaps; none for a solid line.
+    pub dashes: &'static [f64],
+}
 
-/// Height of a text, pixels.
-const TEXT: f64 = 13.0;
+pub(crate) fn solid(width: f64) -> Stroke {
+    Stroke { width, dashes: &[] }
+}
 
-/// A picture of one page or of several, one below the other. Places are in pixels from the upper left corner of the last
-/// page.
+/// Point of a text that lies at the given position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text<'a> {
+    pub at: [f64; 2],
+    pub anchor: Anchor,
+    pub size: f64,
+    pub ink: Ink,
+    /// `true` if it is read from below.
+    pub is_upright: bool,
+    pub text: &'a str,
+}
+
+impl<'a> Text<'a> {
+    /// Usual height, pixels.
+    pub const SIZE: f64 = 13.0;
+
+    pub fn new(at: [f64; 2], anchor: Anchor, text: &'a str) -> Self {
+        Self { at, anchor, size: Self::SIZE, ink: Ink::Text, is_upright: false, text }
+    }
+}
+
+/// Surface on which charts are drawn: a file, or the window. Places are in pixels from its upper left corner.
+pub(crate) trait Canvas {
+    fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke);
+
+    /// Fills a polygon, with a text that viewers of a file show beside the pointer; it may be empty.
+    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64, title: &str);
+
+    /// Fills a circle, or draws its outline.
+    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<Stroke>);
+
+    /// Fills a rectangle, which is given by its upper left corner and its size.
+    fn rect(&mut self, corner_and_size: [[f64; 2]; 2], ink: Ink, opacity: f64);
+
+    fn put(&mut self, text: Text<'_>);
+
+    /// Draws what follows in a rectangle only, until it is called with `None`.
+    fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>);
+
+    fn text(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
+        self.put(Text::new(at, anchor, text));
+    }
+}
+
+/// A file of one page or of several, one below the other. Places are those on the last page.
 #[derive(Clone, Debug, Default)]
 pub struct Drawing {
     /// Size of all pages together.
@@ -27,52 +79,8 @@ pub struct Drawing {
     elements: Vec<String>,
 }
 
-/// Width and dashes of a line.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
-    pub width: f64,
-    /// Lengths of dashes and gaps; none for a solid line.
-    pub dashes: &'static [f64],
-}
-
-pub(super) fn solid(width: f64) -> Stroke {
-    Stroke { width, dashes: &[] }
-}
-
-/// Point of a text that lies at the given position.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Text {
-    pub at: [f64; 2],
-    pub anchor: Anchor,
-    pub size: f64,
-    pub color: Color,
-    /// `true` if it is read from below.
-    pub is_upright: bool,
-    pub text: String,
-}
-
-impl Text {
-    pub fn new(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Self {
-        Self { at, anchor, size: TEXT, color: BLACK, is_upright: false, text: text.into() }
-    }
-}
-
-impl Drawing {
-    /// Adds white paper.
-    pub(super) fn page(&mut self, size: [f64; 2]) {
-        self.top = self.size[1];
-        self.size = [self.size[0].max(size[0]), self.top + size[1]];
-        self.rect([[0.0; 2], size], WHITE);
-    }
-
-    pub(super) fn line(&mut self, points: &[[f64; 2]], color: Color, stroke: Stroke) {
+impl Canvas for Drawing {
+    fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke) {
         let line = match *points {
             [from, to] => {
                 let ([x1, y1], [x2, y2]) = (self.place(from), self.place(to));
@@ -80,38 +88,29 @@ impl Drawing {
             }
             _ => format!("polyline points=\"{}\" stroke-linejoin=\"round\"", self.list(points)),
         };
-        self.elements.push(format!("<{line}{}/>", stroked(color, stroke)));
+        self.elements.push(format!("<{line}{}/>", stroked(ink, stroke)));
     }
 
-    /// Fills a polygon, with a text that viewers show beside the pointer; it may be empty.
-    pub(super) fn polygon(&mut self, points: &[[f64; 2]], color: Color, opacity: f64, title: &str) {
-        let mut polygon = format!("polygon points=\"{}\" fill=\"{}\"", self.list(points), hex(color));
-        if opacity < 1.0 {
-            let _ = write!(polygon, " opacity=\"{opacity}\"");
-        }
+    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64, title: &str) {
+        let polygon = format!("polygon points=\"{}\"{}", self.list(points), filled(ink, opacity));
         self.elements.push(match title {
             "" => format!("<{polygon}/>"),
             _ => format!("<{polygon}><title>{}</title></polygon>", escape(title)),
         });
     }
 
-    /// Fills a circle, or draws its outline.
-    pub(super) fn circle(&mut self, middle: [f64; 2], radius: f64, color: Color, outline: Option<Stroke>) {
+    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<Stroke>) {
         let ([x, y], radius) = (self.place(middle), short(radius));
-        let paint = outline.map_or_else(|| format!(" fill=\"{}\"", hex(color)), |stroke| stroked(color, stroke));
+        let paint = outline.map_or_else(|| filled(ink, 1.0), |stroke| stroked(ink, stroke));
         self.elements.push(format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{paint}/>"));
     }
 
-    pub(super) fn rect(&mut self, corner_and_size: [[f64; 2]; 2], color: Color) {
+    fn rect(&mut self, corner_and_size: [[f64; 2]; 2], ink: Ink, opacity: f64) {
         let rect = self.rect_attributes(corner_and_size);
-        self.elements.push(format!("<rect{rect} fill=\"{}\"/>", hex(color)));
+        self.elements.push(format!("<rect{rect}{}/>", filled(ink, opacity)));
     }
 
-    pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: impl Into<String>) {
-        self.put(Text::new(at, anchor, text));
-    }
-
-    pub(super) fn put(&mut self, Text { at, anchor, size, color, is_upright, text }: Text) {
+    fn put(&mut self, Text { at, anchor, size, ink, is_upright, text }: Text<'_>) {
         let [x, y] = self.place(at);
         let mut attributes = if is_upright {
             format!(" transform=\"translate({x} {y}) rotate(-90)\"")
@@ -123,30 +122,42 @@ impl Drawing {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        if size != TEXT {
+        if size != Text::SIZE {
             let _ = write!(attributes, " font-size=\"{size}\"");
         }
-        if color != BLACK {
-            let _ = write!(attributes, " fill=\"{}\"", hex(color));
+        if ink != Ink::Text {
+            let _ = write!(attributes, " fill=\"{}\"", hex(ink));
         }
-        self.elements.push(format!("<text{attributes}>{}</text>", escape(&text)));
+        self.elements.push(format!("<text{attributes}>{}</text>", escape(text)));
     }
 
-    /// Draws what `draw` adds in a rectangle only.
-    pub(super) fn clipped(&mut self, corner_and_size: [[f64; 2]; 2], draw: impl FnOnce(&mut Self)) {
-        let (number, rect) = (self.elements.len(), self.rect_attributes(corner_and_size));
-        let clip = format!("<clipPath id=\"clip{number}\"><rect{rect}/></clipPath>");
-        self.elements.push(format!("{clip}\n<g clip-path=\"url(#clip{number})\">"));
-        draw(self);
-        self.elements.push("</g>".to_owned());
+    fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>) {
+        let number = self.elements.len();
+        self.elements.push(corner_and_size.map_or_else(
+            || "</g>".to_owned(),
+            |rect| {
+                let rect = self.rect_attributes(rect);
+                let clip = format!("<clipPath id=\"clip{number}\"><rect{rect}/></clipPath>");
+                format!("{clip}\n<g clip-path=\"url(#clip{number})\">")
+            },
+        ));
+    }
+}
+
+impl Drawing {
+    /// Adds white paper.
+    pub(super) fn page(&mut self, size: [f64; 2]) {
+        self.top = self.size[1];
+        self.size = [self.size[0].max(size[0]), self.top + size[1]];
+        self.rect([[0.0; 2], size], Ink::Paper, 1.0);
     }
 
     /// Returns the drawing as an SVG document.
     pub fn svg(&self) -> String {
-        let ([width, height], elements) = (self.size, self.elements.join("\n"));
+        let ([width, height], text, elements) = (self.size, Text::SIZE, self.elements.join("\n"));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             font-family=\"Ubuntu, sans-serif\" font-size=\"{TEXT}\">\n{elements}\n</svg>\n"
+             font-family=\"Ubuntu, sans-serif\" font-size=\"{text}\">\n{elements}\n</svg>\n"
         )
     }
 
@@ -166,13 +177,18 @@ impl Drawing {
     }
 }
 
-fn stroked(color: Color, Stroke { width, dashes }: Stroke) -> String {
+fn filled(ink: Ink, opacity: f64) -> String {
+    let opacity = if opacity < 1.0 { format!(" opacity=\"{opacity}\"") } else { String::new() };
+    format!(" fill=\"{}\"{opacity}", hex(ink))
+}
+
+fn stroked(ink: Ink, Stroke { width, dashes }: Stroke) -> String {
     let dashes: Vec<String> = dashes.iter().map(f64::to_string).collect();
     let dashes = match &dashes[..] {
         [] => String::new(),
         dashes => format!(" stroke-dasharray=\"{}\"", dashes.join(" ")),
     };
-    format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(color))
+    format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(ink))
 }
 
 /// Rounds to hundredths of a pixel.
@@ -180,7 +196,19 @@ fn short(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }
 
-fn hex([r, g, b]: Color) -> String {
+/// Returns a colour on white paper.
+fn hex(ink: Ink) -> String {
+    let [r, g, b] = match ink {
+        Ink::Paper => [0xff; 3],
+        Ink::Text => [0; 3],
+        Ink::Grid => [0xdd; 3],
+        Ink::Curve | Ink::Load | Ink::Reference => [0x33; 3],
+        Ink::Limit => [0x55; 3],
+        Ink::Solution(id) => color(id, false),
+        Ink::Unstable => [0xbe, 0x14, 0x1e],
+        Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
+        Ink::Fixed(color) => color,
+    };
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 

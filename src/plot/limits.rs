@@ -1,112 +1,186 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
-use super::axes::ScaledAxis;
-use super::drawing::{Anchor, Color, Drawing, GRID, INK, Stroke, Text, solid};
+use super::axes::ChartAxis;
+use super::drawing::{Anchor, Canvas, Drawing, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
-use crate::study::figure::LoadAxis;
-use crate::study::limits::{MethodLimits, Rating, axis_text, load_text};
+use crate::sentence::sentence;
+use crate::study::figure::{Ink, LoadAxis};
+use crate::study::limits::{MethodLimits, Rating, Strip, axis_text, load_text};
+use crate::study::path_chart::Render;
 
-/// Left and right ends of the strips, pixels.
-const ACROSS: [f64; 2] = [150.0, 760.0];
-const WIDTH: f64 = 1010.0;
-/// Upper and lower ends of the load curve.
-const CURVE: [f64; 2] = [56.0, 216.0];
-/// Height of a strip, and with the space below it.
-const HEIGHT: f64 = 18.0;
-const ROW: f64 = 26.0;
 /// Width by which bars overlap, so that no gap shows between those of one colour.
 const OVERLAP: f64 = 0.5;
+/// Colour of the slanted lines over a bar.
+const HATCH: Ink = Ink::Fixed([0x33; 3]);
 
-pub(crate) fn rating_color(rating: Rating) -> Color {
-    match rating {
+pub(crate) fn rating_ink(rating: Rating) -> Ink {
+    Ink::Fixed(match rating {
         Rating::Good => [0x3a, 0x9d, 0x5d],
         Rating::Usable => [0xe6, 0xc2, 0x3a],
         Rating::Beyond => [0xe0, 0x7b, 0x39],
         Rating::NotConverged => [0xbe, 0x14, 0x1e],
         Rating::Unknown => [0xc4, 0xc8, 0xcc],
-    }
+    })
 }
 
 /// Draws the limits of a scene over the load.
 pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
+    const WIDTH: f64 = 1010.0;
+    const ROW: f64 = 26.0;
     let loads = LoadAxis::of(scene);
-    let axis = ScaledAxis::of(limits.range, ACROSS);
+    let (across, curve) = ([150.0, 760.0], [56.0, 216.0]);
     // A motion has no load curve.
-    let top = 44.0 + if limits.reference.is_empty() { CURVE[0] } else { CURVE[1] };
-    let bottom = top + ROW * limits.strips.len() as f64;
+    let has_curve = !limits.reference.is_empty();
+    let chart = LimitsChart {
+        limits,
+        loads: &loads,
+        across,
+        curve,
+        has_curve,
+        strips: 44.0 + curve[usize::from(has_curve)],
+        row: ROW,
+        height: 18.0,
+    };
+    let bottom = chart.bottom();
     let mut drawing = Drawing::default();
     drawing.page([WIDTH, bottom + 84.0]);
-    let title = Text::new([ACROSS[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
+    let title = Text::new([across[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
     drawing.put(Text { size: 16.0, ..title });
-    for (x, factor) in axis.values() {
-        drawing.line(&[[x, CURVE[0]], [x, bottom]], GRID, solid(1.0));
-        drawing.text([x, bottom + 18.0], Anchor::Middle, load_text(&loads, factor));
-    }
+    chart.grid(&mut drawing);
     // The scene's own load.
     if limits.contains(1.0) {
-        let own = axis.place(1.0);
-        drawing.line(&[[own, CURVE[0]], [own, bottom]], INK, solid(1.0));
-        drawing.text([own, CURVE[0] - 6.0], Anchor::Middle, "the scene");
+        let own = chart.axis().place(1.0);
+        drawing.line(&[[own, curve[0]], [own, bottom]], Ink::Curve, solid(1.0));
+        drawing.text([own, curve[0] - 6.0], Anchor::Middle, "the scene");
     }
-    if let Some(critical) = limits.critical().filter(|&critical| limits.contains(critical)) {
-        let x = axis.place(critical);
-        let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
-        drawing.line(&[[x, CURVE[0]], [x, bottom]], rating_color(Rating::NotConverged), dashes);
-    }
-    if !limits.reference.is_empty() {
-        curve(&mut drawing, limits, &axis);
-    }
-    for (row, strip) in limits.strips.iter().enumerate() {
-        let y = top + ROW * row as f64;
-        drawing.text([ACROSS[0] - 12.0, y + 14.0], Anchor::End, strip.name(str::to_owned));
-        let pieces = strip.pieces(limits.range);
-        for (i, piece) in pieces.iter().enumerate() {
-            let [from, to] = piece.range.map(|factor| axis.place(factor));
-            let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
-            let overlap = if is_joined { OVERLAP } else { 0.0 };
-            drawing.rect([[from, y], [(to - from + overlap).max(0.0), HEIGHT]], rating_color(piece.rating));
-            if piece.is_beyond_law {
-                hatch(&mut drawing, [from, to], [y, y + HEIGHT]);
-            }
-        }
-        let end = strip.end(&loads, limits.range).map_or_else(String::new, |end| end.to_string());
-        drawing.text([ACROSS[1] + 12.0, y + 14.0], Anchor::Start, end);
-    }
+    chart.draw(&mut drawing, &ToString::to_string, &|_| Ink::Text);
     legend(&mut drawing, bottom + 46.0, limits.duration.is_some());
-    let name = axis_text(limits, &loads).to_string();
-    drawing.text([0.5 * (ACROSS[0] + ACROSS[1]), bottom + 38.0], Anchor::Middle, name);
+    chart.name(&mut drawing, 38.0, &ToString::to_string);
     drawing
 }
 
-/// Draws the length of the reference displacement over the load.
-fn curve(drawing: &mut Drawing, limits: &MethodLimits, axis: &ScaledAxis) {
-    let lengths = limits.reference.iter().map(|(factor, u)| (*factor, u.map(|u| u.norm()).filter(|u| *u > 0.0)));
-    let lengths: Vec<(f64, Option<f64>)> = lengths.collect();
-    let up = ScaledAxis::decades(lengths.iter().filter_map(|(_, u)| *u), [CURVE[1], CURVE[0]]);
-    for (y, length) in up.values() {
-        drawing.line(&[[ACROSS[0], y], [ACROSS[1], y]], GRID, solid(1.0));
-        drawing.text([ACROSS[0] - 12.0, y + 4.0], Anchor::End, engineering(length, "m"));
+/// Places of the limits in a drawing, all on one axis of loads.
+pub(crate) struct LimitsChart<'a> {
+    pub limits: &'a MethodLimits,
+    pub loads: &'a LoadAxis,
+    /// Left and right ends of the curve and the strips.
+    pub across: [f64; 2],
+    /// Upper and lower ends of the load curve.
+    pub curve: [f64; 2],
+    /// `true` if the load curve is drawn.
+    pub has_curve: bool,
+    /// Upper edge of the first strip.
+    pub strips: f64,
+    /// Distance from one strip to the next, and height of their bars.
+    pub row: f64,
+    pub height: f64,
+}
+
+impl LimitsChart<'_> {
+    pub fn axis(&self) -> ChartAxis {
+        ChartAxis::logarithmic(self.limits.range, self.across)
     }
-    for known in lengths.split(|(_, u)| u.is_none()) {
-        let places = known.iter().filter_map(|(factor, u)| Some([axis.place(*factor), up.place((*u)?)]));
-        drawing.line(&places.collect::<Vec<_>>(), INK, solid(2.0));
+
+    /// Returns the vertical axis of the curve; `None` if the curve is not drawn.
+    pub fn up(&self) -> Option<ChartAxis> {
+        let [top, bottom] = self.curve;
+        let lengths = self.limits.reference.iter().filter_map(|(_, u)| u.map(|u| u.norm()));
+        self.has_curve.then(|| ChartAxis::decades(lengths, [bottom, top]))
     }
-    drawing.text([ACROSS[1] + 12.0, CURVE[0] + 12.0], Anchor::Start, "reference displacement");
-    drawing.text([ACROSS[1] + 12.0, CURVE[0] + 30.0], Anchor::Start, "of the first probe");
+
+    /// Returns the lower end of the strips.
+    pub fn bottom(&self) -> f64 {
+        self.strips + self.row * self.limits.strips.len() as f64
+    }
+
+    /// Draws the lines and numbers of the axis of loads.
+    pub fn grid(&self, drawing: &mut dyn Canvas) {
+        for (x, factor) in self.axis().ticks() {
+            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Ink::Grid, solid(1.0));
+            drawing.text([x, self.bottom() + 18.0], Anchor::Middle, &load_text(self.loads, factor));
+        }
+    }
+
+    /// Draws the name of the axis of loads, this far below the strips.
+    pub fn name(&self, drawing: &mut dyn Canvas, below: f64, render: Render<'_>) {
+        let at = [0.5 * (self.across[0] + self.across[1]), self.bottom() + below];
+        drawing.text(at, Anchor::Middle, &render(&axis_text(self.limits, self.loads)));
+    }
+
+    /// Draws the critical load, the curve and the strips; `ink` returns the colour of a strip's name.
+    pub fn draw(&self, drawing: &mut dyn Canvas, render: Render<'_>, ink: &dyn Fn(&Strip) -> Ink) {
+        let (axis, range, [left, right]) = (self.axis(), self.limits.range, self.across);
+        if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
+            let x = axis.place(critical);
+            let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
+            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], rating_ink(Rating::NotConverged), dashes);
+        }
+        if let Some(up) = self.up() {
+            self.draw_curve(drawing, [axis, up], render);
+        }
+        for (row, strip) in self.limits.strips.iter().enumerate() {
+            let y = self.strips + self.row * row as f64;
+            let base = y + 0.5 * self.height + 5.0;
+            let name = strip.name(|id| render(&id.into()));
+            drawing.put(Text { ink: ink(strip), ..Text::new([left - 12.0, base], Anchor::End, &name) });
+            // The colours of a strip that is not complete may still change.
+            let is_complete = strip.done >= 1.0;
+            let opacity = if is_complete { 1.0 } else { 0.35 };
+            if !is_complete {
+                drawing.rect([[left, y], [right - left, self.height]], Ink::Grid, 1.0);
+            }
+            let pieces = strip.pieces(range);
+            for (i, piece) in pieces.iter().enumerate() {
+                let [from, to] = piece.range.map(|factor| axis.place(factor));
+                let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
+                let overlap = if is_joined && is_complete { OVERLAP } else { 0.0 };
+                let bar = [[from, y], [(to - from + overlap).max(0.0), self.height]];
+                drawing.rect(bar, rating_ink(piece.rating), opacity);
+                if piece.is_beyond_law {
+                    hatch(drawing, [from, to], [y, y + self.height], HATCH);
+                }
+            }
+            let end = if is_complete {
+                strip.end(self.loads, range)
+            } else {
+                Some(sentence!("%{done} solved", done = format!("{:.0} %", 100.0 * strip.done)))
+            };
+            let end = end.map_or_else(String::new, |end| render(&end));
+            drawing.text([right + 12.0, base], Anchor::Start, &end);
+        }
+    }
+
+    /// Draws the length of the reference displacement over the load.
+    fn draw_curve(&self, drawing: &mut dyn Canvas, [axis, up]: [ChartAxis; 2], render: Render<'_>) {
+        let ([left, right], [top, _]) = (self.across, self.curve);
+        for (y, length) in up.ticks() {
+            drawing.line(&[[left, y], [right, y]], Ink::Grid, solid(1.0));
+            drawing.text([left - 12.0, y + 4.0], Anchor::End, &engineering(length, "m"));
+        }
+        let length = |u: &Option<nalgebra::Vector2<f64>>| u.map(|u| u.norm()).filter(|u| *u > 0.0);
+        for known in self.limits.reference.split(|(_, u)| length(u).is_none()) {
+            let places = known.iter().filter_map(|(factor, u)| Some([axis.place(*factor), up.place(length(u)?)]));
+            drawing.line(&places.collect::<Vec<_>>(), Ink::Reference, solid(2.0));
+        }
+        let name = render(&sentence!("reference displacement\nof the first probe"));
+        for (i, line) in name.lines().enumerate() {
+            drawing.text([right + 12.0, top + 12.0 + 18.0 * i as f64], Anchor::Start, line);
+        }
+    }
 }
 
 /// Draws slanted lines over a bar.
-fn hatch(drawing: &mut Drawing, [from, to]: [f64; 2], [top, bottom]: [f64; 2]) {
+pub(crate) fn hatch(drawing: &mut dyn Canvas, [from, to]: [f64; 2], [top, bottom]: [f64; 2], ink: Ink) {
     const GAP: f64 = 7.0;
-    drawing.clipped([[from, top], [(to - from).max(0.0), bottom - top]], |drawing| {
-        // Lines of neighbouring bars meet.
-        let mut x = (from / GAP).floor() * GAP - (bottom - top);
-        while x < to {
-            drawing.line(&[[x, bottom], [x + bottom - top, top]], INK, solid(1.2));
-            x += GAP;
-        }
-    });
+    drawing.clip(Some([[from, top], [(to - from).max(0.0), bottom - top]]));
+    // Lines of neighbouring bars meet.
+    let mut x = (from / GAP).floor() * GAP - (bottom - top);
+    while x < to {
+        drawing.line(&[[x, bottom], [x + bottom - top, top]], ink, solid(1.2));
+        x += GAP;
+    }
+    drawing.clip(None);
 }
 
 fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
@@ -114,11 +188,11 @@ fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
     let mut x = 20.0;
     for (rating, name) in Rating::all(moves) {
         let text = name.to_string();
-        drawing.rect([[x, y], [BOX, BOX]], rating_color(rating));
-        drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, text.as_str());
+        drawing.rect([[x, y], [BOX, BOX]], rating_ink(rating), 1.0);
+        drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, &text);
         x += 46.0 + 7.4 * text.chars().count() as f64;
     }
-    drawing.rect([[x, y], [BOX, BOX]], [0xff; 3]);
-    hatch(drawing, [x, x + BOX], [y, y + BOX]);
+    drawing.rect([[x, y], [BOX, BOX]], Ink::Paper, 1.0);
+    hatch(drawing, [x, x + BOX], [y, y + BOX], HATCH);
     drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, "strains above 10 %, or inverted elements");
 }

@@ -1,4 +1,4 @@
-//! Drawings of measurements: error over time, lines of elements, atlases and figures, as SVG.
+//! Charts of measurements: error over time, limits, atlases and figures, drawn in SVG files and in the window.
 
 mod atlas;
 mod axes;
@@ -13,6 +13,10 @@ pub use figure::figures;
 pub use limits::limits;
 pub use trade::study;
 #[cfg(feature = "app")]
-pub use trade::{LARGEST_ERROR, SMALLEST_ERROR};
-#[cfg(feature = "app")]
-pub(crate) use {axes::ScaledAxis, limits::rating_color};
+pub(crate) use {
+    axes::{ChartAxis, ChartFrame, mark},
+    drawing::{Anchor, Canvas, Stroke, Text, solid},
+    figure::{chart, draw},
+    limits::{LimitsChart, hatch, rating_ink},
+    trade::{SMALLEST_ERROR, StudyChart},
+};

@@ -1,18 +1,19 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
-use super::axes::{MARGINS, ROW, ScaledAxis, mark};
-use super::drawing::{Anchor, Drawing, INK, Stroke, Text, solid};
+use super::axes::{ChartAxis, ChartFrame, ROW, mark};
+use super::drawing::{Anchor, Canvas, Drawing, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::format::number;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
+use crate::study::figure::Ink;
 use crate::study::motion::REAL_TIME;
-use crate::study::{Measurement, Study, StudyReference, color};
+use crate::study::{Measurement, Study, StudyReference};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
-pub const SMALLEST_ERROR: f64 = 1e-3;
+pub(crate) const SMALLEST_ERROR: f64 = 1e-3;
 /// Errors above this are drawn at it: those of an iteration that diverges are off the picture.
-pub const LARGEST_ERROR: f64 = 1e3;
+const LARGEST_ERROR: f64 = 1e3;
 const WIDTH: f64 = 1.5;
 
 const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };
@@ -20,10 +21,8 @@ const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };
 /// Draws the error of a study over its time. Each colour of the key is shown with every element.
 pub fn study(study: &Study) -> Drawing {
     let moves = matches!(study.reference, StudyReference::Motion(_));
-    let measured: Vec<&Measurement> = study.measurements.iter().filter(|m| m.error.is_some()).collect();
-    let error = |m: &Measurement| study.error_bound(m).clamp(SMALLEST_ERROR, LARGEST_ERROR);
     let real_time = moves.then_some(REAL_TIME);
-    let (title, labels) = if moves {
+    let (title, names) = if moves {
         (
             "error of its path against time",
             ["computing time per simulated second, ms", "error bound of the path, % of its largest displacement"],
@@ -31,33 +30,80 @@ pub fn study(study: &Study) -> Drawing {
     } else {
         ("error against time", ["time of a solve, ms", "error bound, % of the reference displacement"])
     };
-    let x = ScaledAxis::decades(measured.iter().map(|m| m.milliseconds).chain(real_time), MARGINS.across());
-    let y = ScaledAxis::decades(measured.iter().map(|m| error(m)), MARGINS.up());
-    let mut drawing = Drawing::default();
-    MARGINS.start(&mut drawing, format!("{}: {title}", study.scene));
-    let ticks = [&x, &y].map(|axis| axis.values().into_iter().map(|(place, value)| (place, number(value))).collect());
-    MARGINS.grid(&mut drawing, ticks, labels);
+    let (mut drawing, frame) = (Drawing::default(), ChartFrame::FILE);
+    let chart = StudyChart::new(Some(study), |m| m.milliseconds, [real_time.as_slice(), &[]], &frame);
+    frame.start(&mut drawing, &format!("{}: {title}", study.scene));
+    chart.grid(&mut drawing, &frame, names);
     if let Some(time) = real_time {
-        let ([bottom, top], at) = (MARGINS.up(), x.place(time));
-        drawing.line(&[[at, top], [at, bottom]], [0x55; 3], DASHED);
+        let ([bottom, top], at) = (frame.up(), chart.axes[0].place(time));
+        drawing.line(&[[at, top], [at, bottom]], Ink::Limit, DASHED);
         let label = Text::new([at, top - 6.0], Anchor::Middle, "real time");
-        drawing.put(Text { color: INK, ..label });
+        drawing.put(Text { ink: Ink::Curve, ..label });
     }
-    let place = |m: &Measurement| [x.place(m.milliseconds), y.place(error(m))];
-    drawing.line(&study.front().into_iter().map(place).collect::<Vec<_>>(), INK, solid(WIDTH));
-    for m in measured {
-        let mark = mark(place(m), m.setting.element, if m.pareto { 5.5 } else { 3.5 });
-        let is_faint = if moves { m.setting.method == MethodKind::Linear } else { !m.converged };
-        let opacity = if is_faint { 0.45 } else { 1.0 };
-        drawing.polygon(&mark, color(m.setting.series(), false), opacity, &m.setting.to_string());
-    }
-    key(&mut drawing, moves);
+    chart.draw(&mut drawing);
+    key(&mut drawing, &frame, moves);
     drawing
 }
 
-fn key(drawing: &mut Drawing, moves: bool) {
-    let [_, right] = MARGINS.across();
-    let mut row = MARGINS.top + 10.0;
+/// Settings of a study by their time and their error, on logarithmic axes.
+pub(crate) struct StudyChart<'a> {
+    pub axes: [ChartAxis; 2],
+    /// Settings whose error is known, each with its place.
+    pub marks: Vec<([f64; 2], &'a Measurement)>,
+}
+
+impl<'a> StudyChart<'a> {
+    /// Returns a chart around the settings, whose times, ms, `time` returns, and around these times and errors.
+    pub fn new(
+        study: Option<&'a Study>,
+        time: fn(&Measurement) -> f64,
+        usual: [&[f64]; 2],
+        frame: &ChartFrame,
+    ) -> Self {
+        let measured = |study: &'a Study| {
+            let own = study.measurements.iter().filter(|m| m.error.is_some());
+            own.map(move |m| ([time(m), error(study.error_bound(m))], m))
+        };
+        let mut marks: Vec<_> = study.into_iter().flat_map(measured).collect();
+        let values = |i: usize| marks.iter().map(move |(values, _)| values[i]).chain(usual[i].iter().copied());
+        let axes = [ChartAxis::decades(values(0), frame.across()), ChartAxis::decades(values(1), frame.up())];
+        marks.iter_mut().for_each(|(at, _)| *at = [0, 1].map(|i| axes[i].place(at[i])));
+        Self { axes, marks }
+    }
+
+    /// Returns the place of a time, ms, and an error, percent.
+    #[cfg(feature = "app")]
+    pub fn place(&self, [time, bound]: [f64; 2]) -> [f64; 2] {
+        [self.axes[0].place(time), self.axes[1].place(error(bound))]
+    }
+
+    pub fn grid(&self, drawing: &mut dyn Canvas, frame: &ChartFrame, names: [&str; 2]) {
+        let ticks = |axis: &ChartAxis| axis.ticks().into_iter().map(|(place, value)| (place, number(value))).collect();
+        frame.grid(drawing, self.axes.each_ref().map(ticks), names);
+    }
+
+    /// Draws the Pareto front, and a mark for each setting.
+    pub fn draw(&self, drawing: &mut dyn Canvas) {
+        let mut front: Vec<_> = self.marks.iter().filter(|(_, m)| m.pareto).map(|(at, _)| *at).collect();
+        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        drawing.line(&front, Ink::Curve, solid(WIDTH));
+        for (at, m) in &self.marks {
+            let mark = mark(*at, m.setting.element, if m.pareto { 5.5 } else { 3.5 });
+            let is_faint = if m.motion.is_some() { m.setting.method == MethodKind::Linear } else { !m.converged };
+            let opacity = if is_faint { 0.45 } else { 1.0 };
+            drawing.polygon(&mark, Ink::Solution(m.setting.series()), opacity, &m.setting.to_string());
+        }
+    }
+}
+
+/// Moves an error into the picture.
+fn error(bound: f64) -> f64 {
+    bound.clamp(SMALLEST_ERROR, LARGEST_ERROR)
+}
+
+fn key(drawing: &mut Drawing, frame: &ChartFrame, moves: bool) {
+    let [_, right] = frame.across();
+    let mut row = frame.top + 10.0;
     let mut add = |symbol: &dyn Fn(&mut Drawing, f64), text: &str| {
         symbol(drawing, row);
         drawing.text([right + 36.0, row + 4.0], Anchor::Start, text);
@@ -67,13 +113,15 @@ fn key(drawing: &mut Drawing, moves: bool) {
     for id in methods.chain(INTEGRATORS.iter().map(|entry| entry.id).filter(|_| moves)) {
         for element in ElementKind::all() {
             let symbol = |drawing: &mut Drawing, row: f64| {
-                drawing.polygon(&mark([right + 22.0, row], element, 5.0), color(id, false), 1.0, "");
+                drawing.polygon(&mark([right + 22.0, row], element, 5.0), Ink::Solution(id), 1.0, "");
             };
             add(&symbol, &format!("{} {id}", element.id()));
         }
     }
     let line = |stroke| {
-        move |drawing: &mut Drawing, row: f64| drawing.line(&[[right + 12.0, row], [right + 32.0, row]], INK, stroke)
+        move |drawing: &mut Drawing, row: f64| {
+            drawing.line(&[[right + 12.0, row], [right + 32.0, row]], Ink::Curve, stroke)
+        }
     };
     add(&line(solid(WIDTH)), "Pareto front");
     if moves {

@@ -19,17 +19,33 @@ impl FigureQuantity {
     }
 }
 
-/// Colour of a series, by its meaning.
+/// Colour in a drawing, by its meaning: a file and each theme of the window have another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
+    /// Background.
+    Paper,
+    /// Texts.
+    Text,
+    /// Lines of a grid.
+    Grid,
+    /// Lines of a chart that belong to no series.
+    Curve,
+    /// Reference solution.
+    Reference,
+    /// Line of a limit.
+    Limit,
+    /// Load of the scene.
+    Load,
     /// Beam theory.
     BeamTheory,
-    /// A method.
-    Method(MethodKind),
+    /// A method or an integrator, by its identifier.
+    Solution(&'static str),
     /// Unstable equilibria.
     Unstable,
     /// Present state of the scene.
     Scene,
+    /// Red, green and blue, the same on each background.
+    Fixed([u8; 3]),
 }
 
 /// Line or mark of a series.

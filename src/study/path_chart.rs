@@ -115,7 +115,7 @@ fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Pat
         let is_stable = states.iter().all(|s| s.unstable_modes == 0);
         let line = match path.states_before_jump == Some(i + 1) {
             true => ("it jumps", Ink::Unstable, Mark::Dots),
-            false if is_stable => ("stable", Ink::Method(MethodKind::Newton), Mark::Line),
+            false if is_stable => ("stable", Ink::Solution(MethodKind::Newton.id()), Mark::Line),
             false => ("unstable", Ink::Unstable, Mark::Dashes),
         };
         match pieces.last_mut().filter(|(_, last)| *last == line) {

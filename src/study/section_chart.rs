@@ -83,7 +83,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
             let at = |(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() };
             FigureSeries::new(render(&name.into()), ink, mark, points.into_iter().map(at).collect())
         };
-        let method = Ink::Method(scene.solver.method);
+        let method = Ink::Solution(scene.solver.method.id());
         let mut series = vec![
             series(names[0], method, Mark::Line, recovered),
             series(names[1], Ink::BeamTheory, Mark::Dashes, beam()),
@@ -122,7 +122,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
         let SectionComponent { name, unit, of: value, .. } = COMPONENTS[i];
         let within = contexts[i];
         let value = |forces: &SectionForces| within.rounded(value(forces));
-        let (ink, name) = (Ink::Method(scene.solver.method), render(&name.into()));
+        let (ink, name) = (Ink::Solution(scene.solver.method.id()), render(&name.into()));
         let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
         let values = || sections.iter().map(|section| value(&section.forces));
         let [low, high] = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];

@@ -159,7 +159,7 @@ impl SectionPlot {
             None => "Sections are being computed.",
         };
         let show_plot = |ui: &mut Ui| match &drawn {
-            Some(Ok(drawn)) => figure::plot(ui, "sections", drawn),
+            Some(Ok(drawn)) => _ = figure::plot(ui, drawn, drawn.corners()),
             Some(Err(error)) => _ = ui.centered_and_justified(|ui| ui.weak(said(error))),
             None => _ = ui.centered_and_justified(|ui| ui.weak(tr(reason))),
         };

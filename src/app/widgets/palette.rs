@@ -6,6 +6,7 @@ use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, 
 use crate::app::prelude::*;
 use crate::render::colormap::ColorMap;
 use crate::study::color;
+use crate::study::figure::Ink;
 
 /// Size of body text, points.
 pub(crate) const BODY: f32 = 14.0;
@@ -120,17 +121,27 @@ impl Palette {
 
     /// Returns the colour of a method, which is the same for body, legend and plots.
     pub(crate) fn method(&self, method: MethodKind) -> Color32 {
-        self.series(method.id())
+        self.ink(Ink::Solution(method.id()))
     }
 
     pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
-        self.series(integrator.id())
+        self.ink(Ink::Solution(integrator.id()))
     }
 
-    /// Returns the colour of a method or an integrator, by its identifier.
-    pub(crate) fn series(&self, id: &str) -> Color32 {
-        let [r, g, b] = color(id, self.dark);
-        Color32::from_rgb(r, g, b)
+    /// Returns the colour of a line or a text of a chart.
+    pub(crate) fn ink(&self, ink: Ink) -> Color32 {
+        let fixed = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
+        match ink {
+            Ink::Paper => self.canvas,
+            Ink::Text | Ink::Curve | Ink::BeamTheory | Ink::Scene => self.text,
+            Ink::Grid => self.line,
+            Ink::Reference => self.exact,
+            Ink::Limit => self.secondary,
+            Ink::Load => self.load,
+            Ink::Solution(id) => fixed(color(id, self.dark)),
+            Ink::Unstable => self.error,
+            Ink::Fixed(color) => fixed(color),
+        }
     }
 
     /// Returns the colour of a scene's method, or of its integrator for a motion.

@@ -4,6 +4,9 @@
 use super::step_buttons;
 use crate::app::diagnosis::rho_number;
 use crate::app::interface::*;
+use crate::app::widgets::chart::ChartPainter;
+use crate::plot::{self, Anchor, Canvas, ChartAxis, ChartFrame, Text, solid};
+use crate::study::figure::Ink;
 
 /// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
@@ -46,53 +49,53 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
     (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
-/// Decimal exponent at the top of the vertical axis.
-const HIGHEST: f64 = 1.0;
-
 fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     /// Smallest number of iterations on the horizontal axis.
     const MIN_ITERATIONS: usize = 12;
-    const LEFT: f32 = 40.0;
-    const BELOW: f32 = 20.0;
-    let palette = Palette::new(ui.visuals());
+    /// Decimal exponent at the top of the vertical axis.
+    const HIGHEST: f64 = 1.0;
+    const DASHES: plot::Stroke = plot::Stroke { width: 1.8, dashes: &[6.0, 4.0] };
     // The residuals of other methods do not follow it.
     let is_warped = shown.scene.solver.method == MethodKind::Warped;
     let rho = shown.session.facts().rho.get(shown.scene).copied().filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
-    let rect = Rect::from_min_max(whole.min + vec2(LEFT, 6.0), whole.max - vec2(8.0, BELOW));
-    let asked = shown.scene.solver.tolerance.max(1e-300).log10();
-    let residuals = &shown.session.model.residuals;
+    let size = [size.x, size.y].map(f64::from);
+    let frame = ChartFrame { size, left: 50.0, right: 8.0, top: 6.0, bottom: 20.0, edge: 0.0 };
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
+    let asked = decade(shown.scene.solver.tolerance);
+    let residuals = &shown.session.model.residuals;
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
     let most = residuals.len().max(MIN_ITERATIONS) as f64;
-    let place = |k: f64, exponent: f64| {
-        let x = rect.left() + rect.width() * (k / most) as f32;
-        pos2(x, rect.top() + rect.height() * ((HIGHEST - exponent) / (HIGHEST - bottom)) as f32)
-    };
-    let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
-    axes(&painter, rect, &palette, bottom, most, &place);
-    let inside = painter.with_clip_rect(rect.expand(3.0).intersect(ui.clip_rect()));
-    let dashed = |ends: [Pos2; 2], stroke| inside.extend(Shape::dashed_line(&ends, stroke, 6.0, 4.0));
-    dashed([place(0.0, asked), place(most, asked)], Stroke::new(1.0, palette.secondary));
+    let x = ChartAxis::linear([0.0, most], frame.across());
+    let y = ChartAxis::linear([bottom, HIGHEST], frame.up());
+    let place = |k: f64, exponent: f64| [x.place(k), y.place(exponent)];
+    let mut drawing = ChartPainter::new(ui, whole.min);
+    let counts = x.ticks().into_iter().map(|(place, k)| (place, number(k))).collect();
+    let powers = y.ticks().into_iter().filter(|(_, exponent)| exponent.fract() == 0.0);
+    let powers = powers.map(|(place, exponent)| (place, number(10f64.powf(exponent)))).collect();
+    frame.grid(&mut drawing, [counts, powers], ["", ""]);
+    drawing.clip(Some([[frame.left, 0.0], [size[0] - frame.left, frame.up()[0]]]));
+    let dashes = plot::Stroke { width: 1.0, ..DASHES };
+    drawing.line(&[place(0.0, asked), place(most, asked)], Ink::Limit, dashes);
+    let points = || residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
     if let Some(rho) = rho {
         // A converging line ends at the last residual; a diverging one starts at the lowest.
-        let mut points = residuals.iter().enumerate().map(|(i, &r)| (i as f64 + 1.0, decade(r)));
+        let mut points = points();
         let anchor = if rho < 1.0 { points.next_back() } else { points.min_by(|a, b| a.1.total_cmp(&b.1)) };
         let (k, r) = anchor.unwrap_or((0.0, 0.0));
         let line = |at: f64| place(at, r + (at - k) * rho.log10());
-        dashed([line(0.0), line(most)], Stroke::new(1.8, palette.exact));
+        drawing.line(&[line(0.0), line(most)], Ink::Reference, DASHES);
     }
-    let color = palette.method(shown.scene.solver.method);
-    let points: Vec<_> = residuals.iter().enumerate().map(|(i, &r)| place(i as f64 + 1.0, decade(r))).collect();
-    for point in &points {
-        inside.circle_filled(*point, 3.0, color);
-    }
-    inside.line(points, Stroke::new(1.6, color));
-    let small = FontId::proportional(SMALL);
+    let places: Vec<_> = points().map(|(k, r)| place(k, r)).collect();
+    let ink = Ink::Solution(shown.scene.solver.method.id());
+    places.iter().for_each(|at| drawing.circle(*at, 3.0, ink, None));
+    drawing.line(&places, ink, solid(1.6));
+    drawing.clip(None);
     if let Some(rho) = rho {
         let text = fill!("ρ = %{rho}: the line's slope", rho = rho_number(rho));
-        painter.text(rect.right_top() + vec2(-2.0, 22.0), Align2::RIGHT_TOP, text, small, palette.exact);
+        let text = Text::new([frame.across()[1] - 2.0, 36.0], Anchor::End, &text);
+        drawing.put(Text { ink: Ink::Reference, ..text });
     }
     let iterations = count(residuals.len() as u64, "iteration");
     let text = match (residuals.last(), rho) {
@@ -111,21 +114,4 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     if is_warped && shown.session.facts().rho.is_pending(shown.scene) {
         ui.label(RichText::new(tr("Computing ρ.")).small().weak());
     }
-}
-
-fn axes(painter: &Painter, rect: Rect, palette: &Palette, bottom: f64, most: f64, place: &dyn Fn(f64, f64) -> Pos2) {
-    let font = FontId::proportional(SMALL);
-    let grid = Stroke::new(1.0, palette.line);
-    for exponent in ((bottom.ceil() as i32)..=(HIGHEST.floor() as i32)).rev().filter(|e| e % 2 == 0) {
-        let at = place(0.0, f64::from(exponent));
-        painter.line_segment([at, pos2(rect.right(), at.y)], grid);
-        let text = if exponent == 0 { "1".to_owned() } else { format!("1e{exponent}").replace('-', "\u{2212}") };
-        painter.text(at - vec2(5.0, 0.0), Align2::RIGHT_CENTER, text, font.clone(), palette.secondary);
-    }
-    for k in crate::format::ticks(0.0, most, 7) {
-        let at = pos2(place(k, HIGHEST).x, rect.bottom());
-        painter.line_segment([at, at + vec2(0.0, 3.0)], grid);
-        painter.text(at + vec2(0.0, 3.0), Align2::CENTER_TOP, format!("{k}"), font.clone(), palette.secondary);
-    }
-    painter.line_segment([rect.left_bottom(), rect.right_bottom()], grid);
 }

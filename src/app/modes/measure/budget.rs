@@ -1,20 +1,16 @@
 //! Error against time of all settings measured on this machine, and the settings within given limits.
 
-use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi,
-    Points, Polygon, Text, VLine,
-};
-
 use crate::app::diagnosis::drift_text;
 use crate::app::interface::*;
 use crate::app::language::bound_percent;
 use crate::app::session::clock::FRAMES;
 use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
-use crate::app::widgets::plot::{X_AXIS, fixed, marker, segments};
-use crate::element::ELEMENTS;
+use crate::app::widgets::chart::{self, ChartPainter};
 use crate::exact_beam::error_percent;
-use crate::plot::{LARGEST_ERROR, SMALLEST_ERROR};
+use crate::plot::{Anchor, Canvas, SMALLEST_ERROR, Stroke, StudyChart, Text, mark, solid};
+use crate::scene::ElementKind;
+use crate::study::figure::Ink;
 use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};
 
 /// The study of the scene, and the largest error and time that a setting may have.
@@ -101,7 +97,6 @@ impl Budget {
         let budget = BudgetView {
             scene,
             study,
-            choices: study.into_iter().flat_map(|study| &study.measurements).filter(|m| m.error.is_some()).collect(),
             demand: *demand,
             best: study.and_then(|study| fastest(study, &meeting)),
             is_met: !meeting.is_empty(),
@@ -110,7 +105,7 @@ impl Budget {
                 _ => meeting,
             },
             current: fact.is_of(scene),
-            shown: shown_place(session),
+            shown: shown_result(session),
             progress: fact.progress().filter(|_| measured.is_some()),
             error: fact.failure(scene),
         };
@@ -137,8 +132,6 @@ impl Budget {
 struct BudgetView<'a> {
     scene: &'a Scene,
     study: Option<&'a Study>,
-    /// Settings whose error was measured.
-    choices: Vec<&'a Measurement>,
     demand: Demand,
     /// Settings that meet the demand, fastest first, or if none does, those of [`nearest`].
     listed: Vec<&'a Measurement>,
@@ -148,7 +141,7 @@ struct BudgetView<'a> {
     best: Option<&'a Measurement>,
     /// `true` if the study belongs to the lab's current body and loads.
     current: bool,
-    /// Position in the plot of the result that the window shows, which may have a setting that the study has not.
+    /// Time, ms, and error, percent, of the result that the window shows, which may have a setting that the study has not.
     shown: Option<[f64; 2]>,
     /// Fraction done and current measurement, while a study is in progress.
     progress: Option<(f64, &'a Sentence)>,
@@ -162,28 +155,18 @@ impl BudgetView<'_> {
         self.study.map_or(f64::INFINITY, |study| study.error_bound(m))
     }
 
-    /// Returns the position of a setting in the plot.
-    fn place(&self, m: &Measurement) -> [f64; 2] {
-        place(frame_ms(m), self.error(m))
-    }
-
     /// Returns the action that applies a measured setting.
     fn apply(&self, m: &Measurement) -> Action {
         Action::Apply(Box::new(m.apply(self.scene)))
     }
 }
 
-/// Returns a position in the plot: the logarithms of a time, ms, and an error, percent.
-fn place(time: f64, error: f64) -> [f64; 2] {
-    [time.max(f64::MIN_POSITIVE).log10(), error.clamp(SMALLEST_ERROR, LARGEST_ERROR).log10()]
-}
-
-/// Returns the position in the plot of a session's solve from rest; `None` until its time and error are known.
-fn shown_place(session: &Session) -> Option<[f64; 2]> {
+/// Returns time, ms, and error, percent, of a session's solve from rest; `None` until they are known.
+fn shown_result(session: &Session) -> Option<[f64; 2]> {
     let solve = session.timed_from_rest().filter(|solve| solve.is_solved)?;
     let first = session.known_reference()?.first()?;
     let error = error_percent(solve.displacement?, first.displacement)?;
-    Some(place(1e3 * solve.timings.total().as_secs_f64(), first.error_bound(error)))
+    Some([1e3 * solve.timings.total().as_secs_f64(), first.error_bound(error)])
 }
 
 /// Returns the time of a solve, or of one frame at 60 Hz of a motion, ms.
@@ -321,7 +304,8 @@ fn settings(
         if let (true, Some(best)) = (apply.clicked(), budget.best) {
             actions.push(budget.apply(best));
         }
-        let measured = budget.choices.len();
+        let has_error = |m: &&Measurement| m.error.is_some();
+        let measured = budget.study.map_or(0, |study| study.measurements.iter().filter(has_error).count());
         let count = match budget.study.filter(|study| !study.can_decide(budget.demand)) {
             Some(study) => {
                 let own = percent(study.own_error_percent);
@@ -385,21 +369,11 @@ fn milliseconds(m: &Measurement) -> String {
     engineering(two_digits(1e-3 * frame_ms(m)), "s")
 }
 
-/// Returns a tick at every `step`th power of ten.
-fn decades(input: GridInput, step: usize) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
-    let marks = (low.ceil() as i64..=high.floor() as i64).step_by(step);
-    marks.map(|e| GridMark { value: e as f64, step_size: step as f64 }).collect()
-}
-
-fn decade_text(mark: GridMark) -> String {
-    number(10f64.powf(mark.value.round()))
-}
-
 /// Shows the key of colours and shapes above the plot, which has no room for a legend; that of the shapes where it is not
 /// higher than two lines.
 fn legend(ui: &mut Ui, moves: bool) {
     const SHAPES: f32 = 320.0;
+    const MARK: Vec2 = vec2(10.0, 10.0);
     let palette = Palette::new(ui.visuals());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
@@ -412,132 +386,59 @@ fn legend(ui: &mut Ui, moves: bool) {
         if ui.max_rect().width() < SHAPES {
             return;
         }
-        let shapes = joined(ELEMENTS.iter().map(|e| format!("{} {}", tr(marker(e.kind).1), e.id)));
-        let text = RichText::new(fill!("%{shapes}; line: Pareto front; cross: current setting; ring: fastest", shapes))
-            .small();
-        ui.label(text);
+        for element in ElementKind::all() {
+            legend::entry(ui, element.id(), MARK, &|ui, rect| {
+                let mut painter = ChartPainter::new(ui, rect.center());
+                painter.polygon(&mark([0.0; 2], element, 5.0), Ink::Text, 1.0, "");
+            });
+        }
+        ui.label(RichText::new(tr("line: Pareto front; cross: current setting; ring: fastest")).small());
     });
 }
 
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
-    /// Space for the tick labels and the title of the axis, points.
-    const BUDGET_Y_AXIS: f32 = 62.0;
-    /// Space beyond the outermost points, in decades.
-    const EDGE: f64 = 0.2;
-    /// Width of a tick label of the axis of times, points.
-    const LABEL: f32 = 40.0;
-    /// Least distance of the labels of the axis of errors, points.
-    const LINE: f32 = 22.0;
-    /// Distance within which a click applies a setting, points.
-    const NEAR: f32 = 12.0;
-    let palette = Palette::new(ui.visuals());
-    let text = palette.text;
-    let place = |m: &Measurement| budget.place(m);
-    let nearest = |x: f64, y: f64| {
-        let distance = |m: &Measurement| (place(m)[0] - x).hypot(place(m)[1] - y);
-        budget.choices.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
-    };
-    let [x, y] = [(0, [-2.5, 2.5]), (1, [SMALLEST_ERROR.log10(), 2.0])].map(|(axis, usual)| {
-        let places = budget.choices.iter().map(|choice| place(choice)[axis]);
-        let [low, high] = places.fold(usual, |[low, high], v| [low.min(v), high.max(v)]);
-        [low - EDGE, high + EDGE]
-    });
+    /// Times, ms, and errors, percent, that are always in the plot.
+    const USUAL: [&[f64]; 2] = [&[1e-2, 1e2], &[SMALLEST_ERROR, 1e2]];
+    const DASHES: Stroke = Stroke { width: 1.0, dashes: &[4.0, 3.0] };
+    let (response, frame, mut drawing) = chart::area(ui);
+    let plot = StudyChart::new(budget.study, frame_ms, USUAL, &frame);
+    let (area, [[left, top], [width, height]]) = (frame.area(), frame.area());
+    let [right, bottom] = [left + width, top + height];
+    // Errors that the reference's own error hides.
+    if let Some(own) = budget.study.map(|study| study.own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
+        let y = plot.axes[1].place(own);
+        drawing.rect([[left, y], [width, bottom - y]], Ink::Limit, 0.18);
+        let text = Text::new([left + 6.0, bottom - 6.0], Anchor::Start, tr("the reference's own error"));
+        drawing.put(Text { ink: Ink::Limit, ..text });
+    }
     let moves = budget.scene.analysis == Analysis::Dynamic;
     let time = if moves { "time of a frame at 60 Hz, ms" } else { "time of a solve, ms" };
-    let room = (ui.available_width() - BUDGET_Y_AXIS).max(LABEL);
-    // Decades from one label to the next.
-    let step =
-        |[low, high]: [f64; 2], label: f32, room: f32| ((high - low) as f32 * label / room).ceil().max(1.0) as usize;
-    let [step, step_up] = [step(x, LABEL, room), step(y, LINE, (ui.available_height() - X_AXIS).max(LINE))];
-    let shown = fixed("budget", &palette)
-        .custom_x_axes(vec![
-            AxisHints::new_x()
-                .label(tr(time))
-                .min_thickness(X_AXIS)
-                .formatter(|mark, _| decade_text(mark))
-                // Labels of powers of ten are short, so even a narrow plot has room for them.
-                .label_spacing(egui::Rangef::new(36.0, 60.0)),
-        ])
-        .y_axis_label(tr("error, %"))
-        .y_axis_min_width(BUDGET_Y_AXIS)
-        .x_grid_spacer(move |input| decades(input, step))
-        .y_grid_spacer(|input| decades(input, step_up))
-        .y_axis_formatter(|mark, _| decade_text(mark))
-        .label_formatter(|at| match at {
-            egui_plot::HoverPosition::NearDataPoint { position, .. } => nearest(position.x, position.y)
-                .map(|m| format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(budget.error(m)))),
-            egui_plot::HoverPosition::Elsewhere { .. } => None,
-        })
-        .show(ui, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([x[0], y[0]], [x[1], y[1]]));
-            // Settings with the same colour and shape.
-            let group = |m: &Measurement| (m.setting.series(), m.setting.element);
-            let mut groups = Vec::new();
-            for group in budget.choices.iter().copied().map(group) {
-                if !groups.contains(&group) {
-                    groups.push(group);
-                }
-            }
-            if let Some(own) = budget.study.map(|study| study.own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
-                own_error_zone(plot, &palette, x, [y[0], own.log10()]);
-            }
-            // Larger errors are drawn at the edge, as outlines.
-            let is_off = |m: &Measurement| budget.error(m) > LARGEST_ERROR;
-            for (series, element) in groups {
-                for off in [false, true] {
-                    let own =
-                        budget.choices.iter().copied().filter(|m| group(m) == (series, element) && is_off(m) == off);
-                    let (shape, _) = marker(element);
-                    let name = format!("{} {}", element.id(), tr(series));
-                    let points = Points::new(name, own.map(place).collect::<Vec<_>>());
-                    plot.points(points.color(palette.series(series)).shape(shape).radius(3.5).filled(!off));
-                }
-            }
-            let front: Vec<[f64; 2]> = budget.study.iter().flat_map(|s| s.front()).map(place).collect();
-            for piece in segments(&front) {
-                plot.line(Line::new(tr("Pareto front"), PlotPoints::from(piece)).color(text).width(1.5));
-            }
-            let limit = palette.secondary;
-            let style = LineStyle::dashed_dense();
-            let [most_time, most_error] = [budget.demand.max_time_ms, budget.demand.max_error_percent]
-                .map(|most| most.unwrap_or_default().log10());
-            plot.vline(VLine::new(tr("at most"), most_time).color(limit).style(style));
-            plot.hline(HLine::new(tr("at most"), most_error).color(limit).style(style));
-            let applied = budget.choices.iter().find(|m| m.is_applied_to(budget.scene)).map(|m| place(m));
-            if let Some(own) = applied.or(budget.shown.filter(|_| budget.current)) {
-                let cross = Points::new(tr("current"), vec![own]).shape(MarkerShape::Plus);
-                plot.points(cross.color(text).radius(9.0));
-            }
-            if let Some(best) = budget.best {
-                let ring = Points::new(tr("fastest"), vec![place(best)]).color(text).filled(false).radius(8.0);
-                plot.points(ring);
-            }
-        });
-    let under = shown.response.hover_pos().and_then(|pointer| {
-        let at = shown.transform.value_from_position(pointer);
-        let found = nearest(at.x, at.y)?;
-        let [x, y] = place(found);
-        let is_near = shown.transform.position_from_point(&PlotPoint::new(x, y)).distance(pointer) <= NEAR;
-        (is_near && budget.current).then_some(found)
+    plot.grid(&mut drawing, &frame, [tr(time), tr("error, %")]);
+    let [most_time, most_error] =
+        [budget.demand.max_time_ms, budget.demand.max_error_percent].map(Option::unwrap_or_default);
+    drawing.clip(Some(area));
+    let [x, y] = plot.place([most_time, most_error]);
+    drawing.line(&[[x, top], [x, bottom]], Ink::Limit, DASHES);
+    drawing.line(&[[left, y], [right, y]], Ink::Limit, DASHES);
+    drawing.clip(None);
+    plot.draw(&mut drawing);
+    let applied = plot.marks.iter().find(|(_, m)| m.is_applied_to(budget.scene)).map(|(at, _)| *at);
+    if let Some([x, y]) = applied.or(budget.shown.filter(|_| budget.current).map(|shown| plot.place(shown))) {
+        drawing.line(&[[x - 9.0, y], [x + 9.0, y]], Ink::Text, solid(2.0));
+        drawing.line(&[[x, y - 9.0], [x, y + 9.0]], Ink::Text, solid(2.0));
+    }
+    if let Some((at, _)) = plot.marks.iter().find(|(_, m)| budget.best == Some(m)) {
+        drawing.circle(*at, 8.0, Ink::Text, Some(solid(1.5)));
+    }
+    let pointed = chart::hover(ui, &response, plot.marks.iter().copied(), |m| {
+        format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(budget.error(m)))
     });
-    if let Some(m) = under {
+    if let Some(m) = pointed.filter(|_| budget.current) {
         ui.set_cursor_icon(egui::CursorIcon::PointingHand);
-        if shown.response.clicked() {
+        if response.clicked() {
             actions.push(budget.apply(m));
         }
     }
-}
-
-/// Shades the errors that the reference's own error hides, in these ranges of the logarithms of times and errors.
-fn own_error_zone(plot: &mut PlotUi<'_>, palette: &Palette, [left, right]: [f64; 2], [low, own]: [f64; 2]) {
-    /// Distance of the text from the edge, decades.
-    const INSET: f64 = 0.06;
-    let corners = vec![[left, low], [right, low], [right, own], [left, own]];
-    let zone = Polygon::new("", PlotPoints::from(corners)).allow_hover(false);
-    plot.polygon(zone.fill_color(palette.secondary.gamma_multiply(0.18)).stroke(Stroke::NONE));
-    let at = PlotPoint::new(right - INSET, 0.5 * (low + own));
-    let text = RichText::new(tr("the reference's own error")).small().color(palette.secondary);
-    plot.text(Text::new("", at, text).anchor(Align2::RIGHT_CENTER).allow_hover(false));
 }
 
 #[cfg(test)]

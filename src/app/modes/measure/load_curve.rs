@@ -51,7 +51,7 @@ pub(crate) fn show(
         && looked_for
     {
         let points = vec![figure::point(0.0, Vector2::zeros()), figure::point(LoadAxis::of(scene).full, linear)];
-        let ink = Ink::Method(MethodKind::Linear);
+        let ink = Ink::Solution(MethodKind::Linear.id());
         let series = FigureSeries::new(tr(MethodKind::Linear.id()).to_owned(), ink, Mark::Dashes, points);
         drawn.series.push(FigureSeries { may_leave: true, ..series });
     }
@@ -63,7 +63,7 @@ pub(crate) fn show(
         });
         figure::table(ui, &drawn);
     };
-    let area = figure::beside(ui, |ui| figure::plot(ui, "load curve", &drawn), show_table);
+    let area = figure::beside(ui, |ui| _ = figure::plot(ui, &drawn, drawn.corners()), show_table);
     if !looked_for {
         let text = "Curve before the last change; the new one is being computed.";
         let at = area.center_top() + egui::vec2(0.0, 10.0);
@@ -147,7 +147,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: Ordinate) -> Figure {
         let at = FigurePoint { state, is_present: true, ..figure::point(full, point.tip) };
         // Linear theory of the elements differs from that of beams.
         let name = format!("{} {}", scene.element().id(), tr(point.method.id()));
-        all.push(series(name, Ink::Method(point.method), mark, may_leave, vec![at]));
+        all.push(series(name, Ink::Solution(point.method.id()), mark, may_leave, vec![at]));
     }
     let at_load = curve.samples.iter().find(|s| (s.factor - 1.0).abs() < 1e-9);
     let converged = curve.methods.iter().filter(|p| p.status == Status::Converged);
@@ -158,7 +158,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: Ordinate) -> Figure {
         Mark::Cross => Some(tr("does not converge").to_owned()),
         Mark::Line => at_load.map(|s| in_column(s.exact)),
         Mark::Dashes => at_load.map(|s| in_column(s.linear)),
-        _ => curve.methods.iter().find(|p| series.ink == Ink::Method(p.method)).map(|p| in_column(p.tip)),
+        _ => curve.methods.iter().find(|p| series.ink == Ink::Solution(p.method.id())).map(|p| in_column(p.tip)),
     };
     all.iter_mut().for_each(|series| series.value = Some(value(series).unwrap_or_default()));
     let load = engineering(three_digits(full), unit);
