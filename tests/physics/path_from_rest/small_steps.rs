@@ -39,6 +39,8 @@ pub struct SmallSteps {
     pub u: Field,
     /// Load factors at which the number of unstable modes changes, with the numbers before and after.
     pub bifurcations: Vec<(f64, [usize; 2])>,
+    /// Load factors of jumps to nearly the same place, which the path may count as none.
+    pub short_jumps: Vec<f64>,
     /// Work of the loads and of the supports, J.
     pub work: [f64; 2],
     /// Sum of the magnitudes of both in each step, J.
@@ -53,7 +55,8 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     let mut judge = Judge::new(simulation.problem());
     let rest = vec![Vector2::zeros(); simulation.displacement().len()];
     let mut points = vec![judge.equilibrium(rest, 0.0, [f64::INFINITY, FAST])?];
-    let (mut bifurcations, mut work, mut exchanged, longest) = (Vec::new(), [0.0; 2], 0.0, 1.0 / STEPS);
+    let (mut bifurcations, mut short_jumps) = (Vec::new(), Vec::new());
+    let (mut work, mut exchanged, longest) = ([0.0; 2], 0.0, 1.0 / STEPS);
     // The first step has nothing to extrapolate.
     let (mut step, mut speed) = (1e-2 * longest, f64::INFINITY);
     // The last points before a change of the number of unstable modes, and one beyond.
@@ -72,9 +75,13 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
         let sudden = if step <= SHARP { 1e-5 * simulation.system().size() } else { 0.0 };
         let allowed = if is_alone { (4.0 * speed * (factor - last.factor)).max(sudden) } else { 0.25 * ahead };
         let next = judge.equilibrium(start, factor, [allowed, FAST]);
-        // In the shortest steps, a jump to the same place is none.
+        // The shortest steps pass a jump to nearly the same place.
         let lands = step <= SHARP && is_alone && next.is_none();
-        let next = next.or_else(|| lands.then(|| judge.landing(&last))?);
+        let next = next.or_else(|| {
+            let landing = lands.then(|| judge.landing(&last))??;
+            short_jumps.push(last.factor);
+            Some(landing)
+        });
         // Beside a singular tangent, rounding displaces points or hides them: the steps go on from one farther beyond,
         // unless they are short enough for a sharp turn of the path.
         let next = next.or_else(|| beyond.last().filter(|_| is_short && shortest > SHARP)?.last().cloned());
@@ -112,7 +119,7 @@ pub fn follow(simulation: &Simulation, shortest: f64) -> Option<SmallSteps> {
     }
     let Point { factor, u, .. } = points.pop()?;
     let elastic = judge.problem.elastic_energy(&judge.problem.system().state_of(&u).ok()?);
-    Some(SmallSteps { factor, u, bifurcations, work, exchanged, elastic })
+    Some(SmallSteps { factor, u, bifurcations, short_jumps, work, exchanged, elastic })
 }
 
 /// Returns the polynomial through up to three points at a load factor.
