@@ -3,7 +3,7 @@
 use crate::app::interface::*;
 use crate::app::modes::figure;
 use crate::app::task::thread::{Reporter, Task, Update};
-use crate::app::viewport::menu::add_middle_section;
+use crate::app::viewport::objects::add_middle_section;
 use crate::format::Context;
 use crate::section::{Section, SectionError};
 use crate::simulation::Equilibrium;

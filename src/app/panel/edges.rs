@@ -6,11 +6,10 @@ use egui::DragValue;
 
 use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::viewport::arrow::force_range;
-use crate::app::viewport::menu::{
-    self, acts_at_point, can_carry_moment, force_by_hand, is_free, move_by_hand, support_by_hand,
-};
 use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::viewport::objects::{
+    self, Change, Object, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,
+};
 use crate::app::widgets::number_field::{FirstText, read};
 use crate::study::moved_points;
 
@@ -62,34 +61,19 @@ pub(super) fn text(scene: &Scene, place: &Place) -> String {
     }
 }
 
-/// Returns the place of a load; `None` for gravity, which has none.
-fn place_of(load: &Load) -> Option<Place> {
-    match load {
-        Load::Force { place, .. } => Some(place.clone()),
-        Load::Moment { edge, .. } => Some(Place::from(edge.as_str())),
-        Load::Gravity { .. } => None,
-    }
-}
-
-/// Change of a load, support or probe by its row.
-enum EdgeChange {
-    Move(Place),
-    /// Width, m.
-    Widen(f64),
-    Remove,
-}
-
-/// Shows the row of a load, support or probe with its place, and returns the user's change. The edge under the pointer is
-/// highlighted in the view. `width` is that of a load or support at a point, m; `more` shows further controls.
+/// Shows the row of a load, support or probe with its place; the user moves, widens and removes it there. The edge under the
+/// pointer is highlighted in the view. `width` is that of a load or support at a point, m; `more` shows further controls.
 fn row(
     ui: &mut Ui,
     panel: &mut Panel<'_>,
+    object: Object,
     (label, id, remove): (&str, usize, &str),
-    (present, width): (&Place, Option<f64>),
+    width: Option<f64>,
     places: impl Iterator<Item = Place>,
     more: impl FnOnce(&mut Ui),
-) -> Option<EdgeChange> {
+) {
     let (scene, highlighted) = (panel.scene, &mut panel.view.edge);
+    let Some(present) = &object.place(scene) else { return };
     let mut change = None;
     ui.horizontal(|ui| {
         let name = ui.label(label);
@@ -97,7 +81,7 @@ fn row(
             let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
             if response.clicked() {
-                change = Some(EdgeChange::Remove);
+                change = Some(Change::Remove);
             }
             more(ui);
             let picker = ComboBox::from_id_salt((label, id)).selected_text(text(scene, present));
@@ -108,7 +92,7 @@ fn row(
                         *highlighted = Some(name.clone());
                     }
                     if entry.clicked() && *present != place {
-                        change = Some(EdgeChange::Move(place));
+                        change = Some(Change::Move(place));
                     }
                 }
             });
@@ -122,7 +106,13 @@ fn row(
     if let Place::At(at) = present {
         change = change.or(coordinates(ui, (label, id), (*at, width), &mut panel.state.messages));
     }
-    change
+    let Some(change) = change else { return };
+    if let (Change::Remove, Object::Load(i)) = (&change, object) {
+        // The same force stays chosen if it still exists.
+        let chosen = panel.state.force.filter(|chosen| *chosen != i);
+        panel.state.force = chosen.map(|chosen| if chosen > i { chosen - 1 } else { chosen });
+    }
+    panel.edit(SECTION, |scene| object.change(scene, panel.input.simulation.system(), change));
 }
 
 /// Shows the coordinates of a point and its width, m; returns the change that was typed. The reason for which a text is
@@ -132,7 +122,7 @@ fn coordinates(
     id: (&str, usize),
     (at, width): ([f64; 2], Option<f64>),
     messages: &mut Messages,
-) -> Option<EdgeChange> {
+) -> Option<Change> {
     const POINT: &str = "Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm";
     const WIDTH: &str = "Length of the edge, or of the horizontal line through an inner point, over which it acts; the error \
                          of 0, a point, has no limit on finer meshes";
@@ -162,12 +152,12 @@ fn coordinates(
     if let Some(reason) = refused.into_inner() {
         messages.insert(SECTION, reason);
     }
-    let widened = widened.filter(|_| widened != width).map(EdgeChange::Widen);
-    (moved != at).then(|| EdgeChange::Move(moved.into())).or(widened)
+    let widened = widened.filter(|_| widened != width).map(Change::Widen);
+    (moved != at).then(|| Change::Move(moved.into())).or(widened)
 }
 
 pub(super) fn summary(scene: &Scene) -> String {
-    let loads = scene.loads.iter().filter_map(place_of).count();
+    let loads = (0..scene.loads.len()).filter(|i| Object::Load(*i).place(scene).is_some()).count();
     joined([count(loads as u64, "load"), count(scene.supports.len() as u64, "support")])
 }
 
@@ -185,7 +175,6 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         }
     };
     for (i, load) in scene.loads.iter().enumerate() {
-        let Some(present) = place_of(load) else { continue };
         let remove = fill!("Remove load %{n}", n = i + 1);
         let (label, width, size) = match load {
             Load::Force { force: [x, y], width, .. } => {
@@ -197,58 +186,36 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         let edges = edges(if load.is_moment() { can_carry_moment } else { is_free });
         let places = edges.chain(points(scene).filter(|_| !load.is_moment()));
         let size = |ui: &mut Ui| _ = ui.weak(&size);
-        let change = row(ui, panel, (tr(label), i, &remove), (&present, width), places, size);
+        row(ui, panel, Object::Load(i), (tr(label), i, &remove), width, places, size);
         say_if_on_node(ui, &format!("load.{i}"));
-        let Some(change) = change else { continue };
-        if matches!(change, EdgeChange::Remove) {
-            // The same force stays chosen if it still exists.
-            let chosen = panel.state.force.filter(|chosen| *chosen != i);
-            panel.state.force = chosen.map(|chosen| if chosen > i { chosen - 1 } else { chosen });
-        }
-        panel.edit(SECTION, |scene| match (change, &mut scene.loads[i]) {
-            (EdgeChange::Remove, _) => _ = scene.loads.remove(i),
-            (EdgeChange::Move(to), Load::Force { place, at_point, width, .. }) => {
-                move_by_hand(system, to, place, at_point, width);
-            }
-            (EdgeChange::Widen(to), Load::Force { at_point, width, .. }) => (*at_point, *width) = (true, to),
-            (EdgeChange::Move(Place::Edge(name)), Load::Moment { edge, .. }) => *edge = name,
-            _ => {}
-        });
     }
     for (i, support) in scene.supports.iter().enumerate() {
         let mut fix = support.fix.clone();
         let remove = fill!("Remove support %{n}", n = i + 1);
-        let place = (&support.place, Some(support.width));
-        let change = row(ui, panel, (tr("Held at"), i, &remove), place, all(), |ui| directions(ui, &mut fix));
+        let (object, names) = (Object::Support(i), (tr("Held at"), i, &*remove));
+        row(ui, panel, object, names, Some(support.width), all(), |ui| directions(ui, &mut fix));
         say_if_on_node(ui, &format!("support.{i}"));
-        if change.is_none() && fix == support.fix {
+        if fix == support.fix {
             continue;
         }
-        panel.edit(SECTION, |scene| match (change, &mut scene.supports[i]) {
+        if fix.is_empty() {
             // A support that fixes no direction is removed.
-            _ if fix.is_empty() => _ = scene.supports.remove(i),
-            (Some(EdgeChange::Remove), _) => _ = scene.supports.remove(i),
-            (Some(EdgeChange::Move(to)), Support { place, at_point, width, .. }) => {
-                move_by_hand(system, to, place, at_point, width);
-            }
-            (Some(EdgeChange::Widen(to)), support) => (support.at_point, support.width) = (true, to),
+            panel.edit(SECTION, |scene| object.change(scene, system, Change::Remove));
+        } else {
             // The prescribed displacements of directions that stay fixed are kept.
-            (None, Support { displacement, turn, fix: own, .. }) => {
+            panel.edit(SECTION, |scene| {
+                let Support { displacement, turn, fix: own, .. } = &mut scene.supports[i];
                 for (axis, displacement) in [Axis::X, Axis::Y].into_iter().zip(displacement) {
                     *displacement = if fix.contains(&axis) { *displacement } else { 0.0 };
                 }
                 (*own, *turn) = (fix, 0.0);
-            }
-        });
+            });
+        }
     }
     for (i, probe) in scene.probes.iter().enumerate() {
         let name = tr(&probe.name);
         let (label, remove) = (fill!("Probe %{name}", name), fill!("Remove the probe %{name}", name));
-        match row(ui, panel, (&label, i, &remove), (&probe.place, None), all(), |_| {}) {
-            Some(EdgeChange::Remove) => panel.edit(SECTION, |scene| _ = scene.probes.remove(i)),
-            Some(EdgeChange::Move(to)) => panel.edit(SECTION, |scene| scene.probes[i].place = to),
-            Some(EdgeChange::Widen(_)) | None => {}
-        }
+        row(ui, panel, Object::Probe(i), (&label, i, &remove), None, all(), |_| {});
     }
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Add"));
@@ -290,11 +257,10 @@ const ADDITIONS: [Addition; 4] = [
 fn add_force(scene: &mut Scene, system: &System) {
     let usual = USUAL.into_iter().filter(|name| system.edges().iter().any(|e| e.name() == *name && is_free(system, e)));
     let others = system.edges().iter().filter(|edge| is_free(system, edge)).map(Edge::name);
-    let is_taken = |place: &Place| scene.loads.iter().any(|load| place_of(load).as_ref() == Some(place));
-    let place = usual.chain(others).map(Place::from).chain(points(scene)).find(|place| !is_taken(place));
+    let taken: Vec<Place> = (0..scene.loads.len()).filter_map(|i| Object::Load(i).place(scene)).collect();
+    let place = usual.chain(others).map(Place::from).chain(points(scene)).find(|place| !taken.contains(place));
     if let Some(place) = place {
-        let [usual, _] = force_range(OpeningLoads::of(scene), &scene.material, system);
-        scene.loads.push(force_by_hand(system, place, [0.0, -usual]));
+        scene.loads.push(force_by_hand(scene, system, place));
     }
 }
 
@@ -336,5 +302,5 @@ fn add_probe(scene: &mut Scene, system: &System) {
         _ => None,
     });
     let at = places.last().unwrap_or_else(|| mesh.node(mesh.nearest_node(0.5 * (low + high))));
-    menu::add_probe(scene, system, at);
+    objects::add_probe(scene, system, at);
 }

@@ -4,7 +4,7 @@ use crate::app::diagnosis::state_text;
 use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::panel::supports::TURNS;
-use crate::app::viewport::menu::add_middle_section;
+use crate::app::viewport::objects::add_middle_section;
 use crate::study::section_chart;
 
 /// Shows the chosen section: its forces, its place and direction, and buttons that show its stress and remove it.

@@ -7,8 +7,8 @@ use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::viewport::arrow::vector;
-use crate::app::viewport::base::Object;
 use crate::app::viewport::handle::Pull;
+use crate::app::viewport::objects::Object;
 use crate::app::viewport::pointer::Interaction;
 
 impl Lab {
@@ -199,7 +199,7 @@ impl Lab {
     /// Sets the load whose arrow is dragged, or resets a load to the value in the scene's document; the force whose base was
     /// dropped is the selected one.
     pub(super) fn edit_loads(&mut self, ctx: &Context, interaction: &Interaction) {
-        if let Some((Object::Force(load), _)) = interaction.dropped {
+        if let Some((Object::Load(load), _)) = interaction.dropped {
             self.desk.panel.force = Some(load);
         }
         let dragged = interaction.load.and_then(|(load, pull)| {

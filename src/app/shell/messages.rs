@@ -6,7 +6,7 @@ use crate::app::interface::*;
 use crate::app::panel::edges;
 use crate::app::session::Notice;
 use crate::app::shell::lab::Lab;
-use crate::app::viewport::menu;
+use crate::app::viewport::objects;
 
 /// Time for which a message is shown.
 const TOAST: Duration = Duration::from_secs(4);
@@ -20,10 +20,10 @@ impl Lab {
     /// Shows the reason for which an edit was refused: beside the field with this label, or over the body.
     pub(super) fn refuse(&mut self, ctx: &Context, label: &'static str, reason: Sentence) {
         // The message of a long list may be out of view.
-        if [menu::EDIT, edges::SECTION].contains(&label) {
+        if [objects::EDIT, edges::SECTION].contains(&label) {
             self.say(ctx, sentence(&said(&reason)));
         }
-        if label != menu::EDIT {
+        if label != objects::EDIT {
             self.desk.panel.messages.insert(label, reason);
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::app::interface::*;
 use crate::app::viewport::arrow::point_of_application;
-use crate::app::viewport::menu::{move_by_hand, rounded, snapped};
+use crate::app::viewport::objects::{Change, Object, rounded, snapped};
 use crate::app::viewport::projection::Projection;
 use crate::app::viewport::{handle, probe};
 use crate::section::cut_ends;
@@ -19,20 +19,6 @@ pub(crate) const CLOSE: f64 = 4.0;
 
 /// Distance from the point of a section within which its end does not turn it, points.
 const CLOSE_TO_POINT: f64 = 6.0;
-
-/// Object of a scene, by its index among those of its kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Object {
-    Force(usize),
-    Support(usize),
-    Probe(usize),
-    Section(usize),
-    /// End of the cut of a section, which turns about the point of the section.
-    SectionEnd {
-        section: usize,
-        end: usize,
-    },
-}
 
 /// Base of an object in the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +59,7 @@ impl Bases<'_> {
     pub(crate) fn all(&self) -> Vec<Base> {
         let Scene { loads, supports, probes, sections: lines, .. } = self.scene;
         let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
-            Load::Force { place, at_point, .. } => Some((Object::Force(i), self.applied(place, *at_point)?)),
+            Load::Force { place, at_point, .. } => Some((Object::Load(i), self.applied(place, *at_point)?)),
             _ => None,
         });
         let supports =
@@ -135,14 +121,14 @@ impl Bases<'_> {
     fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
         let mesh = self.mesh();
         let distance = |at: Vector2<f64>| self.projection.point(at).distance(pointer);
-        let can_be_on_edge = matches!(object, Object::Force(_) | Object::Support(_));
+        let can_be_on_edge = matches!(object, Object::Load(_) | Object::Support(_));
         let edges = mesh.edges().keys().filter(|_| can_be_on_edge);
         let edges = edges.filter_map(|name| {
             let edge = Place::from(name.as_str());
             let at = self.applied(&edge, false)?;
             // On a whole edge, a support of a point would also hold rotation: a pin would become a clamp. A force of a
             // point would be distributed.
-            if !self.is_at_point(object) {
+            if !matches!(object.place(self.scene), Some(Place::At(_))) {
                 return Some((edge, at));
             }
             let middle = point_of_application(mesh, mesh.nodes(), &edge, false)?;
@@ -161,43 +147,15 @@ impl Bases<'_> {
         Some((Place::At(rest.into()), self.drawn(rest)?))
     }
 
-    /// Returns `true` if an object is a force or a support at a point.
-    fn is_at_point(&self, object: Object) -> bool {
-        let place = match object {
-            Object::Force(i) => match self.scene.loads.get(i) {
-                Some(Load::Force { place, .. }) => Some(place),
-                _ => None,
-            },
-            Object::Support(i) => self.scene.supports.get(i).map(|support| &support.place),
-            _ => None,
-        };
-        matches!(place, Some(Place::At(_)))
-    }
-
     /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.
     pub(crate) fn moved(&self, object: Object, pointer: Pos2) -> Option<Scene> {
         let (place, _) = self.target(object, pointer)?;
         let mut scene = self.scene.clone();
-        match object {
-            Object::Force(i) => match scene.loads.get_mut(i)? {
-                Load::Force { place: own, at_point, width, .. } => {
-                    move_by_hand(self.system, place, own, at_point, width);
-                }
-                _ => return None,
-            },
-            Object::Support(i) => {
-                let Support { place: own, at_point, width, .. } = scene.supports.get_mut(i)?;
-                move_by_hand(self.system, place, own, at_point, width);
+        match (object, place) {
+            (Object::SectionEnd { section, end }, Place::At(at)) => {
+                *scene.sections.get_mut(section)? = self.turned(section, end, at.into())?;
             }
-            Object::Probe(i) => scene.probes.get_mut(i)?.place = place,
-            Object::Section(i) => match place {
-                Place::At(at) => scene.sections.get_mut(i)?.at = at.into(),
-                Place::Edge(_) => return None,
-            },
-            Object::SectionEnd { section, end } => match place {
-                Place::At(at) => *scene.sections.get_mut(section)? = self.turned(section, end, at.into())?,
-                Place::Edge(_) => return None,
-            },
+            (_, place) => object.change(&mut scene, self.system, Change::Move(place)),
         }
         Some(scene)
     }

@@ -8,7 +8,7 @@ use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::handle::Handle;
-use crate::app::viewport::menu;
+use crate::app::viewport::objects;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe::{self, CardChoice, Pinned};
@@ -246,7 +246,7 @@ impl MainView {
     pub(crate) fn drop_base(&self, interaction: &Interaction, content: &Content<'_>) -> Option<Action> {
         let (object, at) = interaction.dropped?;
         let moved = self.bases(content)?.moved(object, at).filter(|moved| moved != content.session.scene());
-        moved.map(|moved| Action::Edit(menu::EDIT, Box::new(moved)))
+        moved.map(|moved| Action::Edit(objects::EDIT, Box::new(moved)))
     }
 
     /// Shows the menu of the material point that was clicked with the secondary button; returns the edit that was
@@ -272,10 +272,10 @@ impl MainView {
             let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
             let (system, outline) = (content.simulation().system(), &content.session.model.geometry.boundary);
             let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
-            self.menu = at.map(|at| menu::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
+            self.menu = at.map(|at| objects::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
         let (scene, system) = (content.session.scene(), content.simulation().system());
-        menu::show(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale))
+        objects::show_menu(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale))
     }
 
     /// Returns the loads of the last frame's arrows.
@@ -314,14 +314,14 @@ impl MainView {
         let state = shown.point_state(point, content.options.point_values())?;
         let at = self.in_view(content, point)?;
         let (scene, system) = (content.session.scene(), content.simulation().system());
-        let place = Place::At(menu::rounded(system, state.rest).into());
+        let place = Place::At(objects::rounded(system, state.rest).into());
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || scene.probes.iter().any(|probe| probe.place == place);
         let (pinned, mut is_open) = (Pinned { state: &state, at, is_kept }, true);
         let choice = (&mut self.card_choice, &mut is_open);
         let keeps = probe::show_card(painter, ui.visuals(), (self.view.rect, &pinned), choice);
         self.probe = self.probe.filter(|_| is_open);
-        keeps.then(|| Action::edit(menu::EDIT, scene, |scene| menu::add_probe(scene, system, state.rest)))
+        keeps.then(|| Action::edit(objects::EDIT, scene, |scene| objects::add_probe(scene, system, state.rest)))
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
@@ -497,7 +497,7 @@ impl MainView {
 fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
     let system = content.simulation().system();
     let mesh = system.mesh();
-    let near = probe::place(mesh, mesh.nodes(), point).and_then(|rest| mesh.locate(menu::rounded(system, rest)));
+    let near = probe::place(mesh, mesh.nodes(), point).and_then(|rest| mesh.locate(objects::rounded(system, rest)));
     near.filter(|near| near.element == point.element).unwrap_or(point)
 }
 

@@ -5,10 +5,11 @@ use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
 use crate::app::session::Grab;
-use crate::app::viewport::base::{self, Base, HotBase, Object};
+use crate::app::viewport::base::{self, Base, HotBase};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
+use crate::app::viewport::objects::Object;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::assembly::System;
