@@ -254,27 +254,26 @@ impl MainView {
     pub(crate) fn show_menu(&mut self, response: &Response, content: &Content<'_>) -> Option<Action> {
         /// Distance within which the menu removes an object, points.
         const NEAR: f64 = 14.0;
-        if content.card.is_some() || content.is_apart() || content.session.is_in_background() {
+        let (scene, system) = (content.session.scene(), content.simulation().system());
+        let (mesh, outline) = (system.mesh(), &content.session.model.geometry.boundary);
+        if content.card.is_some() || content.session.is_in_background() {
             self.menu = None;
         } else if response.secondary_clicked() {
             // The tip of a short arrow covers the point where its force acts.
             let handle = self.view.pointer.hot_handle().map(|hot| hot.handle.load());
-            let of_handle = handle.and_then(|load| match content.session.scene().loads.get(load)? {
-                Load::Force { place: Place::At(at), .. } => content.mesh().locate((*at).into()),
+            let of_handle = handle.and_then(|load| match scene.loads.get(load)? {
+                Load::Force { place: Place::At(at), .. } => mesh.locate((*at).into()),
                 _ => None,
             });
             // The marks of supports are beside the body.
             let beside = || {
                 let at = self.projection().place(response.interact_pointer_pos()?);
-                let outline = &content.session.model.geometry.boundary;
-                content.mesh().pick(&self.view.body.nodes, outline, at, NEAR / self.camera.shown.scale)
+                mesh.pick(&self.view.body.nodes, outline, at, NEAR / self.camera.shown.scale)
             };
             let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
-            let (system, outline) = (content.simulation().system(), &content.session.model.geometry.boundary);
-            let at = clicked.and_then(|point| probe::place(system.mesh(), system.mesh().nodes(), point));
+            let at = clicked.and_then(|point| probe::place(mesh, mesh.nodes(), point));
             self.menu = at.map(|at| objects::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
-        let (scene, system) = (content.session.scene(), content.simulation().system());
         objects::show_menu(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale))
     }
 

@@ -79,8 +79,8 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
     let mut labels = Labels { painter, visuals, taken: Vec::new() };
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     if let Some(legends) = &overlay.legends {
-        labels.taken.extend(key(painter, rect, overlay, legends, &palette));
-        labels.taken.extend(legend(painter, rect, overlay, legends, &palette));
+        labels.taken.extend(key(painter, overlay, legends, &palette));
+        labels.taken.extend(legend(painter, overlay, legends, &palette));
     }
     on_body(&mut labels, overlay);
     if overlay.legends.is_some() {
@@ -505,15 +505,10 @@ pub(crate) fn is_tiny(options: &ViewOptions, view: Vec2) -> bool {
 }
 
 /// Paints the colour bar with its title and ticks in the lower right corner, and returns its area.
-fn legend(
-    painter: &Painter,
-    rect: Rect,
-    overlay: &Overlay<'_>,
-    legends: &Legends<'_>,
-    palette: &Palette,
-) -> Option<Rect> {
+fn legend(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
     const MAX_TICKS: u32 = 5;
     const SIZE: Vec2 = vec2(240.0, 10.0);
+    let rect = overlay.view.rect;
     if !has_legend(rect.size()) {
         return None;
     }
@@ -581,9 +576,10 @@ pub(crate) fn magnified(factor: f64) -> String {
 }
 
 /// Paints the line key with the error of each solution, and returns its area.
-fn key(painter: &Painter, rect: Rect, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
+fn key(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
+    let rect = overlay.view.rect;
     if rect.width() < KEY_WIDTH {
         return None;
     }

@@ -320,14 +320,14 @@ impl Compare {
             self.advance(ui.ctx(), input);
         }
         self.magnify(input);
-        let reference = input.reference.filter(|_| input.live.is_none());
         for pane in &mut self.panes {
             if !self.in_motion {
                 let is_own = pane.setting.apply(input.scene) == *input.scene;
                 pane.keep_equilibrium(input.session.fallback().filter(|_| is_own));
             }
             let played = self.in_motion.then_some(self.played);
-            pane.update_display((input.view, reference), self.magnification, played, ui.visuals());
+            pane.update_display(input, self.magnification, played);
+            pane.view.body.palette = Palette::new(ui.visuals());
         }
         // Motions that have exploded do not count.
         let counted = self.panes.iter().filter(|pane| !self.in_motion || pane.run.is_sound());

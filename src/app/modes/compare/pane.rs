@@ -134,23 +134,16 @@ impl Pane {
         self.fallback.of(self.simulation().filter(is_replaced)?)
     }
 
-    /// Updates the displayed mesh, with `magnification` times the displacement of the body, whose reference solution may be
-    /// known; `played` is the playing time of a motion, s.
-    pub(super) fn update_display(
-        &mut self,
-        (view, reference): (&ViewOptions, Option<&Reference>),
-        magnification: f64,
-        played: Option<f64>,
-        visuals: &egui::Visuals,
-    ) {
+    /// Updates the displayed mesh, with `magnification` times the displacement of the body; `played` is the playing time of a
+    /// motion, s.
+    pub(super) fn update_display(&mut self, input: &CompareInput<'_>, magnification: f64, played: Option<f64>) {
         let mut body = std::mem::take(&mut self.view.body);
         let displayed = self.run.displayed().map(|model| &model.simulation);
         if let (Some(simulation), Some(Model { geometry, .. })) = (self.in_place().or(displayed), self.run.model()) {
-            let reference = reference.filter(|_| self.run.is_sound());
-            body.update(simulation, geometry, (view, reference), magnification, played);
+            let reference = input.reference.filter(|_| input.live.is_none() && self.run.is_sound());
+            body.update(simulation, geometry, (input.view, reference), magnification, played);
             self.range = Some(body.range);
         }
-        body.palette = Palette::new(visuals);
         self.view.body = body;
     }
 
