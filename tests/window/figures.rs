@@ -30,15 +30,10 @@ fn a_wrong_displacement_of_the_right_length_has_an_error() {
     assert!(ui.starting("exact beam: ").starts_with("exact beam: (-0.27"));
 }
 
-/// Returns the title of an axis without its unit.
-fn without_unit(text: &str) -> &str {
-    text.rsplit_once(", ").map_or(text, |(name, _)| name)
-}
-
 /// Returns the painted titles of the axes.
 fn axis_names(ui: &Ui) -> Vec<String> {
     let names = ["force", "u_x of tip", "u_y of tip"];
-    let mut found: Vec<String> = texts(ui).into_iter().map(|(text, _, _)| without_unit(&text).to_owned()).collect();
+    let mut found: Vec<String> = texts(ui).into_iter().map(|(text, _, _)| text).collect();
     found.retain(|text| names.contains(&text.as_str()));
     found
 }
@@ -52,7 +47,7 @@ fn the_path_and_both_components_can_be_chosen() {
         assert_eq!(axis_names(&ui), [x, y]);
     }
     // The tip of an axial bar moves along a straight line, so that the load is plotted instead of a path.
-    assert!(texts(&with_curve(scene("stretch"))).iter().any(|(text, _, _)| without_unit(text) == "force"));
+    assert!(texts(&with_curve(scene("stretch"))).iter().any(|(text, _, _)| text == "force"));
 }
 
 #[test]
@@ -73,10 +68,11 @@ fn loads_are_plotted_in_their_unit() {
     }
 }
 
-/// Returns every painted text with its rectangle and its clip rectangle.
+/// Returns every painted text, titles of axes without their unit, with its rectangle and its clip rectangle.
 fn texts(ui: &Ui) -> Vec<(String, Rect, Rect)> {
+    let name = |text: &str| text.rsplit_once(", ").map_or(text, |(name, _)| name).to_owned();
     let texts = text_shapes(ui).into_iter();
-    texts.map(|(clip, text)| (text.galley.text().to_owned(), text.visual_bounding_rect(), clip)).collect()
+    texts.map(|(clip, text)| (name(text.galley.text()), text.visual_bounding_rect(), clip)).collect()
 }
 
 /// On the first frame, titles of axes are already next to their numbers, and no text is clipped.
@@ -86,9 +82,9 @@ fn the_first_frame_is_as_the_others() {
         let mut ui = open_solved("scene", scene_with(id, sets));
         ui.key_press(Key::L);
         let names = ["force", "u_x of tip", "u_y of tip", "u_x of end", "u_y of end", "reaction in this direction"];
-        ui.wait_until("a curve", |ui| texts(ui).iter().any(|(text, _, _)| names[1..].contains(&without_unit(text))));
+        ui.wait_until("a curve", |ui| texts(ui).iter().any(|(text, _, _)| names[1..].contains(&text.as_str())));
         let texts = texts(&ui);
-        let is_title = |text: &str| names.contains(&without_unit(text)) || text.starts_with("displacement of");
+        let is_title = |text: &str| names.contains(&text) || text.starts_with("displacement of");
         let titles: Vec<_> = texts.iter().filter(|(text, _, _)| is_title(text)).collect();
         assert_eq!(titles.len(), 2, "{id}: {titles:?}");
         for (text, place, _) in texts.iter().filter(|(text, _, _)| text.parse::<f64>().is_ok()) {

@@ -182,7 +182,7 @@ fn sources(folder: &Path) -> impl Iterator<Item = PathBuf> {
 const NOT_SHOWN: &str = "wasm32|Cmd+|the browser is set to keep nothing|.toml,.msh|scene=|(prefers-reduced-motion: reduce)|\
     no document|# Save as scene.toml, then: warpbeam solve scene.toml\n{toml}|English|Noto Sans SC|probe values|\
     probe matrices|at right|status line|σ_x, σ_y|τ_xy|σ_1, σ_2|ε_x, ε_y|γ_xy|σ_X, σ_Y|τ_XY|ε_X, ε_Y|γ_XY|σ_z|ε_1, ε_2|\
-    load curve|WAYLAND_DISPLAY|WAYLAND_SOCKET|DISPLAY|the scene to begin with is missing|\
+    WAYLAND_DISPLAY|WAYLAND_SOCKET|DISPLAY|the scene to begin with is missing|\
     {} has {PLACES} copies of unsaved scenes|the display did not answer in time|the surface stays out of date|\
     the surface was lost: {e}|the surface was lost|the surface is not valid|\
     NAME|WxH|FIELD|FACTOR|CARD|PANE,PANE|expected one of {}|\
