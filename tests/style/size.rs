@@ -10,25 +10,25 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 23_577),
-    ("study", &["src/study"], 6_616),
-    ("model", &["src/model", "src/scene"], 3_173),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_234),
-    ("simulation", &["src/simulation"], 2_502),
-    ("assembly", &["src/assembly"], 3_005),
+    ("app", &["src/app"], 23_104),
+    ("study", &["src/study"], 6_529),
+    ("model", &["src/model", "src/scene"], 3_109),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_239),
+    ("simulation", &["src/simulation"], 2_490),
+    ("assembly", &["src/assembly"], 3_019),
     ("cli", &["src/cli"], 2_296),
     ("dynamics", &["src/dynamics"], 1_922),
     ("render", &["src/render"], 1_896),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_930),
-    ("plot", &["src/plot"], 709),
-    ("the rest of src", &["src"], 5_037),
-    ("tests", &["tests"], 19_296),
+    ("plot", &["src/plot"], 887),
+    ("the rest of src", &["src"], 5_022),
+    ("tests", &["tests"], 19_376),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 57_905;
+const SRC: usize = 57_451;
 /// Largest number of crates of the program on Linux.
-const CRATES: usize = 237;
+const CRATES: usize = 236;
 
 /// Says what to do if `actual` is more than `most`, or at least 3 % less.
 fn problem(name: &str, actual: usize, most: usize) -> Option<String> {

@@ -2,8 +2,8 @@
 
 use crate::common::alone::ran_alone;
 use crate::common::lab::*;
-use warpbeam::study::LoadCurve;
 use warpbeam::study::figure::LoadAxis;
+use warpbeam::study::{LoadCurve, Setting};
 
 /// Mesh and force with which linear theory's tip moves as far as the exact one, but in another direction.
 const SETS: &[&str] = &["beam.element=t3", "beam.cells=[80,8]", "load.0.force=[0,-553]"];
@@ -163,4 +163,34 @@ fn curves_are_saved_as_files() {
         export(&mut ui, kind);
         assert!(ui.starting("Not saved: ").contains("warpbeam-001"), "{kind}");
     }
+}
+
+/// Moves the pointer over the chart above the title of its horizontal axis until a text of two lines is beside it; returns
+/// the place and the first line.
+fn pointed(ui: &mut Ui, title: &str) -> (Pos2, String) {
+    let (_, title, _) = texts(ui).into_iter().find(|(text, ..)| text == title).unwrap();
+    let places = (3..20).flat_map(|row| (-14..15).map(move |column| vec2(8.0 * column as f32, -10.0 * row as f32)));
+    for place in places.map(|by| title.center() + by) {
+        ui.move_to(place);
+        if let Some((text, ..)) = texts(ui).into_iter().find(|(text, ..)| text.contains('\n')) {
+            return (place, text.lines().next().unwrap().to_owned());
+        }
+    }
+    panic!("nothing is pointed at above {title:?}");
+}
+
+/// The values of the point under the pointer stand beside it; a click on a measured setting applies it.
+#[test]
+fn charts_react_to_the_pointer() {
+    let mut ui = open("article");
+    ui.key(Key::B);
+    ui.click_for("Measure on this machine", 2);
+    ui.wait_until("a study", |ui| ui.state().study().0.is_some() && !ui.state().study().1);
+    let (place, setting) = pointed(&mut ui, "time of a solve");
+    assert_ne!(Setting::of(ui.scene()).to_string(), setting);
+    ui.click_at(place);
+    assert_eq!(Setting::of(ui.scene()).to_string(), setting);
+    ui.key(Key::L);
+    ui.wait_until("a curve", |ui| texts(ui).iter().any(|(text, ..)| text == "u_y of tip"));
+    pointed(&mut ui, "force");
 }
