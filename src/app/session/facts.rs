@@ -5,11 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::platform::IS_PAGE;
 use crate::app::prelude::*;
+use crate::app::session::Session;
 use crate::app::session::clock::FRAMES;
+use crate::app::session::fallback::is_lost;
 use crate::app::task::keyed::{Computed, Keyed, SentScene, facts};
+use crate::app::task::solve::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::format::number;
 use crate::scene::{DynamicsSettings, SolverSettings};
+use crate::simulation::Equilibrium;
 use crate::study::limits::MethodLimits;
 use crate::study::{
     Extent, LiveReference, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError,
@@ -54,6 +58,9 @@ facts! {
     });
 }
 
+/// Number of unknowns above which a result is certified in the background: its eigenvalues then take longer than
+/// [`super::MAX_FRAME_WORK`].
+const MAX_CERTIFIED_HERE: usize = 2000;
 /// Largest number of unknowns of a body whose load curve is computed: a curve takes hundreds of iterations.
 const MAX_CURVE_UNKNOWNS: u64 = 100_000;
 
@@ -259,6 +266,135 @@ impl Follower {
         };
         self.running = Task::start("follow", work).ok();
         self.running.is_some()
+    }
+}
+
+impl Session {
+    pub(super) fn certify(&mut self) {
+        self.model.simulation.certify();
+        self.fallback.keep(&self.model.simulation);
+        let mut quality = std::mem::take(&mut self.model.quality);
+        quality.update(self.drawn());
+        self.model.quality = quality;
+    }
+
+    /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
+    fn request_certificate(&mut self) -> bool {
+        if let Some(task) = &self.certifying {
+            match task.poll() {
+                Update::None | Update::Progress(()) => return true,
+                Update::Done(certified) => {
+                    let (own, simulation) = (&self.model.simulation, &certified.0);
+                    let is_current = simulation.state() == own.state()
+                        && simulation.scene() == own.scene()
+                        && simulation.status() == own.status()
+                        && own.mouse_spring().is_none();
+                    if is_current {
+                        (self.model.simulation, self.model.quality) = *certified;
+                        self.certify();
+                    }
+                }
+                Update::Died => self.certify(),
+            }
+            self.certifying = None;
+        }
+        let is_known = !self.model.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
+            && self.model.quality.is_of(self.drawn());
+        let is_small = self.model.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
+        let copy = self.model.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
+        let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {
+            let work = move |_: &Reporter<_, _>| {
+                let quality = Quality::certified(&mut copy);
+                Box::new((copy, quality))
+            };
+            Task::start("certify", work).ok()
+        });
+        self.certifying = started;
+        if self.certifying.is_none() {
+            self.certify();
+        }
+        self.certifying.is_some()
+    }
+
+    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
+    /// press only those that a frame has time for are requested, and the reference that follows the load.
+    pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
+        if self.is_motion() {
+            return shown.limits_of.is_some_and(|scene| self.facts.limits.request(scene));
+        }
+        if self.iterates() || self.is_working() {
+            return false;
+        }
+        // A background solve has certified its result.
+        let certifies = !self.is_in_background() && self.request_certificate();
+        let follows = self.follow_reference();
+        if is_pressed {
+            self.time_in_frame();
+            return follows || certifies;
+        }
+        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
+        self.facts.request_at_rest(&self.present.scene, shown, false) || follows || certifies
+    }
+
+    /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
+    /// when a drag begins. Returns `true` while it is pending.
+    fn follow_reference(&mut self) -> bool {
+        let simulation = &self.model.simulation;
+        let is_found = simulation.status().is_success();
+        let is_wanted = (is_found || is_lost(simulation)) && simulation.mouse_spring().is_none();
+        if !is_wanted || simulation.system().dofs() > MAX_CERTIFIED_HERE {
+            return self.live.poll();
+        }
+        let linear = self.model.linear.as_ref().and_then(first_probe);
+        self.live.request(&self.present.scene, first_probe(simulation).filter(|_| is_found), linear)
+    }
+
+    /// Returns `true` while the reference that follows the load is being computed.
+    pub fn is_following(&self) -> bool {
+        self.live.running.is_some()
+    }
+
+    /// Measures the time of a solve from rest, if it was short at the last rest; if that failed, if the last search was.
+    fn time_in_frame(&mut self) {
+        /// Largest time of a solve in a frame.
+        const SHORT: Duration = Duration::from_millis(2);
+        let last = self.facts.time.latest().filter(|solve| solve.is_solved);
+        let time = last.map_or(self.timings.total(), |solve| solve.timings.total());
+        if time >= SHORT || self.timed_solve().is_some() {
+            return;
+        }
+        let timed = self.timed.take().map(|(timed, _)| timed);
+        let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.model.simulation.system()));
+        let timed =
+            timed.or_else(|| Simulation::with_system(&self.present.scene, self.model.simulation.system().clone()).ok());
+        let Some(mut timed) = timed.filter(|_| !IS_PAGE) else { return };
+        if timed.change_scene(&self.present.scene).is_ok() {
+            timed.reset();
+            timed.solve();
+            let solve = SolveFromRest::of(&timed);
+            self.timed = Some((timed, solve));
+        }
+    }
+
+    /// Cancels the computation of limits, unless it is for this scene.
+    pub(crate) fn turn_limits_to(&mut self, scene: Option<&Scene>) {
+        match scene {
+            Some(scene) => self.facts.limits.turn_to(scene),
+            None if self.facts.limits.progress().is_some() => self.facts.limits.clear(),
+            None => {}
+        }
+    }
+
+    /// Requests the reference solution, in any state of the body, or computes it and `waits`; returns `true` while it is
+    /// pending.
+    pub(crate) fn obtain_reference(&mut self, waits: bool) -> bool {
+        self.facts.reference.obtain(&self.present.scene, waits)
+    }
+
+    /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
+    pub(crate) fn lacks_rho(&self) -> bool {
+        let is_warped = self.present.scene.solver.method == MethodKind::Warped && !self.is_motion();
+        is_warped && self.has_ended() && *self.model.simulation.status() != Status::Converged
     }
 }
 

@@ -4,6 +4,7 @@
 mod background;
 pub(crate) mod clock;
 pub(crate) mod document;
+mod edit;
 pub(crate) mod facts;
 pub(crate) mod fallback;
 pub(crate) mod history;
@@ -16,53 +17,23 @@ pub(crate) mod undo;
 
 use std::sync::LazyLock;
 
-use crate::app::platform::IS_PAGE;
 use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
-use crate::app::session::facts::{Facts, Follower, Live, ShownFacts, first_probe};
+pub(crate) use crate::app::session::edit::{Changed, Edit, object_name};
+use crate::app::session::facts::{Facts, Follower, Live, ShownFacts};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
-use crate::app::session::undo::{Press, UndoHistory, Version};
+use crate::app::session::undo::{UndoHistory, Version};
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, solve_linear};
-use crate::app::task::thread::{Reporter, Task, Update};
+use crate::app::task::thread::Task;
 use crate::mesh::MaterialPoint;
-use crate::render::display_geometry::DisplayGeometry;
-use crate::simulation::{Equilibrium, SimulationError};
 use crate::state::State;
 use crate::study::{SolveFromRest, StudyError, is_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.
 const MAX_FRAME_WORK: Duration = Duration::from_millis(8);
-/// Number of unknowns above which a result is certified in the background: its eigenvalues then take longer than
-/// [`MAX_FRAME_WORK`].
-const MAX_CERTIFIED_HERE: usize = 2000;
-
-/// Change of the model that can be undone.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Edit {
-    /// Change the scene with the control of this label. Edits with one control during one press are one undo step.
-    Scene(&'static str, Box<Scene>),
-    /// Open a scene in place of the current one.
-    Open(Source),
-    /// Replace the document, and the scene by one that may have been edited since the document was saved.
-    Restore(Box<Version>),
-    Undo,
-    Redo,
-}
-
-/// Parts of the session that have changed since the window was last updated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Changed {
-    pub scene: bool,
-    /// `true` if the mesh has changed.
-    pub mesh: bool,
-    /// `true` if the scene comes from another document.
-    pub document: bool,
-    /// `true` if the mesh or the kind of analysis has changed, or an exploded motion has started again.
-    pub restart: bool,
-}
 
 /// Message for the user about background work.
 #[derive(Debug)]
@@ -294,194 +265,6 @@ impl Session {
         self.fallback().unwrap_or(&self.model.simulation)
     }
 
-    /// Records the presses of the pointer: edits during one press are one undo step.
-    pub(crate) fn record_press(&mut self, press: Press) {
-        self.is_held = press.goes_on;
-        self.undo.record_press(press);
-    }
-
-    /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
-    /// changes when it is solved.
-    ///
-    /// # Errors
-    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background
-    /// are reported later as a [`Notice`].
-    pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
-        let before = self.present.clone();
-        let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
-        let (mut label, is_step) = (None, matches!(edit, Edit::Undo | Edit::Redo));
-        let applied = match edit {
-            Edit::Scene(control, scene) => {
-                label = Some(control);
-                self.set_scene(*scene)
-            }
-            Edit::Open(source) => {
-                // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
-                let is_kept = source.built_in().is_some() && source != before.document.source;
-                let version = match self.undo.last_of(&source).filter(|_| is_kept).cloned() {
-                    Some(version) => version,
-                    None => {
-                        let document = Document::open(source)?;
-                        Version { scene: document.original.clone(), document }
-                    }
-                };
-                self.replace(version)
-            }
-            Edit::Restore(version) => self.replace(*version),
-            Edit::Undo => self.undo.undo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
-            Edit::Redo => self.undo.redo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
-        };
-        applied.map_err(refusal)?;
-        if !is_step && before != self.present {
-            self.undo.record(before, label);
-        }
-        if label.is_some() {
-            self.background.before.iter_mut().for_each(|before| before.label = label);
-        }
-        // With other settings an exploded body would still be kilometres long.
-        if has_exploded && self.is_motion() {
-            self.reset();
-            self.changed.restart = true;
-        }
-        Ok(self.changed)
-    }
-
-    fn go_to(&mut self, step: Version) -> Result<(), SimulationError> {
-        let is_same = step.document.source == self.present.document.source;
-        if is_same { self.set_scene(step.scene) } else { self.replace(step) }
-    }
-
-    /// Changes the scene of the body, which continues from its current state if possible.
-    ///
-    /// # Errors
-    /// [`SimulationError`]; the session is unchanged.
-    pub(crate) fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
-        if self.is_for_background(&scene) {
-            scene.validate()?;
-            self.running |= !self.is_motion();
-            self.request_scene(scene);
-            self.poll();
-            return Ok(());
-        }
-        let before = self.model.simulation.scene().clone();
-        self.model.simulation.change_scene(&scene)?;
-        let is_another_document = self.background.before.as_ref().is_some_and(|before| before.is_another_document);
-        self.background = Background::default();
-        if !has_mesh_of(&scene, &before) {
-            self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
-        }
-        self.present.scene = scene;
-        (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
-        self.scene_changed(&before);
-        self.begin_accepted_at_rest();
-        let known = self.model.linear.take();
-        self.model.linear = solve_linear(self.model.simulation.scene(), self.model.simulation.system(), known);
-        if is_another_document {
-            self.start_document();
-            self.reset();
-        }
-        Ok(())
-    }
-
-    /// Updates everything that depends on the simulation's scene after it has changed from `before`.
-    fn scene_changed(&mut self, before: &Scene) {
-        self.changed.scene = true;
-        self.fallback.keep(&self.model.simulation);
-        let scene = self.model.simulation.scene();
-        if scene == before {
-            return;
-        }
-        self.is_from_rest = false;
-        let is_another_mesh = !has_mesh_of(scene, before);
-        let is_another_body = is_another_mesh || scene.analysis != before.analysis;
-        self.changed.mesh |= is_another_mesh;
-        self.changed.restart |= is_another_body;
-        self.playback.change_scene(&self.model.simulation, is_another_body);
-        self.facts.turn_to(scene);
-        // A time step with other settings takes another time.
-        let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
-        if scene.analysis == Analysis::Dynamic && is_another_step {
-            self.timings = Timings::default();
-        }
-    }
-
-    /// Replaces the document.
-    pub(crate) fn replace(&mut self, Version { document, scene }: Version) -> Result<(), SimulationError> {
-        if self.is_for_background(&scene) {
-            scene.validate()?;
-            self.request_scene(scene);
-            self.present.document = document;
-            self.check_file();
-            self.background.from_rest = true;
-            self.background.before.iter_mut().for_each(|before| before.is_another_document = true);
-            self.poll();
-            return Ok(());
-        }
-        self.set_scene(scene)?;
-        self.present.document = document;
-        self.check_file();
-        self.start_document();
-        self.reset();
-        Ok(())
-    }
-
-    /// Resets everything that belongs to the document to its default.
-    fn start_document(&mut self) {
-        self.changed.document = true;
-        self.running = true;
-        self.playback = Playback::default();
-        self.facts.curve.clear();
-        self.live = Follower::default();
-        self.is_slow = false;
-    }
-
-    /// Makes the current scene the unedited scene of a document; the undo history is cleared.
-    pub(crate) fn rebase(&mut self, source: Source) {
-        self.present.document = Document::new(source, self.present.scene.clone());
-        self.undo = UndoHistory::default();
-        self.is_slow = false;
-    }
-
-    /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
-    ///
-    /// # Errors
-    /// Reason for which the scene was not saved; the file is unchanged.
-    pub(crate) fn save(&mut self, path: &Path) -> Result<(), Sentence> {
-        let saved = self.present.document.save(&self.present.scene, path)?;
-        let before = std::mem::replace(&mut self.present.document, saved);
-        let in_background = self.background.before.iter_mut().map(|before| &mut before.version);
-        let earlier = in_background.chain(self.undo.adjacent_versions(&before.source));
-        for version in earlier.filter(|version| version.document.source == before.source) {
-            version.document.clone_from(&self.present.document);
-        }
-        self.is_outdated = false;
-        Ok(())
-    }
-
-    /// Checks whether the scene's file has changed on disk.
-    pub(crate) fn check_file(&mut self) {
-        self.is_outdated = self.present.document.has_changed();
-    }
-
-    /// Keeps the scene although its file has changed on disk, and stops reporting that change.
-    pub(crate) fn ignore_file_change(&mut self) {
-        self.present.document.text = self.present.document.read();
-        self.is_outdated = false;
-    }
-
-    /// Returns the scene with load number `load` as in its document; `None` if the document has no load of the same
-    /// kind with this number.
-    pub(crate) fn with_original_load(&self, load: usize) -> Option<Scene> {
-        let original = self.present.document.original.loads.get(load)?;
-        let mut scene = self.present.scene.clone();
-        let present = scene.loads.get_mut(load)?;
-        if std::mem::discriminant(original) != std::mem::discriminant(present) {
-            return None;
-        }
-        present.clone_from(original);
-        Some(scene)
-    }
-
     /// Starts or stops iterating.
     pub(crate) fn set_running(&mut self, running: bool) {
         self.running = running;
@@ -546,7 +329,7 @@ impl Session {
         let is_edited = std::mem::take(&mut self.is_edited_now) && !self.is_motion();
         self.was_edited |= is_edited;
         let has_news = std::mem::take(&mut self.is_postponed) || is_edited;
-        if has_news && self.iterates() && !self.is_slow && !self.is_in_background() {
+        if has_news && self.iterates() && !(self.is_motion() || self.is_slow || self.is_in_background()) {
             self.search();
         }
         has_news
@@ -622,133 +405,6 @@ impl Session {
         if self.lacks_rho() {
             self.facts.rho.wait(&self.present.scene);
         }
-    }
-
-    fn certify(&mut self) {
-        self.model.simulation.certify();
-        self.fallback.keep(&self.model.simulation);
-        let mut quality = std::mem::take(&mut self.model.quality);
-        quality.update(self.drawn());
-        self.model.quality = quality;
-    }
-
-    /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
-    fn request_certificate(&mut self) -> bool {
-        if let Some(task) = &self.certifying {
-            match task.poll() {
-                Update::None | Update::Progress(()) => return true,
-                Update::Done(certified) => {
-                    let (own, simulation) = (&self.model.simulation, &certified.0);
-                    let is_current = simulation.state() == own.state()
-                        && simulation.scene() == own.scene()
-                        && simulation.status() == own.status()
-                        && own.mouse_spring().is_none();
-                    if is_current {
-                        (self.model.simulation, self.model.quality) = *certified;
-                        self.certify();
-                    }
-                }
-                Update::Died => self.certify(),
-            }
-            self.certifying = None;
-        }
-        let is_known = !self.model.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
-            && self.model.quality.is_of(self.drawn());
-        let is_small = self.model.simulation.system().dofs() <= MAX_CERTIFIED_HERE;
-        let copy = self.model.simulation.equilibrium().filter(|_| !(is_known || is_small || IS_PAGE));
-        let started = copy.map(Equilibrium::snapshot).and_then(|mut copy| {
-            let work = move |_: &Reporter<_, _>| {
-                let quality = Quality::certified(&mut copy);
-                Box::new((copy, quality))
-            };
-            Task::start("certify", work).ok()
-        });
-        self.certifying = started;
-        if self.certifying.is_none() {
-            self.certify();
-        }
-        self.certifying.is_some()
-    }
-
-    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
-    /// press only those that a frame has time for are requested, and the reference that follows the load.
-    pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
-        if self.is_motion() {
-            return shown.limits_of.is_some_and(|scene| self.facts.limits.request(scene));
-        }
-        if self.iterates() || self.is_working() {
-            return false;
-        }
-        // A background solve has certified its result.
-        let certifies = !self.is_in_background() && self.request_certificate();
-        let follows = self.follow_reference();
-        if is_pressed {
-            self.time_in_frame();
-            return follows || certifies;
-        }
-        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
-        self.facts.request_at_rest(&self.present.scene, shown, false) || follows || certifies
-    }
-
-    /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
-    /// when a drag begins. Returns `true` while it is pending.
-    fn follow_reference(&mut self) -> bool {
-        let simulation = &self.model.simulation;
-        let is_found = simulation.status().is_success();
-        let is_wanted = (is_found || is_lost(simulation)) && simulation.mouse_spring().is_none();
-        if !is_wanted || simulation.system().dofs() > MAX_CERTIFIED_HERE {
-            return self.live.poll();
-        }
-        let linear = self.model.linear.as_ref().and_then(first_probe);
-        self.live.request(&self.present.scene, first_probe(simulation).filter(|_| is_found), linear)
-    }
-
-    /// Returns `true` while the reference that follows the load is being computed.
-    pub fn is_following(&self) -> bool {
-        self.live.running.is_some()
-    }
-
-    /// Measures the time of a solve from rest, if it was short at the last rest; if that failed, if the last search was.
-    fn time_in_frame(&mut self) {
-        /// Largest time of a solve in a frame.
-        const SHORT: Duration = Duration::from_millis(2);
-        let last = self.facts.time.latest().filter(|solve| solve.is_solved);
-        let time = last.map_or(self.timings.total(), |solve| solve.timings.total());
-        if time >= SHORT || self.timed_solve().is_some() {
-            return;
-        }
-        let timed = self.timed.take().map(|(timed, _)| timed);
-        let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.model.simulation.system()));
-        let timed =
-            timed.or_else(|| Simulation::with_system(&self.present.scene, self.model.simulation.system().clone()).ok());
-        let Some(mut timed) = timed.filter(|_| !IS_PAGE) else { return };
-        if timed.change_scene(&self.present.scene).is_ok() {
-            timed.reset();
-            timed.solve();
-            let solve = SolveFromRest::of(&timed);
-            self.timed = Some((timed, solve));
-        }
-    }
-
-    /// Cancels the computation of limits, unless it is for this scene.
-    pub(crate) fn turn_limits_to(&mut self, scene: Option<&Scene>) {
-        match scene {
-            Some(scene) => self.facts.limits.turn_to(scene),
-            None if self.facts.limits.progress().is_some() => self.facts.limits.clear(),
-            None => {}
-        }
-    }
-
-    /// Requests the reference solution, in any state of the body, or computes it and `waits`; returns `true` while it is
-    /// pending.
-    pub(crate) fn obtain_reference(&mut self, waits: bool) -> bool {
-        self.facts.reference.obtain(&self.present.scene, waits)
-    }
-
-    /// Returns `true` if the warped iteration has ended without a result that has a ρ of its own.
-    pub(crate) fn lacks_rho(&self) -> bool {
-        let is_warped = self.present.scene.solver.method == MethodKind::Warped && !self.is_motion();
-        is_warped && self.has_ended() && *self.model.simulation.status() != Status::Converged
     }
 
     /// Displays `state`; returns `false` if it does not fit the mesh.
@@ -828,25 +484,4 @@ impl Session {
 /// Returns `true` if two scenes have the same mesh.
 pub(crate) fn has_mesh_of(scene: &Scene, other: &Scene) -> bool {
     scene.beam == other.beam && scene.mesh == other.mesh
-}
-
-/// Returns the name of the support or load that a key of a scene belongs to, with its number in the panel, or the key.
-pub(crate) fn object_name(key: &str) -> String {
-    let mut parts = key.split('.');
-    match (parts.next(), parts.next().and_then(|i| i.parse::<usize>().ok())) {
-        (Some("support"), Some(i)) => fill!("Support %{n}", n = i + 1),
-        (Some("load"), Some(i)) => fill!("Load %{n}", n = i + 1),
-        _ => key.to_owned(),
-    }
-}
-
-/// Returns the reason for which an edit was refused, in the words of the panel.
-fn refusal(error: SimulationError) -> Sentence {
-    match error {
-        SimulationError::Scene(invalid) if invalid.key == "support" => {
-            sentence!("the body could move freely: supports must hold it along x, along y and against rotation")
-        }
-        SimulationError::Scene(invalid) => Sentence::located(object_name(&invalid.key), invalid.message.clone()),
-        other => (&other).into(),
-    }
 }

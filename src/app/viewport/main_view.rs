@@ -4,6 +4,7 @@ use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::session::has_mesh_of;
 use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::bars;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
@@ -205,7 +206,7 @@ impl MainView {
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
         let reference = content.reference().filter(|_| content.options.exact);
-        overlay::magnified_outline(reference, self.view.body.magnification)
+        bars::magnified_outline(reference, self.view.body.magnification)
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.
@@ -391,7 +392,7 @@ impl MainView {
         /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
         let size = egui::vec2(view[0] as f32, view[1] as f32);
-        if content.is_apart() || overlay::is_tiny(content.options, size) {
+        if content.is_apart() || bars::is_tiny(content.options, size) {
             return least;
         }
         let camera = Camera::fit(low, high, view, least);
@@ -406,8 +407,8 @@ impl MainView {
         arrows.iter().fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
-            let is_right = tip.x > size.x - overlay::LEGEND_WIDTH;
-            let below = if is_right { overlay::LEGEND_HEIGHT } else { 0.0 };
+            let is_right = tip.x > size.x - bars::LEGEND_WIDTH;
+            let below = if is_right { bars::LEGEND_HEIGHT } else { 0.0 };
             let beyond = |outside: f32, view: f64| f64::from((outside + BEYOND).max(0.0)).min(ARROW_ROOM * view);
             Margins {
                 sides: margins.sides.max(least.sides + beyond((-tip.x).max(tip.x - size.x), view[0])),
@@ -504,8 +505,8 @@ fn rounded(content: &Content<'_>, point: MaterialPoint) -> MaterialPoint {
 fn least_margins(size: [f64; 2]) -> Margins {
     let Margins { sides, top, bottom } = FIT_MARGINS;
     let [width, height] = size.map(|side| FIT_SHARE * side);
-    let has_bar = overlay::has_legend(egui::vec2(size[0] as f32, size[1] as f32));
-    let bar = if has_bar { f64::from(overlay::LEGEND_HEIGHT) } else { 0.0 };
+    let has_bar = bars::has_legend(egui::vec2(size[0] as f32, size[1] as f32));
+    let bar = if has_bar { f64::from(bars::LEGEND_HEIGHT) } else { 0.0 };
     Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height.max(bar)) }
 }
 

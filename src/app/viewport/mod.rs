@@ -1,6 +1,7 @@
 //! View of the body: camera, drawn mesh, load handles, overlays, and interaction with the pointer.
 
 pub(crate) mod arrow;
+pub(crate) mod bars;
 pub(crate) mod base;
 pub(crate) mod body_mesh;
 pub(crate) mod body_view;

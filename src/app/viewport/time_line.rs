@@ -3,7 +3,7 @@
 use egui::{CursorIcon, EventFilter};
 
 use crate::app::interface::*;
-use crate::app::viewport::overlay::{LEGEND_WIDTH, has_legend, scale_bar_width};
+use crate::app::viewport::bars::{LEGEND_WIDTH, has_legend, scale_bar_width};
 
 /// Shortest line, points; a view that has no room for it has none.
 const SHORTEST: f32 = 80.0;

@@ -7,7 +7,7 @@ use super::setting::PANES;
 use super::{CompareInput, PaneChange};
 use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip, strain_text};
 use crate::app::interface::*;
-use crate::app::viewport::overlay;
+use crate::app::viewport::bars;
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;
@@ -186,7 +186,7 @@ pub(super) fn key(ui: &Ui, rect: Rect, view: &ViewOptions, (range, magnification
     let middle = rect.center().y;
     let mut x = rect.left() + 12.0;
     if magnification != 1.0 {
-        let text = overlay::magnified(magnification);
+        let text = bars::magnified(magnification);
         x = painter.text(pos2(x, middle), Align2::LEFT_CENTER, text, font.clone(), palette.text).right() + 16.0;
     }
     let mut entry = |text: &str, mark: LegendMark, color: Color32| {
@@ -212,7 +212,7 @@ pub(super) fn key(ui: &Ui, rect: Rect, view: &ViewOptions, (range, magnification
     };
     let right = put(rect.right() - 12.0, format!("{high} {symbol}{unit}"));
     let bar = Rect::from_center_size(pos2(right - 0.5 * bar, middle), vec2(bar, 10.0));
-    overlay::color_bar(&painter, bar, palette.map(view.field));
+    bars::color_bar(&painter, bar, palette.map(view.field));
     let end = put(bar.left() - 8.0, low);
     if end - x > 140.0 {
         painter.text(pos2(end, middle), Align2::RIGHT_CENTER, tr(view.field.name()), font, palette.secondary);

@@ -11,8 +11,8 @@ use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::QUIET_POLL;
+use crate::app::viewport::bars;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
-use crate::app::viewport::overlay;
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
 use crate::state::largest;
@@ -341,7 +341,7 @@ impl Compare {
             (pane.view.body.range, pane.view.rect) = (range, grid.body_place(*cell));
         }
         let reference = input.reference.filter(|_| input.view.exact);
-        let exact = overlay::magnified_outline(reference, self.magnification);
+        let exact = bars::magnified_outline(reference, self.magnification);
         self.fit_camera(ui, input, &exact);
         if self.in_motion {
             self.is_timing = !ui.input(|i| i.pointer.any_down()) && self.request_times(ui.ctx());

@@ -13,6 +13,7 @@ use crate::app::session::run::{Condition, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::bars;
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::overlay::{self, Overlay};
@@ -236,7 +237,7 @@ impl Pane {
             overlay::paint(&painter, &overlay, ui.visuals());
         }
         if number == 0 {
-            overlay::scale_bar(&painter, place, &controller.shown, &palette);
+            bars::scale_bar(&painter, place, &controller.shown, &palette);
         }
         match condition {
             Condition::Result | Condition::Unfinished => {}

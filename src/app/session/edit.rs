@@ -1,0 +1,249 @@
+//! Edits of a session: of its scene, its document and its file, each with undo.
+
+use crate::app::prelude::*;
+use crate::app::session::background::Background;
+use crate::app::session::document::Document;
+use crate::app::session::facts::Follower;
+use crate::app::session::playback::Playback;
+use crate::app::session::undo::{Press, UndoHistory, Version};
+use crate::app::session::{Session, has_mesh_of};
+use crate::app::task::solve::solve_linear;
+use crate::render::display_geometry::DisplayGeometry;
+use crate::simulation::SimulationError;
+use crate::timings::Timings;
+
+/// Change of the model that can be undone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Edit {
+    /// Change the scene with the control of this label. Edits with one control during one press are one undo step.
+    Scene(&'static str, Box<Scene>),
+    /// Open a scene in place of the current one.
+    Open(Source),
+    /// Replace the document, and the scene by one that may have been edited since the document was saved.
+    Restore(Box<Version>),
+    Undo,
+    Redo,
+}
+
+/// Parts of the session that have changed since the window was last updated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Changed {
+    pub scene: bool,
+    /// `true` if the mesh has changed.
+    pub mesh: bool,
+    /// `true` if the scene comes from another document.
+    pub document: bool,
+    /// `true` if the mesh or the kind of analysis has changed, or an exploded motion has started again.
+    pub restart: bool,
+}
+
+impl Session {
+    /// Records the presses of the pointer: edits during one press are one undo step.
+    pub(crate) fn record_press(&mut self, press: Press) {
+        self.is_held = press.goes_on;
+        self.undo.record_press(press);
+    }
+
+    /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
+    /// changes when it is solved.
+    ///
+    /// # Errors
+    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background
+    /// are reported later as a [`Notice`].
+    pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
+        let before = self.present.clone();
+        let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
+        let (mut label, is_step) = (None, matches!(edit, Edit::Undo | Edit::Redo));
+        let applied = match edit {
+            Edit::Scene(control, scene) => {
+                label = Some(control);
+                self.set_scene(*scene)
+            }
+            Edit::Open(source) => {
+                // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
+                let is_kept = source.built_in().is_some() && source != before.document.source;
+                let version = match self.undo.last_of(&source).filter(|_| is_kept).cloned() {
+                    Some(version) => version,
+                    None => {
+                        let document = Document::open(source)?;
+                        Version { scene: document.original.clone(), document }
+                    }
+                };
+                self.replace(version)
+            }
+            Edit::Restore(version) => self.replace(*version),
+            Edit::Undo => self.undo.undo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
+            Edit::Redo => self.undo.redo(before.clone()).map_or(Ok(()), |step| self.go_to(step)),
+        };
+        applied.map_err(refusal)?;
+        if !is_step && before != self.present {
+            self.undo.record(before, label);
+        }
+        if label.is_some() {
+            self.background.before.iter_mut().for_each(|before| before.label = label);
+        }
+        // With other settings an exploded body would still be kilometres long.
+        if has_exploded && self.is_motion() {
+            self.reset();
+            self.changed.restart = true;
+        }
+        Ok(self.changed)
+    }
+
+    fn go_to(&mut self, step: Version) -> Result<(), SimulationError> {
+        let is_same = step.document.source == self.present.document.source;
+        if is_same { self.set_scene(step.scene) } else { self.replace(step) }
+    }
+
+    /// Changes the scene of the body, which continues from its current state if possible.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the session is unchanged.
+    pub(crate) fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        if self.is_for_background(&scene) {
+            scene.validate()?;
+            self.running |= !self.is_motion();
+            self.request_scene(scene);
+            self.poll();
+            return Ok(());
+        }
+        let before = self.model.simulation.scene().clone();
+        self.model.simulation.change_scene(&scene)?;
+        let is_another_document = self.background.before.as_ref().is_some_and(|before| before.is_another_document);
+        self.background = Background::default();
+        if !has_mesh_of(&scene, &before) {
+            self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
+        }
+        self.present.scene = scene;
+        (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
+        self.scene_changed(&before);
+        self.begin_accepted_at_rest();
+        let known = self.model.linear.take();
+        self.model.linear = solve_linear(self.model.simulation.scene(), self.model.simulation.system(), known);
+        if is_another_document {
+            self.start_document();
+            self.reset();
+        }
+        Ok(())
+    }
+
+    /// Updates everything that depends on the simulation's scene after it has changed from `before`.
+    pub(super) fn scene_changed(&mut self, before: &Scene) {
+        self.changed.scene = true;
+        self.fallback.keep(&self.model.simulation);
+        let scene = self.model.simulation.scene();
+        if scene == before {
+            return;
+        }
+        self.is_from_rest = false;
+        let is_another_mesh = !has_mesh_of(scene, before);
+        let is_another_body = is_another_mesh || scene.analysis != before.analysis;
+        self.changed.mesh |= is_another_mesh;
+        self.changed.restart |= is_another_body;
+        self.playback.change_scene(&self.model.simulation, is_another_body);
+        self.facts.turn_to(scene);
+        // A time step with other settings takes another time.
+        let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
+        if scene.analysis == Analysis::Dynamic && is_another_step {
+            self.timings = Timings::default();
+        }
+    }
+
+    /// Replaces the document.
+    pub(crate) fn replace(&mut self, Version { document, scene }: Version) -> Result<(), SimulationError> {
+        if self.is_for_background(&scene) {
+            scene.validate()?;
+            self.request_scene(scene);
+            self.present.document = document;
+            self.check_file();
+            self.background.from_rest = true;
+            self.background.before.iter_mut().for_each(|before| before.is_another_document = true);
+            self.poll();
+            return Ok(());
+        }
+        self.set_scene(scene)?;
+        self.present.document = document;
+        self.check_file();
+        self.start_document();
+        self.reset();
+        Ok(())
+    }
+
+    /// Resets everything that belongs to the document to its default.
+    pub(super) fn start_document(&mut self) {
+        self.changed.document = true;
+        self.running = true;
+        self.playback = Playback::default();
+        self.facts.curve.clear();
+        self.live = Follower::default();
+        self.is_slow = false;
+    }
+
+    /// Makes the current scene the unedited scene of a document; the undo history is cleared.
+    pub(crate) fn rebase(&mut self, source: Source) {
+        self.present.document = Document::new(source, self.present.scene.clone());
+        self.undo = UndoHistory::default();
+        self.is_slow = false;
+    }
+
+    /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
+    ///
+    /// # Errors
+    /// Reason for which the scene was not saved; the file is unchanged.
+    pub(crate) fn save(&mut self, path: &Path) -> Result<(), Sentence> {
+        let saved = self.present.document.save(&self.present.scene, path)?;
+        let before = std::mem::replace(&mut self.present.document, saved);
+        let in_background = self.background.before.iter_mut().map(|before| &mut before.version);
+        let earlier = in_background.chain(self.undo.adjacent_versions(&before.source));
+        for version in earlier.filter(|version| version.document.source == before.source) {
+            version.document.clone_from(&self.present.document);
+        }
+        self.is_outdated = false;
+        Ok(())
+    }
+
+    /// Checks whether the scene's file has changed on disk.
+    pub(crate) fn check_file(&mut self) {
+        self.is_outdated = self.present.document.has_changed();
+    }
+
+    /// Keeps the scene although its file has changed on disk, and stops reporting that change.
+    pub(crate) fn ignore_file_change(&mut self) {
+        self.present.document.text = self.present.document.read();
+        self.is_outdated = false;
+    }
+
+    /// Returns the scene with load number `load` as in its document; `None` if the document has no load of the same
+    /// kind with this number.
+    pub(crate) fn with_original_load(&self, load: usize) -> Option<Scene> {
+        let original = self.present.document.original.loads.get(load)?;
+        let mut scene = self.present.scene.clone();
+        let present = scene.loads.get_mut(load)?;
+        if std::mem::discriminant(original) != std::mem::discriminant(present) {
+            return None;
+        }
+        present.clone_from(original);
+        Some(scene)
+    }
+}
+
+/// Returns the name of the support or load that a key of a scene belongs to, with its number in the panel, or the key.
+pub(crate) fn object_name(key: &str) -> String {
+    let mut parts = key.split('.');
+    match (parts.next(), parts.next().and_then(|i| i.parse::<usize>().ok())) {
+        (Some("support"), Some(i)) => fill!("Support %{n}", n = i + 1),
+        (Some("load"), Some(i)) => fill!("Load %{n}", n = i + 1),
+        _ => key.to_owned(),
+    }
+}
+
+/// Returns the reason for which an edit was refused, in the words of the panel.
+fn refusal(error: SimulationError) -> Sentence {
+    match error {
+        SimulationError::Scene(invalid) if invalid.key == "support" => {
+            sentence!("the body could move freely: supports must hold it along x, along y and against rotation")
+        }
+        SimulationError::Scene(invalid) => Sentence::located(object_name(&invalid.key), invalid.message.clone()),
+        other => (&other).into(),
+    }
+}
