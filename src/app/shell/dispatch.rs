@@ -72,20 +72,7 @@ impl Lab {
             Action::Cancel => self.desk.session.cancel(),
             Action::Escape if self.desk.session.is_working() => self.desk.session.cancel(),
             Action::Escape => self.desk.viewport.probe = None,
-            Action::Edit(label, scene) => {
-                let before = self.scene().loads.len();
-                let applied = self.desk.session.apply(Edit::Scene(label, scene));
-                match applied {
-                    Ok(_) => _ = self.desk.panel.messages.remove(label),
-                    Err(error) => self.refuse(ctx, label, (&error).into()),
-                }
-                // The sliders set a new force.
-                if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()
-                    && rest.len() >= before
-                {
-                    self.desk.panel.force = Some(rest.len());
-                }
-            }
+            Action::Edit(label, scene) => self.edit(ctx, label, scene),
             Action::Apply(scene) => _ = self.apply(ctx, Edit::Scene("Method", scene)),
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
@@ -154,6 +141,20 @@ impl Lab {
             Action::Measure(false) => self.desk.measure.budget.cancel(),
         }
         self.apply_session_changes();
+    }
+
+    fn edit(&mut self, ctx: &Context, label: &'static str, scene: Box<Scene>) {
+        let before = self.scene().loads.len();
+        match self.desk.session.apply(Edit::Scene(label, scene)) {
+            Ok(_) => _ = self.desk.panel.messages.remove(label),
+            Err(error) => self.refuse(ctx, label, (&error).into()),
+        }
+        // The sliders set a new force.
+        if let [rest @ .., Load::Force { .. }] = self.scene().loads.as_slice()
+            && rest.len() >= before
+        {
+            self.desk.panel.force = Some(rest.len());
+        }
     }
 
     fn undo(&mut self, ctx: &Context, edit: Edit) {

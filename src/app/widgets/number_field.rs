@@ -92,7 +92,6 @@ impl NumberField {
         let first = FirstText::of(ui, Id::unique((self.label, "shown")), editable(value, unit));
         // In the frame after Escape egui reads the typed text once more.
         let escape_id = Id::unique((self.label, "escape"));
-        let refused_id = Id::unique((self.label, "refused"));
         let has_escaped = ui.data_mut(|data| data.remove_temp::<bool>(escape_id)).is_some();
         let label = ui
             .horizontal(|ui| {
@@ -161,7 +160,24 @@ impl NumberField {
             refused.replace(None);
             edited = Some(original);
         }
-        let refused = refused.into_inner();
+        let entered = self.entered(ui, messages, refused.into_inner(), edited, is_committed);
+        if messages.contains_key(self.label) {
+            show_over_slider(ui, messages, self.label, slider);
+        }
+        entered.filter(|&new| new != value)
+    }
+
+    /// Returns the edited value if it is within the limit, and sets or removes the message of the field. A text may have been
+    /// refused, or committed.
+    fn entered(
+        &self,
+        ui: &Ui,
+        messages: &mut Messages,
+        refused: Option<Sentence>,
+        edited: Option<f64>,
+        is_committed: bool,
+    ) -> Option<f64> {
+        let refused_id = Id::unique((self.label, "refused"));
         let is_settled = refused.is_none() && (is_committed || edited.is_some());
         let was_refused = is_settled && ui.data_mut(|data| data.remove_temp::<()>(refused_id)).is_some();
         let entered = match refused {
@@ -177,10 +193,7 @@ impl NumberField {
             Ok(new) if new.is_some() || was_refused => _ = messages.remove(self.label),
             Ok(_) => {}
         }
-        if messages.contains_key(self.label) {
-            show_over_slider(ui, messages, self.label, slider);
-        }
-        entered.ok().flatten().filter(|&new| new != value)
+        entered.ok().flatten()
     }
 
     /// Shows the slider; returns the value that it is moved to.

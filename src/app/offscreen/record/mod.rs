@@ -163,34 +163,12 @@ pub fn record(
     let told = (story::seconds() / delay).ceil() as u64;
     let pictures = preview.as_ref().map_or(told, |preview| preview.pictures);
 
-    let new_lab = || -> Result<Lab, AppError> {
-        let mut lab = Lab::new(source.clone(), scene.clone(), again()?);
-        lab.settings.language = options.look.language;
-        if let Some(preview) = &preview {
-            lab.desk.view.bars = false;
-            let camera = lab.fit([preview.low, preview.high], options.size.map(f64::from));
-            lab.desk.viewport.camera.set_camera(camera);
-            lab.desk.view.fixed_range = Some(preview.range);
-        } else {
-            lab.tell_story();
-        }
-        Ok(lab)
+    let new_lab = || again().map(|body| Lab::new(source.clone(), scene.clone(), body));
+    let new_lab = || new_lab().map(|lab| prepared(lab, options, preview.as_ref()));
+    let samples = match format {
+        MovieFormat::Gif => samples(&mut canvas, new_lab()?, preview.as_ref(), (delay, pictures))?,
+        _ => Vec::new(),
     };
-    let mut samples = Vec::new();
-    if format == MovieFormat::Gif {
-        let mut lab = new_lab()?;
-        for state in preview.iter().flat_map(|preview| &preview.samples) {
-            // Cannot fail: the state belongs to the same equations.
-            if lab.desk.session.restore(state) {
-                samples.push(draw(&mut canvas, &mut lab, 0)?);
-            }
-        }
-        for k in (0..SAMPLES as u64).filter(|_| is_story) {
-            tell(&mut lab, delay, (k * pictures + pictures / 2) / SAMPLES as u64);
-            samples.push(draw(&mut canvas, &mut lab, 0)?);
-        }
-    }
-
     let mut lab = new_lab()?;
     if format == MovieFormat::Folder {
         film::clear(output, options.overwrite)?;
@@ -226,6 +204,42 @@ pub fn record(
         status => status.clone(),
     };
     Ok(recorded)
+}
+
+/// Returns a lab with the view that shows all that a preview has seen, or at the beginning of the story.
+fn prepared(mut lab: Lab, options: &RecordOptions, preview: Option<&Preview>) -> Lab {
+    lab.settings.language = options.look.language;
+    if let Some(preview) = preview {
+        lab.desk.view.bars = false;
+        let camera = lab.fit([preview.low, preview.high], options.size.map(f64::from));
+        lab.desk.viewport.camera.set_camera(camera);
+        lab.desk.view.fixed_range = Some(preview.range);
+    } else {
+        lab.tell_story();
+    }
+    lab
+}
+
+/// Draws pictures over the whole recording, from which the colours of a GIF are chosen. `preview` is that of a scene; a story
+/// has none, and this many pictures that each last for `delay`, s.
+fn samples(
+    canvas: &mut Canvas,
+    mut lab: Lab,
+    preview: Option<&Preview>,
+    (delay, pictures): (f64, u64),
+) -> Result<Vec<Picture>, AppError> {
+    let mut samples = Vec::new();
+    for state in preview.iter().flat_map(|preview| &preview.samples) {
+        // Cannot fail: the state belongs to the same equations.
+        if lab.desk.session.restore(state) {
+            samples.push(draw(canvas, &mut lab, 0)?);
+        }
+    }
+    for k in (0..SAMPLES as u64).filter(|_| preview.is_none()) {
+        tell(&mut lab, delay, (k * pictures + pictures / 2) / SAMPLES as u64);
+        samples.push(draw(canvas, &mut lab, 0)?);
+    }
+    Ok(samples)
 }
 
 /// Shows frame `k` of the story, whose frames last for `delay`, s.
