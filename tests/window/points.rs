@@ -150,6 +150,15 @@ fn a_card_begins_beside_its_point_and_can_be_dragged() {
             ui.edit(|scene| scene.scale_loads(0.5));
             ui.run();
             assert_eq!(card(&ui).unwrap().min, dragged, "{size:?}, {name}");
+            // Measure has no room for the values: the card is folded.
+            ui.key(Key::B);
+            ui.run();
+            assert!(ui.says("Point ("), "{size:?}, {name}");
+            assert_eq!(
+                ui.query_by_label("σ_x, σ_y").is_some(),
+                ui.state().view_rect().height() >= 302.0,
+                "{size:?}, {name}"
+            );
         }
     }
 }

@@ -154,8 +154,9 @@ pub(crate) fn show_card(
     const KEY: f32 = 44.0;
     const BESIDE: f32 = 20.0;
     const BELOW: f32 = 14.0;
-    /// Usual size of a card, points.
+    /// Usual size of a card, and height of a folded one, points.
     const SIZE: Vec2 = vec2(284.0, 288.0);
+    const FOLDED: f32 = 36.0;
     let Pinned { state, at, .. } = *pinned;
     let color = visuals.strong_text_color();
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
@@ -166,10 +167,14 @@ pub(crate) fn show_card(
     let (is_low, room) = (at.y > view.center().y, SIZE.x + BESIDE);
     let is_right = if is_low { at.x + room <= view.right() } else { at.x - room < view.left() };
     let x = if is_right { at.x + BESIDE } else { at.x - room };
-    let y = if is_low { view.top() + KEY } else { view.bottom() - BELOW - SIZE.y };
+    // In a view without room for it, as in Measure, a card begins folded.
+    let has_room = view.height() >= SIZE.y + BELOW;
+    let height = if has_room { SIZE.y } else { FOLDED };
+    let y = if is_low { view.top() + KEY } else { view.bottom() - BELOW - height };
     let title = fill!("Point %{place}", place = metres(state.rest));
-    let window = Window::new(RichText::new(title).size(BODY)).open(is_open).resizable(false).default_size(SIZE);
-    let window = window.default_pos(pos2(x, y)).constrain_to(view);
+    let id = egui::Id::unique(("card", &title, has_room));
+    let window = Window::new(RichText::new(title).size(BODY)).id(id).open(is_open).resizable(false).default_size(SIZE);
+    let window = window.default_open(has_room).default_pos(pos2(x, y)).constrain_to(view);
     let Some(shown) = window.show(painter.ctx(), |ui| card_content(ui, pinned, choice)) else { return false };
     painter.line_segment([at, shown.response.rect.clamp(at)], Stroke::new(1.2, color));
     shown.inner == Some(true)
