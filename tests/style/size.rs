@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 23_159),
+    ("app", &["src/app"], 23_164),
     ("study", &["src/study"], 6_529),
     ("model", &["src/model", "src/scene"], 3_109),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_239),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_930),
     ("plot", &["src/plot"], 887),
     ("the rest of src", &["src"], 5_022),
-    ("tests", &["tests"], 19_383),
+    ("tests", &["tests"], 19_392),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 57_506;
+const SRC: usize = 57_511;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
