@@ -1,6 +1,6 @@
 //! A stability atlas as a drawing.
 
-use super::drawing::{Anchor, Canvas, Drawing, Text};
+use super::drawing::{Anchor, DrawTarget, Drawing, Text};
 use crate::scene::ElementKind;
 use crate::study::extremes::{Case, Entry, Outcome, counts, labels};
 use crate::study::figure::Ink;

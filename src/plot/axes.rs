@@ -1,6 +1,6 @@
 //! Axes of drawings: their place, scales, grids and the marks of elements.
 
-use super::drawing::{Anchor, Canvas, Drawing, Text, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing, Text, solid};
 use crate::format::ticks;
 use crate::scene::ElementKind;
 use crate::study::figure::Ink;
@@ -50,7 +50,7 @@ impl ChartFrame {
     }
 
     /// Draws lines at places of both axes with their numbers, and the names of the axes.
-    pub fn grid(&self, drawing: &mut dyn Canvas, [x, y]: [Vec<(f64, String)>; 2], [x_name, y_name]: [&str; 2]) {
+    pub fn grid(&self, drawing: &mut dyn DrawTarget, [x, y]: [Vec<(f64, String)>; 2], [x_name, y_name]: [&str; 2]) {
         let ([left, right], [bottom, top]) = (self.across(), self.up());
         for (at, text) in x {
             drawing.line(&[[at, top], [at, bottom]], Ink::Grid, solid(1.0));
@@ -112,7 +112,7 @@ impl ChartAxis {
     /// Returns the places and the values of round numbers, as many as have room: of decades, if fewer than two are in the
     /// range, with those of 2 and 5.
     pub fn ticks(&self) -> Vec<(f64, f64)> {
-        const MOST: u32 = 8;
+        const MAX_TICKS: u32 = 8;
         let ([from, to], [start, end]) = (self.range, self.ends);
         // Numbers beside a vertical axis, which ends above its start, need less room.
         let apart = match (self.is_logarithmic, start > end) {
@@ -132,7 +132,7 @@ impl ChartAxis {
             let step = ((to - from) / room).ceil().max(1.0) as usize;
             if decades.len() > 1 { decades.into_iter().step_by(step).collect() } else { of(&[1.0, 2.0, 5.0]) }
         } else {
-            ticks(from, to, (room as u32).clamp(2, MOST))
+            ticks(from, to, (room as u32).clamp(2, MAX_TICKS))
         };
         values.into_iter().map(|value| (self.place(value), value)).collect()
     }

@@ -45,8 +45,8 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Surface on which charts are drawn: a file, or the window. Places are in pixels from its upper left corner.
-pub(crate) trait Canvas {
+/// Target on which charts are drawn: a file, or the window. Places are in pixels from its upper left corner.
+pub(crate) trait DrawTarget {
     fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke);
 
     /// Fills a polygon, with a text that viewers of a file show beside the pointer; it may be empty.
@@ -79,7 +79,7 @@ pub struct Drawing {
     elements: Vec<String>,
 }
 
-impl Canvas for Drawing {
+impl DrawTarget for Drawing {
     fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke) {
         let line = match *points {
             [from, to] => {

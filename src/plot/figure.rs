@@ -1,7 +1,7 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
 use super::axes::{ChartAxis, ChartFrame};
-use super::drawing::{Anchor, Canvas, Drawing, Stroke, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, solid};
 use crate::format::{number, prefix, rounded};
 use crate::study::figure::{Figure, Ink, Mark};
 
@@ -23,7 +23,7 @@ pub fn figures<'a>(figures: impl IntoIterator<Item = &'a Figure>) -> Drawing {
 
 /// Draws axes between two corners and the series; returns the axes.
 pub(crate) fn chart(
-    drawing: &mut dyn Canvas,
+    drawing: &mut dyn DrawTarget,
     figure: &Figure,
     [mut low, mut high]: [[f64; 2]; 2],
     frame: &ChartFrame,
@@ -84,7 +84,7 @@ fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
 }
 
 /// Draws a series at its places in the picture.
-pub(crate) fn draw(drawing: &mut dyn Canvas, ink: Ink, mark: Mark, places: &[[f64; 2]], size: f64) {
+pub(crate) fn draw(drawing: &mut dyn DrawTarget, ink: Ink, mark: Mark, places: &[[f64; 2]], size: f64) {
     let dashes: &[f64] = match mark {
         Mark::Dashes => &[9.0, 5.0],
         Mark::Dots => &[2.0, 5.0],

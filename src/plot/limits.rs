@@ -1,7 +1,7 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::ChartAxis;
-use super::drawing::{Anchor, Canvas, Drawing, Stroke, Text, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, Text, solid};
 use crate::format::engineering;
 use crate::scene::Scene;
 use crate::sentence::sentence;
@@ -95,7 +95,7 @@ impl LimitsChart<'_> {
     }
 
     /// Draws the lines and numbers of the axis of loads.
-    pub fn grid(&self, drawing: &mut dyn Canvas) {
+    pub fn grid(&self, drawing: &mut dyn DrawTarget) {
         for (x, factor) in self.axis().ticks() {
             drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Ink::Grid, solid(1.0));
             drawing.text([x, self.bottom() + 18.0], Anchor::Middle, &load_text(self.loads, factor));
@@ -103,13 +103,13 @@ impl LimitsChart<'_> {
     }
 
     /// Draws the name of the axis of loads, this far below the strips.
-    pub fn name(&self, drawing: &mut dyn Canvas, below: f64, render: Render<'_>) {
+    pub fn name(&self, drawing: &mut dyn DrawTarget, below: f64, render: Render<'_>) {
         let at = [0.5 * (self.across[0] + self.across[1]), self.bottom() + below];
         drawing.text(at, Anchor::Middle, &render(&axis_text(self.limits, self.loads)));
     }
 
     /// Draws the critical load, the curve and the strips; `ink` returns the colour of a strip's name.
-    pub fn draw(&self, drawing: &mut dyn Canvas, render: Render<'_>, ink: &dyn Fn(&Strip) -> Ink) {
+    pub fn draw(&self, drawing: &mut dyn DrawTarget, render: Render<'_>, ink: &dyn Fn(&Strip) -> Ink) {
         let (axis, range, [left, right]) = (self.axis(), self.limits.range, self.across);
         if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
             let x = axis.place(critical);
@@ -152,7 +152,7 @@ impl LimitsChart<'_> {
     }
 
     /// Draws the length of the reference displacement over the load.
-    fn draw_curve(&self, drawing: &mut dyn Canvas, [axis, up]: [ChartAxis; 2], render: Render<'_>) {
+    fn draw_curve(&self, drawing: &mut dyn DrawTarget, [axis, up]: [ChartAxis; 2], render: Render<'_>) {
         let ([left, right], [top, _]) = (self.across, self.curve);
         for (y, length) in up.ticks() {
             drawing.line(&[[left, y], [right, y]], Ink::Grid, solid(1.0));
@@ -171,7 +171,7 @@ impl LimitsChart<'_> {
 }
 
 /// Draws slanted lines over a bar.
-pub(crate) fn hatch(drawing: &mut dyn Canvas, [from, to]: [f64; 2], [top, bottom]: [f64; 2], ink: Ink) {
+pub(crate) fn hatch(drawing: &mut dyn DrawTarget, [from, to]: [f64; 2], [top, bottom]: [f64; 2], ink: Ink) {
     const GAP: f64 = 7.0;
     drawing.clip(Some([[from, top], [(to - from).max(0.0), bottom - top]]));
     // Lines of neighbouring bars meet.

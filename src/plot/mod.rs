@@ -15,7 +15,7 @@ pub use trade::study;
 #[cfg(feature = "app")]
 pub(crate) use {
     axes::{ChartAxis, ChartFrame, mark},
-    drawing::{Anchor, Canvas, Stroke, Text, solid},
+    drawing::{Anchor, DrawTarget, Stroke, Text, solid},
     figure::{chart, draw},
     limits::{LimitsChart, hatch, rating_ink},
     trade::{SMALLEST_ERROR, StudyChart},

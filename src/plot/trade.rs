@@ -1,7 +1,7 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
 use super::axes::{ChartAxis, ChartFrame, ROW, mark};
-use super::drawing::{Anchor, Canvas, Drawing, Stroke, Text, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::format::number;
 use crate::method::METHODS;
@@ -77,13 +77,13 @@ impl<'a> StudyChart<'a> {
         [self.axes[0].place(time), self.axes[1].place(error(bound))]
     }
 
-    pub fn grid(&self, drawing: &mut dyn Canvas, frame: &ChartFrame, names: [&str; 2]) {
+    pub fn grid(&self, drawing: &mut dyn DrawTarget, frame: &ChartFrame, names: [&str; 2]) {
         let ticks = |axis: &ChartAxis| axis.ticks().into_iter().map(|(place, value)| (place, number(value))).collect();
         frame.grid(drawing, self.axes.each_ref().map(ticks), names);
     }
 
     /// Draws the Pareto front, and a mark for each setting.
-    pub fn draw(&self, drawing: &mut dyn Canvas) {
+    pub fn draw(&self, drawing: &mut dyn DrawTarget) {
         let mut front: Vec<_> = self.marks.iter().filter(|(_, m)| m.pareto).map(|(at, _)| *at).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
         drawing.line(&front, Ink::Curve, solid(WIDTH));

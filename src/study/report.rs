@@ -102,19 +102,18 @@ impl Study {
         let in_motion = if moves { &["rms", "energy, %"][..] } else { &[] };
         let columns: Vec<String> = columns.iter().chain(in_motion).map(ToString::to_string).collect();
         let _ = writeln!(text, "{}   setting", row(&columns));
-        let ranks: Vec<(&Measurement, bool)> = self.measurements.iter().zip(self.undecided()).collect();
-        let mut is_undecided = false;
-        for m in self.front() {
+        let ranked = self.measurements.iter().zip(self.undecided());
+        let mut front: Vec<(&Measurement, bool)> = ranked.filter(|(m, _)| m.pareto).collect();
+        front.sort_by(|(a, _), (b, _)| a.milliseconds.total_cmp(&b.milliseconds));
+        for (m, undecided) in &front {
             let Some(ErrorSplit { total, discretization, iteration, model }) = m.error else { continue };
             let mut values = vec![m.milliseconds, self.error_bound(m), total, discretization, iteration, model];
             values.extend(m.motion.iter().flat_map(|motion| [motion.rms_percent, motion.drift_percent]));
             let values: Vec<String> = values.iter().map(|value| format!("{value:.4}")).collect();
-            let undecided = ranks.iter().any(|(other, undecided)| *other == m && *undecided);
-            is_undecided |= undecided;
             let _ =
-                writeln!(text, "{}   {}{}", row(&values), m.setting, if undecided { " (rank undecided)" } else { "" });
+                writeln!(text, "{}   {}{}", row(&values), m.setting, if *undecided { " (rank undecided)" } else { "" });
         }
-        if is_undecided {
+        if front.iter().any(|(m, undecided)| m.error.is_some() && *undecided) {
             let _ = writeln!(
                 text,
                 "rank undecided: a faster setting may be as accurate, because their errors differ by less than the \
@@ -128,9 +127,9 @@ impl Study {
     /// Formats the fastest setting with an error of at most 10, 1 and 0.1 %, of all and of each element and method, or
     /// integrator.
     fn costs_text(&self) -> String {
-        let rival = |m: &Measurement| {
-            let Setting { element, method, stepping, .. } = m.setting;
-            stepping.map_or_else(|| format!("{} {}", element.id(), method.id()), |s| s.integrator.id().to_owned())
+        let rival = |m: &Measurement| match m.setting.stepping {
+            Some(_) => m.setting.series().to_owned(),
+            None => format!("{} {}", m.setting.element.id(), m.setting.series()),
         };
         let mut rivals: Vec<String> = Vec::new();
         for name in self.measurements.iter().map(rival) {

@@ -49,7 +49,6 @@ impl Setting {
     }
 
     /// Returns the identifier of the integrator, or of the method at rest: its settings are drawn in one colour.
-    #[cfg(feature = "cli")]
     pub(crate) fn series(&self) -> &'static str {
         self.stepping.map_or(self.method.id(), |stepping| stepping.integrator.id())
     }

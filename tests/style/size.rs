@@ -11,7 +11,7 @@ use crate::files::rust_files;
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 23_164),
-    ("study", &["src/study"], 6_529),
+    ("study", &["src/study"], 6_527),
     ("model", &["src/model", "src/scene"], 3_109),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_239),
     ("simulation", &["src/simulation"], 2_490),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 19_392),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 57_511;
+const SRC: usize = 57_509;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 

@@ -4,7 +4,7 @@ use crate::app::interface::*;
 use crate::app::modes::figure;
 use crate::app::session::history::{History, MotionSample};
 use crate::app::view_options::MotionPlot;
-use crate::plot::{Canvas, solid};
+use crate::plot::{DrawTarget, solid};
 use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, Mark};
 
 const PLOTS: [(MotionPlot, &str, &str); 2] = [

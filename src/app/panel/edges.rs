@@ -8,7 +8,7 @@ use crate::app::interface::*;
 use crate::app::panel::Panel;
 use crate::app::viewport::moment_arrow::moment_range;
 use crate::app::viewport::objects::{
-    self, Change, Object, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,
+    self, Object, ObjectChange, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,
 };
 use crate::app::widgets::number_field::{FirstText, read};
 use crate::study::moved_points;
@@ -81,7 +81,7 @@ fn row(
             let response = ui.add(Button::new("×").frame(false).min_size(vec2(20.0, 20.0))).on_hover_text(remove);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, remove));
             if response.clicked() {
-                change = Some(Change::Remove);
+                change = Some(ObjectChange::Remove);
             }
             more(ui);
             let picker = ComboBox::from_id_salt((label, id)).selected_text(text(scene, present));
@@ -92,7 +92,7 @@ fn row(
                         *highlighted = Some(name.clone());
                     }
                     if entry.clicked() && *present != place {
-                        change = Some(Change::Move(place));
+                        change = Some(ObjectChange::Move(place));
                     }
                 }
             });
@@ -107,7 +107,7 @@ fn row(
         change = change.or(coordinates(ui, (label, id), (*at, width), &mut panel.state.messages));
     }
     let Some(change) = change else { return };
-    if let (Change::Remove, Object::Load(i)) = (&change, object) {
+    if let (ObjectChange::Remove, Object::Load(i)) = (&change, object) {
         // The same force stays chosen if it still exists.
         let chosen = panel.state.force.filter(|chosen| *chosen != i);
         panel.state.force = chosen.map(|chosen| if chosen > i { chosen - 1 } else { chosen });
@@ -122,7 +122,7 @@ fn coordinates(
     id: (&str, usize),
     (at, width): ([f64; 2], Option<f64>),
     messages: &mut Messages,
-) -> Option<Change> {
+) -> Option<ObjectChange> {
     const POINT: &str = "Coordinate of the point at rest; numbers with a unit can be typed, such as 30 cm";
     const WIDTH: &str = "Length of the edge, or of the horizontal line through an inner point, over which it acts; the error \
                          of 0, a point, has no limit on finer meshes";
@@ -152,8 +152,8 @@ fn coordinates(
     if let Some(reason) = refused.into_inner() {
         messages.insert(SECTION, reason);
     }
-    let widened = widened.filter(|_| widened != width).map(Change::Widen);
-    (moved != at).then(|| Change::Move(moved.into())).or(widened)
+    let widened = widened.filter(|_| widened != width).map(ObjectChange::Widen);
+    (moved != at).then(|| ObjectChange::Move(moved.into())).or(widened)
 }
 
 pub(super) fn summary(scene: &Scene) -> String {
@@ -200,7 +200,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         }
         if fix.is_empty() {
             // A support that fixes no direction is removed.
-            panel.edit(SECTION, |scene| object.change(scene, system, Change::Remove));
+            panel.edit(SECTION, |scene| object.change(scene, system, ObjectChange::Remove));
         } else {
             // The prescribed displacements of directions that stay fixed are kept.
             panel.edit(SECTION, |scene| {

@@ -3,7 +3,7 @@
 
 use crate::app::interface::*;
 use crate::app::viewport::arrow::point_of_application;
-use crate::app::viewport::objects::{Change, Object, rounded, snapped};
+use crate::app::viewport::objects::{Object, ObjectChange, rounded, snapped};
 use crate::app::viewport::projection::Projection;
 use crate::app::viewport::{handle, probe};
 use crate::section::cut_ends;
@@ -155,7 +155,7 @@ impl Bases<'_> {
             (Object::SectionEnd { section, end }, Place::At(at)) => {
                 *scene.sections.get_mut(section)? = self.turned(section, end, at.into())?;
             }
-            (_, place) => object.change(&mut scene, self.system, Change::Move(place)),
+            (_, place) => object.change(&mut scene, self.system, ObjectChange::Move(place)),
         }
         Some(scene)
     }

@@ -42,42 +42,42 @@ impl Object {
     }
 
     /// Changes the object, if the scene has it: a dragged one may have been undone.
-    pub(crate) fn change(self, scene: &mut Scene, system: &System, change: Change) {
+    pub(crate) fn change(self, scene: &mut Scene, system: &System, change: ObjectChange) {
         if self.place(scene).is_none() {
             return;
         }
         match (self, change) {
-            (Self::Load(i), Change::Remove) => _ = scene.loads.remove(i),
-            (Self::Support(i), Change::Remove) => _ = scene.supports.remove(i),
-            (Self::Probe(i), Change::Remove) => _ = scene.probes.remove(i),
-            (Self::Section(i), Change::Remove) => _ = scene.sections.remove(i),
+            (Self::Load(i), ObjectChange::Remove) => _ = scene.loads.remove(i),
+            (Self::Support(i), ObjectChange::Remove) => _ = scene.supports.remove(i),
+            (Self::Probe(i), ObjectChange::Remove) => _ = scene.probes.remove(i),
+            (Self::Section(i), ObjectChange::Remove) => _ = scene.sections.remove(i),
             (Self::Load(i), change) => match (&mut scene.loads[i], change) {
                 (Load::Force { place, at_point, width, .. }, change) => {
                     change.apply(system, (place, at_point, width));
                 }
-                (Load::Moment { edge, .. }, Change::Move(Place::Edge(to))) => *edge = to,
+                (Load::Moment { edge, .. }, ObjectChange::Move(Place::Edge(to))) => *edge = to,
                 _ => {}
             },
             (Self::Support(i), change) => {
                 let Support { place, at_point, width, .. } = &mut scene.supports[i];
                 change.apply(system, (place, at_point, width));
             }
-            (Self::Probe(i), Change::Move(to)) => scene.probes[i].place = to,
-            (Self::Section(i), Change::Move(Place::At(to))) => scene.sections[i].at = to.into(),
+            (Self::Probe(i), ObjectChange::Move(to)) => scene.probes[i].place = to,
+            (Self::Section(i), ObjectChange::Move(Place::At(to))) => scene.sections[i].at = to.into(),
             _ => {}
         }
     }
 }
 
 /// Change of an object by hand.
-pub(crate) enum Change {
+pub(crate) enum ObjectChange {
     Move(Place),
     /// Width of a force or a support, m.
     Widen(f64),
     Remove,
 }
 
-impl Change {
+impl ObjectChange {
     /// Moves or widens a force or a support. At another place it acts on a width if it did, or comes from an edge.
     fn apply(self, system: &System, (place, at_point, width): (&mut Place, &mut bool, &mut f64)) {
         match self {
@@ -282,7 +282,7 @@ fn removals(scene: &Scene, system: &System, (at, near): (Vector2<f64>, f64), edg
                 (line.normal().dot(&(at - line.at)).abs() <= near, tr("Remove this section").to_owned())
             }
         };
-        is_here.then(|| (text, edited(scene, |scene| object.change(scene, system, Change::Remove))))
+        is_here.then(|| (text, edited(scene, |scene| object.change(scene, system, ObjectChange::Remove))))
     };
     let probes = (0..scene.probes.len()).map(Object::Probe);
     let loads = (0..scene.loads.len()).map(Object::Load);

@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape,
 
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::app::widgets::text::boxed_text;
-use crate::plot::{self, Anchor, Canvas, ChartFrame, Text};
+use crate::plot::{self, Anchor, ChartFrame, DrawTarget, Text};
 use crate::study::figure::Ink;
 
 /// Paints charts in the window, from an upper left corner.
@@ -40,14 +40,14 @@ impl ChartPainter {
     }
 }
 
-impl Canvas for ChartPainter {
+impl DrawTarget for ChartPainter {
     fn line(&mut self, points: &[[f64; 2]], ink: Ink, plot::Stroke { width, dashes }: plot::Stroke) {
         let (places, stroke) = (self.places(points), self.stroke(ink, width));
         if let &[dash, gap] = dashes {
             self.painter.extend(Shape::dashed_line(&places, stroke, dash as f32, gap as f32));
             return;
         }
-        // As one thick line its joints would stick out at sharp corners.
+        // The joints of a thick line stick out at sharp corners, so that each segment is painted alone.
         for pair in places.windows(2) {
             self.painter.line_segment([pair[0], pair[1]], stroke);
         }

@@ -163,7 +163,7 @@ impl Pane {
     /// before, of which the result is kept.
     pub(super) fn update_error(&mut self, input: &CompareInput<'_>) {
         /// Largest number of results that are kept.
-        const MOST: usize = 20;
+        const MAX_RECENT: usize = 20;
         let u = self.run.answer();
         let first = input.reference.and_then(Reference::first);
         let error = |u: Option<Vector2<f64>>| error_percent(u?, first?.displacement);
@@ -175,7 +175,7 @@ impl Pane {
         if let Some((scene, u)) = self.run.wanted.clone().zip(u) {
             self.recent.retain(|(earlier, _)| *earlier != scene);
             self.recent.push_front((scene, u));
-            self.recent.truncate(MOST);
+            self.recent.truncate(MAX_RECENT);
         }
         if self.in_place().is_some() {
             self.error_percent = None;

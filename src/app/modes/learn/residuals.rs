@@ -5,7 +5,7 @@ use super::step_buttons;
 use crate::app::diagnosis::rho_number;
 use crate::app::interface::*;
 use crate::app::widgets::chart::ChartPainter;
-use crate::plot::{self, Anchor, Canvas, ChartAxis, ChartFrame, Text, solid};
+use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
 use crate::study::figure::Ink;
 
 /// Shows the buttons that iterate, and the residuals.

@@ -8,7 +8,7 @@ use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
 use crate::app::widgets::chart::{self, ChartPainter};
 use crate::exact_beam::error_percent;
-use crate::plot::{Anchor, Canvas, SMALLEST_ERROR, Stroke, StudyChart, Text, mark, solid};
+use crate::plot::{Anchor, DrawTarget, SMALLEST_ERROR, Stroke, StudyChart, Text, mark, solid};
 use crate::scene::ElementKind;
 use crate::study::figure::Ink;
 use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};

@@ -7,7 +7,7 @@ use crate::app::interface::*;
 use crate::app::modes::measure::first_probe;
 use crate::app::session::facts::with_default_methods;
 use crate::app::widgets::chart::ChartPainter;
-use crate::plot::{self, Anchor, Canvas, LimitsChart, Text, rating_ink, solid};
+use crate::plot::{self, Anchor, DrawTarget, LimitsChart, Text, rating_ink, solid};
 use crate::study::Setting;
 use crate::study::figure::{Ink, LoadAxis};
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};

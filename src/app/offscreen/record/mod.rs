@@ -163,8 +163,8 @@ pub fn record(
     let told = (story::seconds() / delay).ceil() as u64;
     let pictures = preview.as_ref().map_or(told, |preview| preview.pictures);
 
-    let new_lab = || again().map(|body| Lab::new(source.clone(), scene.clone(), body));
-    let new_lab = || new_lab().map(|lab| prepared(lab, options, preview.as_ref()));
+    let lab_of = |body| prepared(Lab::new(source.clone(), scene.clone(), body), options, preview.as_ref());
+    let new_lab = || again().map(lab_of);
     let samples = match format {
         MovieFormat::Gif => samples(&mut canvas, new_lab()?, preview.as_ref(), (delay, pictures))?,
         _ => Vec::new(),
