@@ -33,7 +33,7 @@ fn number(text: &str) -> f64 {
 fn every_frame_of_a_drag_is_an_equilibrium() {
     for id in ["article", "cantilever", "bridge", "cook", "incline"] {
         let mut ui = open(id);
-        ui.state_mut().desk.session.frame_work = Duration::from_secs(20);
+        ui.state_mut().desk.session.frame.limit = Duration::from_secs(20);
         unfold(&mut ui, "stable");
         for method in [MethodKind::Warped, MethodKind::Newton, MethodKind::Linear] {
             ui.state_mut().set_scene(scene(id).with_method(method)).unwrap();
@@ -117,7 +117,7 @@ fn a_dragged_body_stays_in_view() {
     let cases = (0..320).map(|case| (ids[case % 5], sizes[case / 5 % 4], case / 20));
     for case @ (id, size, direction) in sampled(cases, 19) {
         let mut lab = lab_of(id, scene(id));
-        lab.desk.session.frame_work = Duration::from_secs(20);
+        lab.desk.session.frame.limit = Duration::from_secs(20);
         let mut ui = window(size, lab);
         ui.run();
         let (tip, way) = (ui.tip(), Vec2::angled(std::f32::consts::TAU * direction as f32 / 16.0));

@@ -16,7 +16,7 @@ fn dragging_the_force_slider_bends_the_beam_as_solve_does() {
     let places = |ui: &Ui| [ui.rect(Role::Slider, "Force"), ui.get_by_label_contains("Material: ").rect()];
     let (before, laid_out, at) = ((ui.force(), tip(&ui)), places(&ui), ui.slider("Force"));
     // However fast the machine is, the beam still moves after a frame.
-    ui.state_mut().desk.session.frame_work = std::time::Duration::ZERO;
+    ui.state_mut().desk.session.frame.limit = std::time::Duration::ZERO;
     ui.hold(at(0.4));
     ui.run();
     ui.move_to(at(0.46));

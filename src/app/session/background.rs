@@ -150,7 +150,7 @@ impl Session {
     /// Displays a result in place of the current model.
     fn display(&mut self, model: Model) {
         let scene = std::mem::replace(&mut self.model, model).simulation.scene().clone();
-        self.timings = *self.model.simulation.last_iteration();
+        self.frame.timings = *self.model.simulation.last_iteration();
         self.scene_changed(&scene);
         let before = self.background.before.as_mut();
         if before.is_some_and(|before| std::mem::take(&mut before.is_another_document)) {

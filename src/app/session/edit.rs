@@ -40,7 +40,7 @@ pub(crate) struct Changed {
 impl Session {
     /// Records the presses of the pointer: edits during one press are one undo step.
     pub(crate) fn record_press(&mut self, press: Press) {
-        self.is_held = press.goes_on;
+        self.frame.is_held = press.goes_on;
         self.undo.record_press(press);
     }
 
@@ -115,7 +115,7 @@ impl Session {
             self.model.geometry = Arc::new(DisplayGeometry::new(self.model.simulation.system().mesh()));
         }
         self.present.scene = scene;
-        (self.is_edited_now, self.running) = (true, self.running || !self.is_motion());
+        (self.frame.is_edited_now, self.running) = (true, self.running || !self.is_motion());
         self.scene_changed(&before);
         self.begin_accepted_at_rest();
         let known = self.model.linear.take();
@@ -135,7 +135,7 @@ impl Session {
         if scene == before {
             return;
         }
-        self.is_from_rest = false;
+        self.frame.is_from_rest = false;
         let is_another_mesh = !has_mesh_of(scene, before);
         let is_another_body = is_another_mesh || scene.analysis != before.analysis;
         self.changed.mesh |= is_another_mesh;
@@ -145,7 +145,7 @@ impl Session {
         // A time step with other settings takes another time.
         let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
         if scene.analysis == Analysis::Dynamic && is_another_step {
-            self.timings = Timings::default();
+            self.frame.timings = Timings::default();
         }
     }
 
@@ -175,15 +175,15 @@ impl Session {
         self.running = true;
         self.playback = Playback::default();
         self.facts.curve.clear();
-        self.live = Follower::default();
-        self.is_slow = false;
+        self.facts.live = Follower::default();
+        self.frame.is_slow = false;
     }
 
     /// Makes the current scene the unedited scene of a document; the undo history is cleared.
     pub(crate) fn rebase(&mut self, source: Source) {
         self.present.document = Document::new(source, self.present.scene.clone());
         self.undo = UndoHistory::default();
-        self.is_slow = false;
+        self.frame.is_slow = false;
     }
 
     /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.

@@ -99,6 +99,11 @@ pub(crate) struct Facts {
     pub limits: Keyed<LimitsFact>,
     pub rho: Keyed<RhoFact>,
     pub time: Keyed<TimeFact>,
+    /// Certification of a copy of the displayed body.
+    pub certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
+    pub(super) live: Follower,
+    /// Body that is solved from rest to measure the time of a dragged load, and the last such solve with its scene.
+    pub(super) timed: Option<(Simulation, SolveFromRest)>,
 }
 
 impl Facts {
@@ -280,7 +285,7 @@ impl Session {
 
     /// Certifies the result, that of a large body in the background; returns `true` while that is pending.
     fn request_certificate(&mut self) -> bool {
-        if let Some(task) = &self.certifying {
+        if let Some(task) = &self.facts.certifying {
             match task.poll() {
                 Update::None | Update::Progress(()) => return true,
                 Update::Done(certified) => {
@@ -296,7 +301,7 @@ impl Session {
                 }
                 Update::Died => self.certify(),
             }
-            self.certifying = None;
+            self.facts.certifying = None;
         }
         let is_known = !self.model.simulation.equilibrium().is_some_and(Equilibrium::needs_certificate)
             && self.model.quality.is_of(self.drawn());
@@ -309,11 +314,11 @@ impl Session {
             };
             Task::start("certify", work).ok()
         });
-        self.certifying = started;
-        if self.certifying.is_none() {
+        self.facts.certifying = started;
+        if self.facts.certifying.is_none() {
             self.certify();
         }
-        self.certifying.is_some()
+        self.facts.certifying.is_some()
     }
 
     /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
@@ -343,15 +348,15 @@ impl Session {
         let is_found = simulation.status().is_success();
         let is_wanted = (is_found || is_lost(simulation)) && simulation.mouse_spring().is_none();
         if !is_wanted || simulation.system().dofs() > MAX_CERTIFIED_HERE {
-            return self.live.poll();
+            return self.facts.live.poll();
         }
         let linear = self.model.linear.as_ref().and_then(first_probe);
-        self.live.request(&self.present.scene, first_probe(simulation).filter(|_| is_found), linear)
+        self.facts.live.request(&self.present.scene, first_probe(simulation).filter(|_| is_found), linear)
     }
 
     /// Returns `true` while the reference that follows the load is being computed.
     pub fn is_following(&self) -> bool {
-        self.live.running.is_some()
+        self.facts.live.running.is_some()
     }
 
     /// Measures the time of a solve from rest, if it was short at the last rest; if that failed, if the last search was.
@@ -359,11 +364,11 @@ impl Session {
         /// Largest time of a solve in a frame.
         const SHORT: Duration = Duration::from_millis(2);
         let last = self.facts.time.latest().filter(|solve| solve.is_solved);
-        let time = last.map_or(self.timings.total(), |solve| solve.timings.total());
+        let time = last.map_or(self.frame.timings.total(), |solve| solve.timings.total());
         if time >= SHORT || self.timed_solve().is_some() {
             return;
         }
-        let timed = self.timed.take().map(|(timed, _)| timed);
+        let timed = self.facts.timed.take().map(|(timed, _)| timed);
         let timed = timed.filter(|timed| Arc::ptr_eq(timed.system(), self.model.simulation.system()));
         let timed =
             timed.or_else(|| Simulation::with_system(&self.present.scene, self.model.simulation.system().clone()).ok());
@@ -372,7 +377,7 @@ impl Session {
             timed.reset();
             timed.solve();
             let solve = SolveFromRest::of(&timed);
-            self.timed = Some((timed, solve));
+            self.facts.timed = Some((timed, solve));
         }
     }
 

@@ -21,12 +21,11 @@ use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
 pub(crate) use crate::app::session::edit::{Changed, Edit, object_name};
-use crate::app::session::facts::{Facts, Follower, Live, ShownFacts};
+use crate::app::session::facts::{Facts, Live, ShownFacts};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{UndoHistory, Version};
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, solve_linear};
-use crate::app::task::thread::Task;
 use crate::mesh::MaterialPoint;
 use crate::state::State;
 use crate::study::{SolveFromRest, StudyError, is_unstable};
@@ -53,6 +52,29 @@ pub(crate) struct Grab {
     pub release: bool,
 }
 
+/// Iterations of the displayed frames.
+#[derive(Debug, Default)]
+pub(crate) struct FrameWork {
+    /// Time of iterations after which a frame makes no more.
+    pub limit: Duration,
+    /// Part of this time that is left in the current frame.
+    left: Duration,
+    /// Time of the iterations of the last frame.
+    timings: Timings,
+    /// `true` if a frame makes one iteration: slow motion of the method.
+    pub is_slow: bool,
+    /// `true` while the pointer is pressed.
+    is_held: bool,
+    /// `true` if the scene has been edited since the last [`Session::follow_edit`].
+    is_edited_now: bool,
+    /// `true` if the frame before, in which there was such an edit, has left the search unfinished.
+    was_edited: bool,
+    /// `true` if the search began at rest.
+    is_from_rest: bool,
+    /// `true` if this frame iterates once it is known that there is no edit.
+    is_postponed: bool,
+}
+
 /// One model being worked on.
 #[derive(Debug)]
 pub struct Session {
@@ -65,35 +87,13 @@ pub struct Session {
     pub most_unknowns: u64,
     background: Background,
     running: bool,
-    /// `true` if a displayed frame makes one iteration: slow motion of the method.
-    pub is_slow: bool,
-    /// Time of iterations after which a displayed frame makes no more.
-    pub frame_work: Duration,
-    /// Part of this time that is left in the current frame.
-    frame_left: Duration,
-    /// `true` while the pointer is pressed.
-    is_held: bool,
-    /// `true` if the scene has been edited since the last [`Self::follow_edit`].
-    is_edited_now: bool,
-    /// `true` if the frame before, in which there was such an edit, has left the search unfinished.
-    was_edited: bool,
-    /// `true` if the search began at rest.
-    is_from_rest: bool,
-    /// `true` if this frame iterates once it is known that there is no edit.
-    is_postponed: bool,
-    /// Time of the iterations of the last displayed frame.
-    timings: Timings,
+    pub(crate) frame: FrameWork,
     pub(crate) playback: Playback,
-    /// Certification of a copy of the displayed body.
-    pub(crate) certifying: Option<Task<(), Box<(Simulation, Quality)>>>,
     /// Bodies drawn in place of a search that has found no equilibrium.
     fallback: Fallback,
     /// Equilibrium before the body was grabbed, which its release restores, and the time of its iterations.
     before_grab: Option<(Model, Timings)>,
     facts: Facts,
-    live: Follower,
-    /// Body that is solved from rest to measure the time of a dragged load, and the last such solve with its scene.
-    timed: Option<(Simulation, SolveFromRest)>,
     /// `true` if the scene's file has changed on disk since it was read or saved.
     pub(crate) is_outdated: bool,
     pub(crate) changed: Changed,
@@ -115,22 +115,16 @@ impl Session {
             most_unknowns: MAX_UNKNOWNS,
             background: Background::default(),
             running: true,
-            is_slow: false,
-            frame_work: MAX_FRAME_WORK,
-            frame_left: MAX_FRAME_WORK,
-            is_held: false,
-            is_edited_now: false,
-            was_edited: false,
-            is_from_rest: true,
-            is_postponed: false,
-            timings: Timings::default(),
+            frame: FrameWork {
+                limit: MAX_FRAME_WORK,
+                left: MAX_FRAME_WORK,
+                is_from_rest: true,
+                ..FrameWork::default()
+            },
             playback: Playback::default(),
-            certifying: None,
             fallback: Fallback::default(),
             before_grab: None,
             facts: Facts::default(),
-            live: Follower::default(),
-            timed: None,
             is_outdated: false,
             changed: Changed::default(),
             notices: Vec::new(),
@@ -186,7 +180,8 @@ impl Session {
     pub(crate) fn live(&self) -> Option<&Live> {
         let has_error = |reference: &Reference| reference.first().is_some();
         let is_wanted = self.reference().is_none() && self.facts.reference.latest().is_some_and(has_error);
-        self.live
+        self.facts
+            .live
             .known
             .as_deref()
             .filter(|live| is_wanted && live.reference.first().is_some() && live.is_of_body(&self.present.scene))
@@ -199,13 +194,14 @@ impl Session {
     }
 
     fn timed_solve(&self) -> Option<&SolveFromRest> {
-        let own = self.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.present.scene).map(|(_, solve)| solve);
+        let own =
+            self.facts.timed.as_ref().filter(|(timed, _)| *timed.scene() == self.present.scene).map(|(_, solve)| solve);
         self.facts.time.get(&self.present.scene).or(own)
     }
 
     /// Returns time and result at the load at which the hand rested last, during the drag of a load.
     pub(crate) fn last_from_rest(&self) -> Option<&SolveFromRest> {
-        self.facts.time.latest().filter(|_| self.is_held && !self.is_grabbed())
+        self.facts.time.latest().filter(|_| self.frame.is_held && !self.is_grabbed())
     }
 
     fn is_grabbed(&self) -> bool {
@@ -213,7 +209,7 @@ impl Session {
     }
 
     pub(crate) fn timings(&self) -> &Timings {
-        &self.timings
+        &self.frame.timings
     }
 
     /// Returns `true` if the scene is a motion.
@@ -250,7 +246,7 @@ impl Session {
     /// is drawn.
     pub(crate) fn fallback(&self) -> Option<&Simulation> {
         // An iterate that was asked for, or of a body that is not dragged, is drawn however far it is from equilibrium.
-        let goes_on = self.running && self.is_held && !self.is_slow && !self.is_in_background();
+        let goes_on = self.running && self.frame.is_held && !self.frame.is_slow && !self.is_in_background();
         let is_wild = goes_on && self.model.simulation.residual() > WILD;
         let is_hidden = match self.model.simulation.status() {
             Status::Running => is_wild && !self.is_motion(),
@@ -282,19 +278,19 @@ impl Session {
     /// time). Returns `true` if it has iterated.
     pub(crate) fn advance(&mut self, now: f64) -> bool {
         self.poll();
-        self.frame_left = self.frame_work;
+        self.frame.left = self.frame.limit;
         if self.is_in_background() || !self.iterates() {
             self.playback.clock.rest();
             return false;
         }
         if self.is_motion() {
             self.playback.advance(now, &mut self.model.simulation);
-            self.timings = *self.model.simulation.last_iteration();
+            self.frame.timings = *self.model.simulation.last_iteration();
             return false;
         }
         // The edit that a drag makes in this frame comes first.
-        self.is_postponed = std::mem::take(&mut self.was_edited) && !self.is_slow;
-        if !self.is_postponed {
+        self.frame.is_postponed = std::mem::take(&mut self.frame.was_edited) && !self.frame.is_slow;
+        if !self.frame.is_postponed {
             self.search();
         }
         true
@@ -302,34 +298,34 @@ impl Session {
 
     /// Iterates until the search ends or the frame has no more time; once in slow motion.
     fn search(&mut self) {
-        self.timings = Timings::default();
+        self.frame.timings = Timings::default();
         let since = Instant::now();
         while *self.model.simulation.status() == Status::Running {
             self.iterate_once();
             self.start_again();
-            if self.is_slow || since.elapsed() >= self.frame_left {
+            if self.frame.is_slow || since.elapsed() >= self.frame.left {
                 break;
             }
         }
-        self.frame_left = self.frame_left.saturating_sub(since.elapsed());
+        self.frame.left = self.frame.left.saturating_sub(since.elapsed());
     }
 
     /// Goes back to rest after a search from another state that has found no equilibrium: an iteration may lead to one from
     /// there.
     fn start_again(&mut self) {
         let simulation = &mut self.model.simulation;
-        let is_free = simulation.mouse_spring().is_none() && !self.is_slow;
-        if is_lost(simulation) && is_free && !std::mem::replace(&mut self.is_from_rest, true) {
+        let is_free = simulation.mouse_spring().is_none() && !self.frame.is_slow;
+        if is_lost(simulation) && is_free && !std::mem::replace(&mut self.frame.is_from_rest, true) {
             self.playback.reset(simulation);
         }
     }
 
     /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
     pub(crate) fn follow_edit(&mut self) -> bool {
-        let is_edited = std::mem::take(&mut self.is_edited_now) && !self.is_motion();
-        self.was_edited |= is_edited;
-        let has_news = std::mem::take(&mut self.is_postponed) || is_edited;
-        if has_news && self.iterates() && !(self.is_motion() || self.is_slow || self.is_in_background()) {
+        let is_edited = std::mem::take(&mut self.frame.is_edited_now) && !self.is_motion();
+        self.frame.was_edited |= is_edited;
+        let has_news = std::mem::take(&mut self.frame.is_postponed) || is_edited;
+        if has_news && self.iterates() && !(self.is_motion() || self.frame.is_slow || self.is_in_background()) {
             self.search();
         }
         has_news
@@ -339,17 +335,17 @@ impl Session {
     pub(crate) fn iterate(&mut self) {
         if self.is_motion() {
             self.playback.step(&mut self.model.simulation);
-            self.timings = *self.model.simulation.last_iteration();
+            self.frame.timings = *self.model.simulation.last_iteration();
             return;
         }
-        self.timings = Timings::default();
+        self.frame.timings = Timings::default();
         self.iterate_once();
     }
 
     fn iterate_once(&mut self) {
         if *self.model.simulation.status() == Status::Running {
             self.model.step();
-            self.timings.add(self.model.simulation.last_iteration());
+            self.frame.timings.add(self.model.simulation.last_iteration());
             self.fallback.keep(&self.model.simulation);
         }
     }
@@ -374,7 +370,7 @@ impl Session {
         }
         self.playback.reset(&mut self.model.simulation);
         self.model.residuals.clear();
-        self.is_from_rest = true;
+        self.frame.is_from_rest = true;
     }
 
     /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
@@ -425,7 +421,7 @@ impl Session {
         {
             // Pulling fails only for a position that is not finite; the pointer's is.
             let _ = self.model.simulation.pull_to(target);
-            self.is_edited_now = true;
+            self.frame.is_edited_now = true;
         }
         if grab.release {
             self.release();
@@ -439,7 +435,7 @@ impl Session {
         match self.model.snapshot().filter(|_| is_final) {
             Some(mut copy) => {
                 if copy.simulation.grab(point) {
-                    self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.timings));
+                    self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.frame.timings));
                 }
             }
             None => _ = self.model.simulation.grab(point),
@@ -449,10 +445,10 @@ impl Session {
     fn release(&mut self) {
         let before = self.before_grab.take();
         if let Some(before) = before.filter(|(model, _)| model.simulation.scene() == self.model.simulation.scene()) {
-            (self.model, self.timings) = before;
+            (self.model, self.frame.timings) = before;
             return;
         }
-        self.is_from_rest = false;
+        self.frame.is_from_rest = false;
         self.model.simulation.release();
         self.begin_accepted_at_rest();
     }

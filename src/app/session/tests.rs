@@ -400,7 +400,7 @@ fn a_large_body_without_an_equilibrium_comes_to_rest() {
     assert!(is_lost(session.simulation()), "{:?}", session.simulation().status());
     let begun = Instant::now();
     session.request_facts(ShownFacts::default(), false);
-    while session.certifying.is_some() {
+    while session.facts.certifying.is_some() {
         assert!(begun.elapsed().as_secs() < 60, "it is certified without end");
         session.request_facts(ShownFacts::default(), false);
         std::thread::yield_now();
@@ -416,9 +416,9 @@ fn a_large_result_is_certified_in_the_background() {
         session.iterate();
     }
     let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
-    assert!(session.request_facts(ShownFacts::default(), false) && session.certifying.is_some());
+    assert!(session.request_facts(ShownFacts::default(), false) && session.facts.certifying.is_some());
     assert_eq!(certificate(&session), None, "it is not computed between two frames");
-    while session.certifying.is_some() {
+    while session.facts.certifying.is_some() {
         session.request_facts(ShownFacts::default(), false);
         std::thread::yield_now();
     }
@@ -433,7 +433,7 @@ fn a_large_result_is_certified_in_the_background() {
     }
     session.request_facts(ShownFacts::default(), false);
     session.apply(with_force(&session, -1200.0)).unwrap();
-    while session.iterates() || session.certifying.is_some() {
+    while session.iterates() || session.facts.certifying.is_some() {
         session.iterate();
         session.request_facts(ShownFacts::default(), false);
     }

@@ -156,7 +156,7 @@ impl Lab {
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
-        session.is_working() || session.certifying.is_some() || plots || measures || at_rest
+        session.is_working() || session.facts().certifying.is_some() || plots || measures || at_rest
     }
 
     /// Restores the saved settings.

@@ -71,7 +71,7 @@ impl Lab {
         self.learn.reach = reach;
         let Desk { session, viewport, view, panel, .. } = &mut self.desk;
         session.rebase(source);
-        session.is_slow = setup.waits;
+        session.frame.is_slow = setup.waits;
         *panel = PanelState::default();
         view.color_with(setup.field);
         view.fixed_range = None;

@@ -336,7 +336,7 @@ impl MainView {
         let (session, is_motion) = (content.session, content.session.is_motion());
         let status = session.drawn().status();
         let is_sound = if is_motion { !matches!(status, Status::Stopped(_)) } else { status.is_success() };
-        let is_stepped = !is_motion && (session.is_slow || !session.is_running());
+        let is_stepped = !is_motion && (session.frame.is_slow || !session.is_running());
         if is_sound || (is_stepped || drags) && self.is_of_usual_size(content, if drags { 2.0 } else { 10.0 }) {
             let before = if drags { Some(self.camera.whole) } else { self.swept.filter(|_| is_motion) };
             let exact = self.exact(content);
