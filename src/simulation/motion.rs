@@ -74,14 +74,6 @@ impl Moment {
         Self { state: state.clone(), ledger, counts, decision, is_linear, method }
     }
 
-    /// Copies another moment of the same body without allocating.
-    pub(super) fn copy_from(&mut self, motion: &TimeStepping, Body { state, scene, .. }: &Body) {
-        self.state.copy_from(state);
-        self.method = scene.solver.method;
-        (self.ledger, self.counts, self.decision) = (motion.ledger, motion.counts, motion.decision);
-        self.is_linear = motion.linear.in_use;
-    }
-
     /// Returns the state of the body.
     pub fn state(&self) -> &State {
         &self.state

@@ -149,9 +149,4 @@ impl<'a> Motion<'a> {
     pub fn moment(self) -> Moment {
         Moment::of(self.steps, self.body)
     }
-
-    /// Overwrites an earlier snapshot of the same body with the current motion, without allocating.
-    pub fn copy_moment(self, moment: &mut Moment) {
-        moment.copy_from(self.steps, self.body);
-    }
 }

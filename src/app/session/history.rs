@@ -32,20 +32,13 @@ pub(crate) struct History {
     /// Name of the probe.
     pub probe: String,
     pub moments: VecDeque<Moment>,
-    /// Dropped moments whose memory is reused.
-    spare: Vec<Moment>,
 }
 
 impl History {
     /// Removes all samples and moments.
     pub(crate) fn clear(&mut self) {
         self.samples.clear();
-        self.clear_moments();
-    }
-
-    /// Removes all moments.
-    pub(super) fn clear_moments(&mut self) {
-        (self.moments, self.spare) = Default::default();
+        self.moments.clear();
     }
 
     /// Removes the samples and moments after `time`, s.
@@ -101,29 +94,12 @@ impl History {
     /// for a model at rest.
     pub(super) fn keep_moment(&mut self, simulation: &Simulation, most_bytes: usize) {
         let now = simulation.state().time();
-        if self.moments.back().is_some_and(|last| last.state().time() == now) {
-            return;
-        }
-        if let Some(bytes) = self.moments.front().map(Moment::bytes) {
-            let most = (most_bytes / bytes.max(1)).min(MAX_MOMENTS);
-            while self.moments.len() >= most.max(1) {
-                self.spare.extend(self.moments.pop_front());
-            }
-            self.spare.truncate(1);
-            if most == 0 {
-                self.clear_moments();
-                return;
-            }
-        }
-        let Some(motion) = simulation.motion() else { return };
-        let recorded = match self.spare.pop() {
-            Some(mut moment) => {
-                motion.copy_moment(&mut moment);
-                moment
-            }
-            None => motion.moment(),
-        };
-        self.moments.push_back(recorded);
+        let is_kept = self.moments.back().is_some_and(|last| last.state().time() == now);
+        let Some(motion) = simulation.motion().filter(|_| !is_kept) else { return };
+        let moment = motion.moment();
+        let most = (most_bytes / moment.bytes().max(1)).min(MAX_MOMENTS);
+        self.moments.push_back(moment);
+        self.moments.drain(..self.moments.len().saturating_sub(most));
     }
 
     /// Returns the moment at exactly `time`, s.
@@ -151,7 +127,7 @@ impl History {
 
     #[cfg(test)]
     fn bytes(&self) -> usize {
-        self.moments.iter().chain(&self.spare).map(Moment::bytes).sum()
+        self.moments.iter().map(Moment::bytes).sum()
     }
 }
 
@@ -194,7 +170,7 @@ mod tests {
         assert!(past.at(4.0).is_some() && past.at(4.5).is_none());
         past.truncate_after(4.0);
         assert_eq!(past.nearest(30.0), Some(4.0));
-        past.clear_moments();
+        past.moments.clear();
         assert_eq!((past.nearest(1.0), past.bytes()), (None, 0));
     }
 }

@@ -109,7 +109,7 @@ impl Playback {
     }
 
     fn discard_past(&mut self) {
-        self.history.clear_moments();
+        self.history.moments.clear();
         (self.shown, self.kept) = (None, self.played);
     }
 
