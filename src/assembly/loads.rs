@@ -156,12 +156,6 @@ impl Loads {
         }
     }
 
-    /// Returns the end of the last pulse, s; `None` if there are no pulses.
-    pub fn last_pulse_end(&self) -> Option<f64> {
-        let moments = self.moments.iter().filter_map(|m| m.pulse);
-        self.pulses.iter().map(|(pulse, _)| *pulse).chain(moments).map(|p| p.end()).reduce(f64::max)
-    }
-
     /// Returns the work of the pulses from one state to another at a later time, J: the mean of their forces over that
     /// time times the change of displacement.
     pub(crate) fn pulse_work(&self, [before, after]: [&State; 2]) -> f64 {

@@ -17,7 +17,7 @@ use crate::rotation::{Rotation, polar};
 use crate::scene::{Analysis, Invalid, Scene};
 use crate::section::Wrench;
 use crate::state::{State, StateError, is_finite};
-use crate::stress::{ErrorEstimate, NodalStress};
+use crate::stress::NodalStress;
 use crate::timings::Timings;
 
 mod field;
@@ -536,12 +536,6 @@ impl Simulation {
     /// ```
     pub fn nodal_stress(&self) -> NodalStress {
         NodalStress::of(&self.body.problem, &self.body.state, self.kinematics())
-    }
-
-    /// Returns the estimate of the mesh's error in the current state; see [`ErrorEstimate`].
-    #[doc(hidden)]
-    pub fn mesh_error(&self, nodal: &NodalStress) -> ErrorEstimate {
-        ErrorEstimate::of(&self.body.problem, &self.body.state, nodal)
     }
 
     /// Returns the strain measure of the current state.

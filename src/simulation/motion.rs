@@ -369,7 +369,7 @@ impl TimeStepping {
     /// Returns `true` if nothing has moved for a while, and no pulse is to come.
     pub(super) fn is_at_rest(&self, Body { scene, state, .. }: &Body) -> bool {
         let quiet = f64::from(self.quiet_steps) * scene.dynamics.time_step;
-        let pulses_are_over = scene.loads.iter().filter_map(Load::pulse).all(|p| p.start + p.duration <= state.time);
+        let pulses_are_over = scene.loads.iter().filter_map(Load::pulse).all(|pulse| pulse.end() <= state.time);
         self.quiet_steps >= QUIET_STEPS && quiet >= QUIET && pulses_are_over
     }
 

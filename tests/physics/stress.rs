@@ -89,7 +89,7 @@ fn stresses_at_a_hole_converge() {
             errors.push((off.map(|off| off.norm_squared()).sum::<f64>() / nodes.len() as f64).sqrt());
             let top = simulation.system().mesh().nearest_node(Vector2::new(0.0, 1.0));
             concentration = nodal.cauchy().nth(top as usize).unwrap().unwrap().plane.m11 / pull;
-            let (rms, error) = (errors[errors.len() - 1], simulation.mesh_error(&nodal).percent.unwrap());
+            let (rms, error) = (errors[errors.len() - 1], simulation.stress_result().mesh_error_percent.unwrap());
             println!("{kind:?} {n}: K {concentration:.4}, rms {rms:.4}, mesh error {error:.2} %");
         }
         let bound = if kind.entry().points.len() == 1 { 0.1 } else { 0.03 };
@@ -195,7 +195,7 @@ fn stresses_rotate_with_the_body() {
                 let off = (b.unwrap().plane - expected).amax();
                 assert!(off < 1e-7 * largest, "{kind:?} {name}: {off} of {largest}");
             }
-            let [a, b] = [(&straight, &a), (&turned, &b)].map(|(s, n)| s.mesh_error(n).percent.unwrap());
+            let [a, b] = [&straight, &turned].map(|body| body.stress_result().mesh_error_percent.unwrap());
             assert!((a - b).abs() < 1e-6 * a, "{kind:?} {name}: {a} {b}");
         }
     }
@@ -217,7 +217,7 @@ fn cauchy_stress_is_the_force_per_deformed_area() {
             assert!((cauchy.unwrap().von_mises() - pull / section).abs() < 1e-6 * pull, "{kind:?}: {cauchy:?}");
         }
         assert!((simulation.solution().deformation.max_strain - 0.18).abs() < 5e-4);
-        assert!(simulation.mesh_error(&nodal).percent.unwrap() < 1e-4);
+        assert!(simulation.stress_result().mesh_error_percent.unwrap() < 1e-4);
     }
 }
 
@@ -229,7 +229,7 @@ fn mesh_errors(scene: &Scene, fine: &Simulation) -> (f64, Option<f64>) {
     let rule: Vec<_> = scene.element().entry().mass_points.iter().map(|point| (point.at, point.weight)).collect();
     let exact = |x| nodal.mean(&mesh.weights(mesh.locate(x).unwrap()).unwrap()).strain;
     let error = strain_error(coarse.problem(), coarse.state(), &rule, exact);
-    (100.0 * error, coarse.mesh_error(&coarse.nodal_stress()).percent)
+    (100.0 * error, coarse.stress_result().mesh_error_percent)
 }
 
 /// On smooth scenes, the estimate is between half and twice the true error for every element.
@@ -264,11 +264,11 @@ fn the_field_of_the_mesh_error_is_known_where_the_error_is() {
     let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1e3]).with_element(ElementKind::Q4);
     for (across, is_known) in [(1, false), (2, true)] {
         let simulation = solved(&scene.clone().with_cells(10, across));
-        let error = simulation.mesh_error(&simulation.nodal_stress());
+        let error = simulation.stress_result().mesh_error_percent;
         let mut values = Vec::new();
         simulation.field(Field::MeshError, &mut values);
         assert_eq!(values.len(), 4 * simulation.mesh().element_count());
-        assert_eq!(error.percent.is_some(), is_known);
+        assert_eq!(error.is_some(), is_known);
         assert!(values.iter().all(|value| value.is_some() == is_known), "{values:?}");
     }
 }
