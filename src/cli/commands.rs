@@ -13,6 +13,7 @@ use crate::atomic_write;
 use crate::export::{self, ExportError, Format, MotionWriter};
 use crate::format::{count, number, percent};
 use crate::plot::{self, Drawing};
+use crate::progress::Progress;
 use crate::scene::{self, Analysis, Probe, Scene};
 use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
@@ -26,10 +27,9 @@ use crate::timings::Timings;
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
+    let SolveArgs { scene, json, out, reference: extent, certificate, no_certificate } = args;
     // Report a wrong file name before solving.
-    let format = args.out.as_deref().map(Format::of).transpose()?;
-    let extent = args.extent();
-    let SolveArgs { scene, json, out, certificate, no_certificate, .. } = args;
+    let format = out.as_deref().map(Format::of).transpose()?;
     let source = scene::Source::from(scene);
     let (scene, mut simulation) = simulate(&source)?;
     let fits = |option, given| check_fit((&source, &scene), (option, given), false, "it is about equilibria");
@@ -207,11 +207,13 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
         (None, None) => return Err(no_path()),
     };
-    outputs.write_table(|| table)?;
-    outputs.write_picture(|| {
-        let path = path.as_ref().ok_or_else(no_path)?;
-        Ok(plot::figures([&path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
-    })?;
+    outputs.write(
+        || table,
+        || {
+            let path = path.as_ref().ok_or_else(no_path)?;
+            Ok(plot::figures([path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
+        },
+    )?;
     text::print(&summary)?;
     Ok(exit_code(path.is_none_or(|path| path.end.is_none())))
 }
@@ -294,8 +296,8 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
     let all = cases.len() + motion_cases.len();
     let watch = Watch::new();
     let observe = |done: usize| {
-        watch.show(done as f64 / all as f64, || format!("{done} of {all} cases"));
-        watch.flow()
+        let now = format!("{done} of {all} cases").into();
+        watch.observe(Progress { fraction: done as f64 / all as f64, now: Some(&now) })
     };
     let entries = solve_atlas(&cases, observe)?;
     let motions = solve_atlas(&motion_cases, |done| observe(cases.len() + done))?;

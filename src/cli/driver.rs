@@ -1,13 +1,11 @@
 //! Workaround for a graphics driver that prints errors without a desktop session.
 
 /// Environment variable that disables Mesa's device selection layer.
-#[cfg(target_os = "linux")]
 const NO_DEVICE_SELECTION: &str = "NODEVICE_SELECT";
 
 /// Restarts the program once with Mesa's device selection layer disabled, if there is no desktop session: the layer
 /// would print an error for every image, and only the environment of a new process can disable it. If the restart
 /// fails, the program continues, and the error is printed.
-#[cfg(target_os = "linux")]
 pub(super) fn silence() {
     use std::os::unix::process::CommandExt;
 
@@ -21,7 +19,3 @@ pub(super) fn silence() {
         log::debug!("not restarted: {error}");
     }
 }
-
-/// Does nothing; drivers of other systems do not print such errors.
-#[cfg(not(target_os = "linux"))]
-pub(super) fn silence() {}

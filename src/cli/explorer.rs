@@ -6,7 +6,6 @@
 //! leaves its console at once, which closes it.
 
 /// Leaves the console and returns `true` if Windows Explorer has started the program. Errors then need a dialog.
-#[cfg(windows)]
 pub(super) fn leave_console() -> bool {
     let is_parent = parent().is_some_and(|name| name.eq_ignore_ascii_case("explorer.exe"));
     if is_parent && let Err(error) = winsafe::FreeConsole() {
@@ -16,7 +15,6 @@ pub(super) fn leave_console() -> bool {
 }
 
 /// Returns the file name of the program that has started this one.
-#[cfg(windows)]
 fn parent() -> Option<String> {
     let mut snapshot = winsafe::HPROCESSLIST::CreateToolhelp32Snapshot(winsafe::co::TH32CS::SNAPPROCESS, None).ok()?;
     let processes = snapshot.iter_processes().flatten();
@@ -27,20 +25,9 @@ fn parent() -> Option<String> {
 }
 
 /// Shows an error in a dialog.
-#[cfg(windows)]
 pub(super) fn show_error(text: &str) {
     use winsafe::prelude::Handle as _;
 
     // If the dialog cannot be shown, there is nothing left that could show the error.
     let _ = winsafe::HWND::NULL.MessageBox(text, "warpbeam", winsafe::co::MB::ICONERROR);
 }
-
-/// Returns `false`: other systems open no console for a program.
-#[cfg(not(windows))]
-pub(super) fn leave_console() -> bool {
-    false
-}
-
-/// Does nothing: on other systems standard error shows errors.
-#[cfg(not(windows))]
-pub(super) fn show_error(_: &str) {}

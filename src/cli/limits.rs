@@ -25,8 +25,7 @@ pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
     let notes: Vec<String> = seams.chain(moved_points(&scene, system.mesh()).iter().map(ToString::to_string)).collect();
     let limits =
         watched(|observe| MethodLimits::of(&scene, observe, &|_| {})).map_err(|error| about(&source, error))?;
-    outputs.write_table(|| table(&limits))?;
-    outputs.write_picture(|| Ok(plot::limits(&limits, &scene)))?;
+    outputs.write(|| table(&limits), || Ok(plot::limits(&limits, &scene)))?;
     text::print(&match json {
         true => as_json(&limits, &scene, &notes),
         false => summary(&limits, &scene) + &text::notes(&notes),

@@ -22,9 +22,9 @@ use crate::simulation::{Simulation, SimulationError};
 
 mod args;
 mod commands;
-#[cfg(feature = "app")]
+#[cfg(all(feature = "app", target_os = "linux"))]
 mod driver;
-#[cfg(feature = "app")]
+#[cfg(all(feature = "app", windows))]
 mod explorer;
 mod json;
 mod limits;
@@ -109,11 +109,11 @@ pub fn main() -> ExitCode {
 fn run() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
     let command = Cli::try_parse().unwrap_or_else(|error| with_hint(error).exit()).command;
-    #[cfg(feature = "app")]
+    #[cfg(all(feature = "app", target_os = "linux"))]
     if matches!(command, None | Some(Command::Run { .. } | Command::Shot(_) | Command::Record(_) | Command::Gpu(_))) {
         driver::silence();
     }
-    #[cfg(feature = "app")]
+    #[cfg(all(feature = "app", windows))]
     let needs_dialog = matches!(command, None | Some(Command::Run { .. })) && explorer::leave_console();
     let result = match command {
         #[cfg(feature = "app")]
@@ -143,7 +143,7 @@ fn run() -> ExitCode {
     };
     result.unwrap_or_else(|error| {
         eprintln!("warpbeam: {error}");
-        #[cfg(feature = "app")]
+        #[cfg(all(feature = "app", windows))]
         if needs_dialog {
             explorer::show_error(&error.to_string());
         }

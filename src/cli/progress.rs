@@ -57,13 +57,8 @@ impl Watch {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Returns [`ControlFlow::Break`] if the command should end with its partial result.
-    pub(super) fn flow(&self) -> ControlFlow<()> {
-        if self.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-
     /// Shows a message and the completed fraction, 0 to 1.
-    pub(super) fn show(&self, fraction: f64, message: impl FnOnce() -> String) {
+    fn show(&self, fraction: f64, message: impl FnOnce() -> String) {
         let now = Instant::now();
         let spent = now.duration_since(self.began);
         let mut drawn = self.drawn.lock().unwrap_or_else(PoisonError::into_inner);
@@ -107,7 +102,7 @@ impl Watch {
         if let Some(now) = progress.now {
             self.show(progress.fraction, || now.to_string());
         }
-        self.flow()
+        if self.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::format::{Context, engineering, in_power, number, prefix, three_digits
 use crate::plot;
 use crate::scene::{self, Scene, SectionLine};
 use crate::section::{Section, SectionError, SectionForces, SectionPoint};
-use crate::simulation::{Simulation, Status};
+use crate::simulation::{Equilibrium, Simulation, Status};
 use crate::study::section_chart::{self, COMPONENTS, SectionComponent};
 
 /// Runs the command.
@@ -47,27 +47,21 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
         return Ok(exit_code(false));
     }
     let sections = cut(&simulation)?;
-    outputs.write_table(|| match (along, &sections[..]) {
-        (None, [section]) => stress_table(section),
-        _ => forces_table(&sections),
-    })?;
     // Diagrams and largest values do not miss a jump between the sections that were asked for.
     let diagram = LazyCell::new(|| simulation.diagram_sections());
     let diagram = || LazyCell::force(&diagram).as_ref().map_err(|error| refused(*error));
-    outputs.write_picture(|| {
+    let table = || match (along, &sections[..]) {
+        (None, [section]) => stress_table(section),
+        _ => forces_table(&sections),
+    };
+    outputs.write(table, || {
+        let within = |cuts: &[Section]| section_chart::contexts(cuts, &simulation);
+        let stress = |cut| section_chart::stress(cut, &scene, &within(std::slice::from_ref(cut)), &ToString::to_string);
         Ok(match along {
-            None => {
-                let figures = sections.iter().flat_map(|cut| {
-                    let within = section_chart::contexts(std::slice::from_ref(cut), &simulation);
-                    section_chart::stress(cut, &scene, &within, &ToString::to_string)
-                });
-                plot::figures(&figures.collect::<Vec<_>>())
-            }
+            None => plot::figures(sections.iter().flat_map(stress)),
             Some(_) => {
                 let diagram = diagram()?;
-                let within = section_chart::contexts(diagram, &simulation);
-                let figures = section_chart::forces(diagram, &scene, &within, &ToString::to_string);
-                plot::figures(&figures)
+                plot::figures(section_chart::forces(diagram, &scene, &within(diagram), &ToString::to_string))
             }
         })
     })?;
@@ -83,12 +77,9 @@ pub(super) fn section(args: SectionArgs) -> Result<ExitCode, CliError> {
 }
 
 fn heading(scene: &Scene, simulation: &Simulation) -> String {
-    let factor = simulation.equilibrium().map_or(1.0, |equilibrium| equilibrium.load_factor());
-    let part = if factor < 1.0 {
-        format!(", at {} % of the load", number(three_digits(100.0 * factor)))
-    } else {
-        String::new()
-    };
+    let factor = simulation.equilibrium().map(Equilibrium::load_factor).filter(|factor| *factor < 1.0);
+    let part = |factor| format!(", at {} % of the load", number(three_digits(100.0 * factor)));
+    let part = factor.map_or_else(String::new, part);
     format!("{}: element {}, {}{part}\n", scene.name, scene.element().id(), simulation.status().word())
 }
 
@@ -125,10 +116,7 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
     );
     let short = |value: f64| in_power(within.rounded(value), power);
     for point in shown(&section.points) {
-        let cells = |stress: Option<[f64; 2]>| match stress {
-            Some(stress) => stress.map(short),
-            None => [(); 2].map(|()| "–".to_owned()),
-        };
+        let cells = |stress: Option<[f64; 2]>| stress.map_or_else(|| ["–"; 2].map(str::to_owned), |s| s.map(short));
         let ([normal, shear], [beam_normal, beam_shear]) = (cells(point.stress), cells(point.beam));
         let along = in_power(along_within.rounded(point.along), along_power);
         let _ = writeln!(text, "{along:>10}  {normal:>12} {beam_normal:>12}  {shear:>12} {beam_shear:>12}");

@@ -50,15 +50,14 @@ impl OutputArgs {
         self.table.as_deref().map_or(Ok(()), |path| check_suffix(path, ".csv"))
     }
 
-    /// Writes the table, if one is wanted.
-    pub fn write_table(&self, table: impl FnOnce() -> String) -> Result<(), CliError> {
-        let Some(path) = &self.table else { return Ok(()) };
-        Ok(export::write_text(path, &table())?)
-    }
-
-    /// Writes the picture, if one is wanted.
-    pub fn write_picture(&self, drawing: impl FnOnce() -> Result<Drawing, CliError>) -> Result<(), CliError> {
+    /// Writes the table and the picture, each if it is wanted.
+    pub fn write(
+        &self,
+        table: impl FnOnce() -> String,
+        picture: impl FnOnce() -> Result<Drawing, CliError>,
+    ) -> Result<(), CliError> {
+        self.table.as_deref().map_or(Ok(()), |path| export::write_text(path, &table()))?;
         let Some(path) = &self.picture else { return Ok(()) };
-        Ok(export::write_text(path, &drawing()?.svg())?)
+        Ok(export::write_text(path, &picture()?.svg())?)
     }
 }

@@ -12,6 +12,7 @@ use crate::app;
 use crate::format::{count, number};
 use crate::render;
 use crate::scene;
+use crate::study::Extent;
 
 pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let ShotArgs { scene, output, options } = args;
@@ -64,7 +65,8 @@ pub(super) fn run(
             let picture = output.display();
             text::print(&format!("No window: {reason}.\nSolving the scene instead; the picture goes to {picture}.\n"))?;
             let scene_args = SceneArgs { scene: Some(source.name.clone()), assignments: source.assignments.clone() };
-            commands::solve(SolveArgs { scene: scene_args, ..SolveArgs::default() })?;
+            let reference = Some(Extent::Quick);
+            commands::solve(SolveArgs { scene: scene_args, reference, ..SolveArgs::default() })?;
             let look = app::LookArgs { adapter: app::AdapterArgs { adapter }, ..Default::default() };
             let options = app::ShotOptions { size: [1280, 800], look, ..Default::default() };
             app::shot(source, scene, simulation, &options, output, &|_| ControlFlow::Continue(()))?;

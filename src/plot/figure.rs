@@ -1,5 +1,7 @@
 //! Figures as drawings: lines and marks over linear axes, and the table beside them.
 
+use std::borrow::Borrow;
+
 use super::axes::{ChartAxis, ChartFrame};
 use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, solid};
 use crate::format::{number, prefix, rounded};
@@ -8,12 +10,13 @@ use crate::study::figure::{Figure, Ink, Mark};
 const TABLE: f64 = 330.0;
 
 /// Draws figures one below the other, each with the table beside it.
-pub fn figures<'a>(figures: impl IntoIterator<Item = &'a Figure>) -> Drawing {
+pub fn figures(figures: impl IntoIterator<Item: Borrow<Figure>>) -> Drawing {
     let ChartFrame { size: [width, height], .. } = ChartFrame::FILE;
     let size = [width + TABLE, height];
     let frame = ChartFrame { size, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0, ..ChartFrame::FILE };
     let mut drawing = Drawing::default();
     for figure in figures {
+        let figure = figure.borrow();
         frame.start(&mut drawing, figure.title.as_str());
         chart(&mut drawing, figure, figure.corners(), &frame);
         table(&mut drawing, figure, frame.across()[1] + 24.0, size[0] - 14.0);
