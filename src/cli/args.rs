@@ -198,10 +198,8 @@ pub(super) struct SectionArgs {
 
 fn parse_place(text: &str) -> Result<(f64, Option<f64>), CliError> {
     let coordinate = within(COORDINATE);
-    match text.split_once(',') {
-        Some((x, y)) => Ok((coordinate(x)?, Some(coordinate(y)?))),
-        None => Ok((coordinate(text)?, None)),
-    }
+    let (x, y) = text.split_once(',').map_or((text, None), |(x, y)| (x, Some(y)));
+    Ok((coordinate(x)?, y.map(coordinate).transpose()?))
 }
 
 #[derive(Debug, Args)]

@@ -23,7 +23,7 @@ use crate::study::{
     Claim, Demand, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError, Tuning,
     moved_points, parallel, path_chart,
 };
-use crate::timings::Timings;
+use crate::timings::{Timings, timed};
 
 pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let began = Instant::now();
@@ -64,14 +64,11 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     if let Some(path) = out.as_deref().filter(|_| is_static) {
         written = export::write(&simulation, path);
     }
-    let mut path = None;
     let status = simulation.status().clone();
     let mut certify_path = Duration::ZERO;
-    if status == Status::Converged && certifies {
-        let certified = Instant::now();
-        path = LoadPath::to_result(&simulation, &|progress| watch.observe(progress));
-        certify_path = certified.elapsed();
-    }
+    let observe = |progress: Progress<'_>| watch.observe(progress);
+    let follow = || timed(&mut certify_path, || LoadPath::to_result(&simulation, &observe));
+    let path = (status == Status::Converged && certifies).then(follow).flatten();
     let recovered = Instant::now();
     let stress = simulation.stress_result();
     let has_forces = !matches!(status, Status::Diverged(_));
@@ -83,7 +80,7 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
     let reference = extent
         .filter(|_| is_static && status.is_success() && !is_elsewhere)
         .filter(|_| !watch.is_cancelled() && !scene.probes.is_empty())
-        .map(|extent| Reference::find(&scene, Some(&simulation), extent, &|progress| watch.observe(progress)));
+        .map(|extent| Reference::find(&scene, Some(&simulation), extent, &observe));
     let reference_time = sought.elapsed();
     let interrupted = watch.is_cancelled();
     drop(watch);
@@ -140,24 +137,25 @@ pub(super) fn solve(args: SolveArgs) -> Result<ExitCode, CliError> {
 
 /// Returns sentences about the limitations of a result that are found without a reference solution.
 fn limits_of(simulation: &Simulation, deformation: &Deformation, stress: &StressResult) -> Vec<String> {
-    let mut limits: Vec<String> = Vec::new();
+    fn texts<T: ToString>(limits: impl IntoIterator<Item = T>) -> Vec<String> {
+        limits.into_iter().map(|limit| limit.to_string()).collect()
+    }
     let Deformation { max_strain, inverted_elements, .. } = *deformation;
-    let inversion = inversion_warning(inverted_elements, simulation.mesh().element_count());
+    let (scene, mesh, system) = (simulation.scene(), simulation.mesh(), simulation.system());
     // The strains of a diverging iteration mean nothing.
     let strain = strain_warning(max_strain).filter(|_| !matches!(simulation.status(), Status::Diverged(_)));
-    limits.extend(inversion.iter().chain(&strain).map(ToString::to_string));
-    if simulation.passes_through_itself() {
-        limits.push("the body passes through itself: contact is not modelled".to_owned());
-    }
-    limits.extend(simulation.system().seams().iter().map(ToString::to_string));
-    limits.extend(stress.singularity.map(|singularity| singularity.to_string()));
-    limits.extend(moved_points(simulation.scene(), simulation.mesh()).iter().map(ToString::to_string));
-    let crowded = simulation.system().crowded_supports(|i| format!("support.{i}"));
-    limits.extend(crowded.iter().map(ToString::to_string));
-    limits.extend(simulation.scene().unresolved_pulses());
-    limits
-        .extend(simulation.motion().and_then(|motion| motion.ledger().drift_warning()).map(|drift| drift.to_string()));
-    limits
+    [
+        texts(inversion_warning(inverted_elements, mesh.element_count())),
+        texts(strain),
+        texts(simulation.passes_through_itself().then_some("the body passes through itself: contact is not modelled")),
+        texts(system.seams()),
+        texts(stress.singularity),
+        texts(moved_points(scene, mesh)),
+        texts(system.crowded_supports(|i| format!("support.{i}"))),
+        scene.unresolved_pulses(),
+        texts(simulation.motion().and_then(|motion| motion.ledger().drift_warning())),
+    ]
+    .concat()
 }
 
 /// Returns sentences about errors above the one that is asked of `auto`.
@@ -207,35 +205,27 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
         (None, None) => return Err(no_path()),
     };
-    outputs.write(
-        || table,
-        || {
-            let path = path.as_ref().ok_or_else(no_path)?;
-            Ok(plot::figures([path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
-        },
-    )?;
+    let picture = || {
+        let path = path.as_ref().ok_or_else(no_path)?;
+        Ok(plot::figures([path_chart::figure(path, &scene, &ordinate, &ToString::to_string)]))
+    };
+    outputs.write(|| table, picture)?;
     text::print(&summary)?;
     Ok(exit_code(path.is_none_or(|path| path.end.is_none())))
 }
 
 /// Returns the quantity to be drawn by its name.
 fn ordinate(scene: &Scene, name: &str) -> Result<Ordinate, CliError> {
-    let of_probe = |(i, probe): (usize, &Probe)| {
-        let parts = [
-            ("", Ordinate::Probe(i)),
-            (".x", Ordinate::Component(i, 0)),
-            (".y", Ordinate::Component(i, 1)),
-            (".path", Ordinate::Path(i)),
-        ];
-        parts.map(|(part, ordinate)| (format!("{}{part}", probe.name), ordinate))
+    let of_probe = |(i, Probe { name, .. }): (usize, &Probe)| {
+        let [x, y] = [0, 1].map(|axis| Ordinate::Component(i, axis));
+        let parts = [("", Ordinate::Probe(i)), (".x", x), (".y", y), (".path", Ordinate::Path(i))];
+        parts.map(|(part, ordinate)| (format!("{name}{part}"), ordinate))
     };
     let supports = (0..scene.supports.len()).map(|i| (format!("support.{i}"), Ordinate::Reaction(i)));
-    let (names, mut ordinates): (Vec<String>, Vec<Ordinate>) =
-        scene.probes.iter().enumerate().flat_map(of_probe).chain(supports).unzip();
-    match names.iter().position(|known| known == name) {
-        Some(known) => Ok(ordinates.swap_remove(known)),
-        None => Err(format!("--of {name}: expected one of {}", names.join(", ")).into()),
-    }
+    let all: Vec<_> = scene.probes.iter().enumerate().flat_map(of_probe).chain(supports).collect();
+    let found = all.iter().find(|(known, _)| known == name).map(|(_, ordinate)| *ordinate);
+    let names = || all.iter().map(|(known, _)| known.as_str()).collect::<Vec<_>>().join(", ");
+    found.ok_or_else(|| format!("--of {name}: expected one of {}", names()).into())
 }
 
 pub(super) fn study(source: &scene::Source, out: &FolderArgs) -> Result<ExitCode, CliError> {
@@ -283,8 +273,7 @@ fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) ->
         // The mesh path is relative to the scene file, which changes. The folder of a bare file name is the current
         // one.
         let folder = |path: &Path| path.parent().and_then(|folder| std::path::absolute(folder.join(".")).ok());
-        let old = folder(&source.name);
-        if let Some(old) = old.filter(|old| Some(old) != folder(path).as_ref()) {
+        if let Some(old) = folder(&source.name).filter(|old| Some(old) != folder(path).as_ref()) {
             mesh.file = old.join(&mesh.file).display().to_string();
         }
     }

@@ -26,9 +26,8 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let probes = solution.probes.iter().enumerate();
     let probes: Vec<Value> =
         probes.map(|(i, p)| probe(p, stress.probes.get(i), references.get(i).and_then(Option::as_ref))).collect();
-    let supports: Vec<Value> = scene.supports.iter().zip(&solution.supports).map(|(s, r)| support(s, r)).collect();
-    let certificate = solution.certificate.unwrap_or_default();
-    let deformation = &solution.deformation;
+    let supports = scene.supports.iter().zip(&solution.supports);
+    let (certificate, deformation) = (solution.certificate.unwrap_or_default(), &solution.deformation);
     let times = [("total", solved.solve), ("wall", solved.wall)].into_iter().chain(solved.parts);
     let microseconds = times.map(|(name, time)| (name.to_owned(), json!(time.as_secs_f64() * 1e6)));
     let time_us: Map<String, Value> = microseconds.collect();
@@ -78,7 +77,7 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
             "dissipated": ledger.map(|ledger| ledger.dissipated),
         },
         "reaction": solution.reaction,
-        "supports": supports,
+        "supports": supports.map(|(s, r)| support(s, r)).collect::<Value>(),
         "time_us": time_us,
     });
     // Other methods have no `auto`.
@@ -129,7 +128,6 @@ fn tensor(tensor: &PlaneTensor) -> Value {
 }
 
 fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&ProbeReference>) -> Value {
-    let (u, source) = (reference.map(|r| r.displacement), reference.map(|r| r.source));
     let cauchy = stress.and_then(|s| s.cauchy);
     json!({
         "name": result.name,
@@ -139,8 +137,8 @@ fn probe(result: &ProbeResult, stress: Option<&ProbeStress>, reference: Option<&
         "strain": stress.map(|s| tensor(&s.strain)),
         "stress": cauchy.map(|s| tensor(&s)),
         "von_mises": cauchy.map(|s| s.von_mises()),
-        "reference_u": u,
-        "reference_source": source.map(|source| source.to_string()),
+        "reference_u": reference.map(|r| r.displacement),
+        "reference_source": reference.map(|r| r.source.to_string()),
         "reference_error_percent": reference.map(|r| r.own_error_percent),
         "error_percent": reference.and_then(|r| r.error_percent(result)),
     })

@@ -38,19 +38,17 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
     let load = |factor: f64| load_text(&axis, factor);
     let [low, high] = limits.range.map(load);
     let mut text = format!("{}: {} from {low} to {high}, {} in the scene; ", scene.name, axis.name, load(1.0));
-    let _ = match limits.duration {
+    text += &match limits.duration {
         Some(duration) => {
-            let _ = write!(text, "the first {} of the motion", engineering(three_digits(duration), "s"));
             let mesh = limits.mesh_error_text().map_or_else(String::new, |mesh| format!("; {mesh}"));
-            writeln!(text, "{mesh}\n")
+            format!("the first {} of the motion{mesh}\n\n", engineering(three_digits(duration), "s"))
         }
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
             let own = limits.large_reference_error_percent();
             let own = own.map_or_else(String::new, |own| format!(", its own error is at most {}", percent(own)));
-            let _ = writeln!(text, "the reference solution is known at {known} of {all} loads{own}");
-            limits.criticals_text(&axis).into_iter().for_each(|criticals| text += &(criticals + "\n"));
-            writeln!(text)
+            let criticals = limits.criticals_text(&axis).map_or_else(String::new, |criticals| criticals + "\n");
+            format!("the reference solution is known at {known} of {all} loads{own}\n{criticals}\n")
         }
     };
     let ends = if limits.duration.is_some() { "finishes to" } else { "converges to" };

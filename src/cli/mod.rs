@@ -14,7 +14,7 @@ use clap::{CommandFactory as _, Parser};
 use self::args::{Cli, Command};
 use crate::assembly::{Problem, System};
 use crate::format::number;
-use crate::scene::{self, Analysis, Scene};
+use crate::scene::{self, Analysis, MeshFile, Scene};
 use crate::section::{Section, SectionError};
 #[cfg(feature = "app")]
 use crate::simulation::Status;
@@ -46,18 +46,6 @@ const NO_ADAPTER: u8 = 3;
 
 /// Error that ends a command early; its text is the message.
 type CliError = Box<dyn std::error::Error + Send + Sync>;
-
-/// Returns the exit code of an error.
-#[cfg_attr(not(feature = "app"), expect(unused_variables, reason = "only a window needs an adapter"))]
-fn error_code(error: &CliError) -> u8 {
-    #[cfg(feature = "app")]
-    if let Some(crate::app::AppError::Render(error)) = error.downcast_ref()
-        && error.is_missing_adapter()
-    {
-        return NO_ADAPTER;
-    }
-    BAD_INPUT
-}
 
 /// Returns an error with the name of its scene.
 fn about(source: &scene::Source, error: impl std::fmt::Display) -> CliError {
@@ -147,7 +135,13 @@ fn run() -> ExitCode {
         if needs_dialog {
             explorer::show_error(&error.to_string());
         }
-        ExitCode::from(error_code(&error))
+        #[cfg(feature = "app")]
+        if let Some(crate::app::AppError::Render(error)) = error.downcast_ref()
+            && error.is_missing_adapter()
+        {
+            return ExitCode::from(NO_ADAPTER);
+        }
+        ExitCode::from(BAD_INPUT)
     })
 }
 
@@ -213,15 +207,15 @@ fn warn_of_mesh(source: &scene::Source, scene: &Scene, system: &System) {
     if source.built_in().is_some() {
         return;
     }
-    let size = system.size();
-    if let Some(mesh) = scene.mesh.as_ref().filter(|mesh| mesh.scale.is_none() && size > LARGE) {
-        let (file, size) = (&mesh.file, number(size.round()));
+    let (size, mesh) = (system.size(), scene.mesh.as_ref());
+    if let Some(MeshFile { file, .. }) = mesh.filter(|mesh| mesh.scale.is_none() && size > LARGE) {
         let advice = "if it is in millimetres, write scale = 0.001 under [mesh], else scale = 1";
-        eprintln!("warpbeam: warning: {file} is {size} m across; {advice}");
+        eprintln!("warpbeam: warning: {file} is {} m across; {advice}", number(size.round()));
     }
     system.seams().iter().for_each(|seam| eprintln!("warpbeam: warning: {seam}"));
-    let file = scene.mesh.as_ref().map(|mesh| &mesh.file);
-    if let Some(file) = file.filter(|file| scene::built_in_mesh(file, &source.folder()).is_some()) {
+    if let Some(file) = mesh.map(|mesh| &mesh.file)
+        && scene::built_in_mesh(file, &source.folder()).is_some()
+    {
         let stand_in = "the built-in mesh of this name is used";
         eprintln!("warpbeam: warning: {file} does not exist in the folder of the scene; {stand_in}");
     }

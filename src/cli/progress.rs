@@ -88,10 +88,9 @@ impl Watch {
                 let rate = || time / self.began.elapsed().as_secs_f64().max(1e-9);
                 self.show(time / duration, || format!("{time:.3} of {duration} s, {:.3} s per second", rate()));
             } else {
-                let fraction = (residual.ln() / tolerance.ln()).clamp(0.0, 1.0);
-                self.show(if fraction.is_finite() { fraction } else { 0.0 }, || {
-                    format!("iteration {n}, residual {residual:.1e}")
-                });
+                // `f64::max` turns NaN into 0.
+                let fraction = (residual.ln() / tolerance.ln()).max(0.0);
+                self.show(fraction, || format!("iteration {n}, residual {residual:.1e}"));
             }
         }
         simulation.stop();

@@ -105,15 +105,9 @@ fn of_cut(section: &Section, simulation: &Simulation) -> String {
     let ((power, symbol), within) = (prefix(&stresses, "Pa"), Context::of(stresses));
     let along: Vec<f64> = section.points.iter().map(|point| point.along).collect();
     let ((along_power, along_symbol), along_within) = (prefix(&along, "m"), Context::of_inexact(along, 1e-6));
-    let _ = writeln!(
-        text,
-        "\nstress, {symbol}Pa ({theory})\n{:>10}  {:>12} {:>12}  {:>12} {:>12}",
-        format!("η, {along_symbol}m"),
-        "normal",
-        "beam theory",
-        "shear",
-        "beam theory"
-    );
+    let place = format!("η, {along_symbol}m");
+    let _ = writeln!(text, "\nstress, {symbol}Pa ({theory})");
+    let _ = writeln!(text, "{place:>10}        normal  beam theory         shear  beam theory");
     let short = |value: f64| in_power(within.rounded(value), power);
     for point in shown(&section.points) {
         let cells = |stress: Option<[f64; 2]>| stress.map_or_else(|| ["–"; 2].map(str::to_owned), |s| s.map(short));

@@ -313,11 +313,9 @@ pub(super) fn path(scene: &Scene, path: &LoadPath) -> String {
     let displacement = path.driven.map(|i| format!("displacement of {}", support_text(scene, i)));
     let width = displacement.as_ref().map_or(0, |displacement| displacement.chars().count());
     let probe = scene.probes.first().map(|p| p.name.as_str());
-    let _ = match &displacement {
-        Some(displacement) => write!(text, "   load   {displacement}  {:<17}", "its reaction"),
-        None => write!(text, "   load   "),
-    };
-    let _ = writeln!(text, "{}", probe.map_or_else(String::new, |probe| format!("displacement of {probe}")));
+    let probe = probe.map_or_else(String::new, |probe| format!("displacement of {probe}"));
+    let driven = displacement.map_or_else(String::new, |moved| format!("{moved}  {:<17}", "its reaction"));
+    let _ = writeln!(text, "   load   {driven}{probe}");
     let shown: Vec<&PathState> = path.states.iter().step_by((path.states.len() / 12).max(1)).collect();
     // The smallest number of digits that tells the rows apart.
     let digits = (1..=8).find(|&digits| {

@@ -20,18 +20,18 @@ pub(super) fn shot(args: ShotArgs) -> Result<ExitCode, CliError> {
     let source = scene::Source::from(scene);
     let (scene, simulation) = simulate(&source)?;
     sections_of(&source, &simulation)?;
-    let fits = |option, given, moves, reason| check_fit((&source, &scene), (option, given), moves, reason);
-    for (option, given) in [("--compare", options.compare.is_some()), ("--curve", options.curve)] {
-        fits(option, given, false, "it shows equilibria; for a motion, --motion shows the energy")?;
+    let shows = "it shows equilibria; for a motion, --motion shows the energy";
+    let energy = "it shows the energy of a motion; for an equilibrium, use --compare";
+    let measures = options.study && options.learn.is_none();
+    for (option, given, moves, reason) in [
+        ("--compare", options.compare.is_some(), false, shows),
+        ("--curve", options.curve, false, shows),
+        ("--sections", options.sections, false, "for a motion, use `warpbeam section`"),
+        ("--motion", options.motion, true, energy),
+        ("--study", measures, false, "it measures solves; for a motion, use `warpbeam study`"),
+    ] {
+        check_fit((&source, &scene), (option, given), moves, reason)?;
     }
-    fits("--sections", options.sections, false, "for a motion, use `warpbeam section`")?;
-    fits("--motion", options.motion, true, "it shows the energy of a motion; for an equilibrium, use --compare")?;
-    fits(
-        "--study",
-        options.study && options.learn.is_none(),
-        false,
-        "it measures solves; for a motion, use `warpbeam study`",
-    )?;
     let watch = Watch::new();
     let shot = app::shot(source, scene, simulation, &options, &output, &|progress| watch.observe(progress))?;
     let interrupted = watch.is_cancelled();
@@ -78,11 +78,10 @@ pub(super) fn run(
 pub(super) fn gpu(name: Option<&str>) -> Result<ExitCode, CliError> {
     let adapters = render::adapters(name);
     text::print(&text::adapters(&adapters))?;
-    if adapters.iter().any(|adapter| adapter.is_used) {
-        return Ok(ExitCode::SUCCESS);
+    if !adapters.iter().any(|adapter| adapter.is_used) {
+        // The error has the reason for which none is used.
+        render::Gpu::headless_on(name).map_err(app::AppError::from)?;
     }
-    // The error has the reason for which none is used.
-    render::Gpu::headless_on(name).map_err(app::AppError::from)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -5,9 +5,6 @@ use crate::format::ticks;
 use crate::scene::ElementKind;
 use crate::study::figure::Ink;
 
-/// Height of a row of a legend.
-pub(super) const ROW: f64 = 22.0;
-
 /// Size of a chart, and the space around its axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChartFrame {

@@ -133,14 +133,11 @@ impl DrawTarget for Drawing {
 
     fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>) {
         let number = self.elements.len();
-        self.elements.push(corner_and_size.map_or_else(
-            || "</g>".to_owned(),
-            |rect| {
-                let rect = self.rect_attributes(rect);
-                let clip = format!("<clipPath id=\"clip{number}\"><rect{rect}/></clipPath>");
-                format!("{clip}\n<g clip-path=\"url(#clip{number})\">")
-            },
-        ));
+        let start = corner_and_size.map(|rect| {
+            let clip = format!("<clipPath id=\"clip{number}\"><rect{}/></clipPath>", self.rect_attributes(rect));
+            format!("{clip}\n<g clip-path=\"url(#clip{number})\">")
+        });
+        self.elements.push(start.unwrap_or_else(|| "</g>".to_owned()));
     }
 }
 

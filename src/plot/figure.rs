@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use super::axes::{ChartAxis, ChartFrame};
 use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, solid};
 use crate::format::{number, prefix, rounded};
-use crate::study::figure::{Figure, Ink, Mark};
+use crate::study::figure::{Figure, FigureQuantity, Ink, Mark};
 
 const TABLE: f64 = 330.0;
 
@@ -40,18 +40,17 @@ pub(crate) fn chart(
         }
     }
     let axes = [0, 1].map(|i| ChartAxis::linear([low[i], high[i]], ends[i]));
-    let mut names = [String::new(), String::new()];
-    let mut numbers = [Vec::new(), Vec::new()];
-    for i in 0..2 {
-        let Some(quantity) = figure.quantity(i) else { continue };
-        let (power, symbol) = prefix(&[low[i], high[i]], quantity.unit);
-        let unit = format!("{symbol}{}", quantity.unit);
-        names[i] = if unit.is_empty() { quantity.name.clone() } else { format!("{}, {unit}", quantity.name) };
+    let scale = |i: usize| {
+        let FigureQuantity { name, unit } = figure.quantity(i)?;
+        let (power, symbol) = prefix(&[low[i], high[i]], unit);
         // Seven digits drop the rounding errors of the steps; adding 0 turns −0 into 0.
-        let tick = |v: f64| number(rounded(v / 10f64.powi(power), 7) + 0.0);
-        numbers[i] = axes[i].ticks().into_iter().map(|(place, v)| (place, tick(v))).collect();
-    }
-    frame.grid(drawing, numbers, [&names[0], &names[1]]);
+        let tick = |(place, v): (f64, f64)| (place, number(rounded(v / 10f64.powi(power), 7) + 0.0));
+        let unit = format!("{symbol}{unit}");
+        let name = if unit.is_empty() { name.clone() } else { format!("{name}, {unit}") };
+        Some((axes[i].ticks().into_iter().map(tick).collect(), name))
+    };
+    let [(x, x_name), (y, y_name)] = [0, 1].map(|i| scale(i).unwrap_or_default());
+    frame.grid(drawing, [x, y], [&x_name, &y_name]);
     drawing.clip(Some(area));
     // Marks in the same place lie in each other.
     let mut size = 6.5;
@@ -80,8 +79,8 @@ fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
         y += ROW;
         put(drawing, [&series.name, value], y);
         let middle = y - 4.5;
-        let line = || vec![[left, middle], [left + 20.0, middle]];
-        let places = if series.mark.is_line() { line() } else { vec![[left + 10.0, middle]] };
+        let ends: &[f64] = if series.mark.is_line() { &[0.0, 20.0] } else { &[10.0] };
+        let places: Vec<_> = ends.iter().map(|along| [left + along, middle]).collect();
         draw(drawing, series.ink, series.mark, &places, 4.5);
     }
 }
@@ -97,11 +96,12 @@ pub(crate) fn draw(drawing: &mut dyn DrawTarget, ink: Ink, mark: Mark, places: &
         return drawing.line(places, ink, Stroke { width: 2.2, dashes });
     }
     for &[x, y] in places {
-        let mut cross = |ends: [[f64; 2]; 2]| {
-            drawing.line(&ends.map(|[u, v]| [x + size * u, y + size * v]), ink, solid(2.0));
-        };
         match mark {
-            Mark::Cross => [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]].into_iter().for_each(&mut cross),
+            Mark::Cross => {
+                for up in [size, -size] {
+                    drawing.line(&[[x - size, y - up], [x + size, y + up]], ink, solid(2.0));
+                }
+            }
             Mark::Ring => drawing.circle([x, y], size, ink, Some(solid(1.5))),
             _ => drawing.circle([x, y], size, ink, None),
         }

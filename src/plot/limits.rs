@@ -14,16 +14,6 @@ const OVERLAP: f64 = 0.5;
 /// Colour of the slanted lines over a bar.
 const HATCH: Ink = Ink::Fixed([0x33; 3]);
 
-pub(crate) fn rating_ink(rating: Rating) -> Ink {
-    Ink::Fixed(match rating {
-        Rating::Good => [0x3a, 0x9d, 0x5d],
-        Rating::Usable => [0xe6, 0xc2, 0x3a],
-        Rating::Beyond => [0xe0, 0x7b, 0x39],
-        Rating::NotConverged => [0xbe, 0x14, 0x1e],
-        Rating::Unknown => [0xc4, 0xc8, 0xcc],
-    })
-}
-
 /// Draws the limits of a scene over the load.
 pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     const WIDTH: f64 = 1010.0;
@@ -114,7 +104,7 @@ impl LimitsChart<'_> {
         if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
             let x = axis.place(critical);
             let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
-            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], rating_ink(Rating::NotConverged), dashes);
+            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Rating::NotConverged.entry(false).0, dashes);
         }
         if let Some(up) = self.up() {
             self.draw_curve(drawing, [axis, up], render);
@@ -136,7 +126,7 @@ impl LimitsChart<'_> {
                 let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
                 let overlap = if is_joined && is_complete { OVERLAP } else { 0.0 };
                 let bar = [[from, y], [(to - from + overlap).max(0.0), self.height]];
-                drawing.rect(bar, rating_ink(piece.rating), opacity);
+                drawing.rect(bar, piece.rating.entry(false).0, opacity);
                 if piece.is_beyond_law {
                     hatch(drawing, [from, to], [y, y + self.height], HATCH);
                 }
@@ -186,9 +176,9 @@ pub(crate) fn hatch(drawing: &mut dyn DrawTarget, [from, to]: [f64; 2], [top, bo
 fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
     const BOX: f64 = 14.0;
     let mut x = 20.0;
-    for (rating, name) in Rating::all(moves) {
+    for (ink, name) in Rating::ALL.map(|rating| rating.entry(moves)) {
         let text = name.to_string();
-        drawing.rect([[x, y], [BOX, BOX]], rating_ink(rating), 1.0);
+        drawing.rect([[x, y], [BOX, BOX]], ink, 1.0);
         drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, &text);
         x += 46.0 + 7.4 * text.chars().count() as f64;
     }

@@ -17,6 +17,6 @@ pub(crate) use {
     axes::{ChartAxis, ChartFrame, mark},
     drawing::{Anchor, DrawTarget, Stroke, Text, solid},
     figure::{chart, draw},
-    limits::{LimitsChart, hatch, rating_ink},
+    limits::{LimitsChart, hatch},
     trade::{SMALLEST_ERROR, StudyChart},
 };

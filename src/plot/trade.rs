@@ -1,6 +1,6 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
-use super::axes::{ChartAxis, ChartFrame, ROW, mark};
+use super::axes::{ChartAxis, ChartFrame, mark};
 use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, Text, solid};
 use crate::dynamics::INTEGRATORS;
 use crate::format::number;
@@ -101,31 +101,26 @@ fn error(bound: f64) -> f64 {
     bound.clamp(SMALLEST_ERROR, LARGEST_ERROR)
 }
 
+/// Draws the key: each colour with every element, and the lines.
 fn key(drawing: &mut Drawing, frame: &ChartFrame, moves: bool) {
-    let [_, right] = frame.across();
-    let mut row = frame.top + 10.0;
-    let mut add = |symbol: &dyn Fn(&mut Drawing, f64), text: &str| {
-        symbol(drawing, row);
-        drawing.text([right + 36.0, row + 4.0], Anchor::Start, text);
-        row += ROW;
-    };
-    let methods = METHODS.iter().map(|entry| entry.id).filter(|_| !moves);
-    for id in methods.chain(INTEGRATORS.iter().map(|entry| entry.id).filter(|_| moves)) {
+    const ROW: f64 = 22.0;
+    let (x, mut y) = (frame.across()[1], frame.top + 10.0);
+    let integrators = INTEGRATORS.iter().map(|entry| entry.id).filter(|_| moves);
+    for id in METHODS.iter().map(|entry| entry.id).filter(|_| !moves).chain(integrators) {
         for element in ElementKind::all() {
-            let symbol = |drawing: &mut Drawing, row: f64| {
-                drawing.polygon(&mark([right + 22.0, row], element, 5.0), Ink::Solution(id), 1.0, "");
-            };
-            add(&symbol, &format!("{} {id}", element.id()));
+            drawing.polygon(&mark([x + 22.0, y], element, 5.0), Ink::Solution(id), 1.0, "");
+            drawing.text([x + 36.0, y + 4.0], Anchor::Start, &format!("{} {id}", element.id()));
+            y += ROW;
         }
     }
-    let line = |stroke| {
-        move |drawing: &mut Drawing, row: f64| {
-            drawing.line(&[[right + 12.0, row], [right + 32.0, row]], Ink::Curve, stroke)
-        }
-    };
-    add(&line(solid(WIDTH)), "Pareto front");
+    for (stroke, name) in
+        [(solid(WIDTH), "Pareto front"), (DASHED, "real time")].into_iter().take(1 + usize::from(moves))
+    {
+        drawing.line(&[[x + 12.0, y], [x + 32.0, y]], Ink::Curve, stroke);
+        drawing.text([x + 36.0, y + 4.0], Anchor::Start, name);
+        y += ROW;
+    }
     if moves {
-        add(&line(DASHED), "real time");
-        add(&|_, _| {}, "faint: linear theory");
+        drawing.text([x + 36.0, y + 4.0], Anchor::Start, "faint: linear theory");
     }
 }

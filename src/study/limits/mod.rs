@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 
-use super::figure::LoadAxis;
+use super::figure::{Ink, LoadAxis};
 use super::load_path::{LoadPath, MAX_UNKNOWNS};
 use super::prelude::*;
 use super::reference::{first_probe, system_of};
@@ -53,15 +53,20 @@ pub enum Rating {
 }
 
 impl Rating {
-    /// All classes, with their names at rest or in motion.
-    pub fn all(moves: bool) -> [(Self, Sentence); 5] {
-        [
-            (Self::Good, sentence!("within %{percent} %", percent = number(GOOD))),
-            (Self::Usable, sentence!("within %{percent} %", percent = number(USABLE))),
-            (Self::Beyond, sentence!("above %{percent} %", percent = number(USABLE))),
-            (Self::NotConverged, if moves { sentence!("stops early") } else { sentence!("does not converge") }),
-            (Self::Unknown, sentence!("error not known")),
-        ]
+    /// All classes, in the order of a legend.
+    pub const ALL: [Self; 5] = [Self::Good, Self::Usable, Self::Beyond, Self::NotConverged, Self::Unknown];
+
+    /// Returns the colour of the class, and its name at rest or in motion.
+    pub fn entry(self, moves: bool) -> (Ink, Sentence) {
+        let (color, name) = match self {
+            Self::Good => ([0x3a, 0x9d, 0x5d], sentence!("within %{percent} %", percent = number(GOOD))),
+            Self::Usable => ([0xe6, 0xc2, 0x3a], sentence!("within %{percent} %", percent = number(USABLE))),
+            Self::Beyond => ([0xe0, 0x7b, 0x39], sentence!("above %{percent} %", percent = number(USABLE))),
+            Self::NotConverged if moves => ([0xbe, 0x14, 0x1e], sentence!("stops early")),
+            Self::NotConverged => ([0xbe, 0x14, 0x1e], sentence!("does not converge")),
+            Self::Unknown => ([0xc4, 0xc8, 0xcc], sentence!("error not known")),
+        };
+        (Ink::Fixed(color), name)
     }
 }
 

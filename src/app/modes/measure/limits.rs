@@ -7,7 +7,7 @@ use crate::app::interface::*;
 use crate::app::modes::measure::first_probe;
 use crate::app::session::facts::with_default_methods;
 use crate::app::widgets::chart::ChartPainter;
-use crate::plot::{self, Anchor, DrawTarget, LimitsChart, Text, rating_ink, solid};
+use crate::plot::{self, Anchor, DrawTarget, LimitsChart, Text, solid};
 use crate::study::Setting;
 use crate::study::figure::{Ink, LoadAxis};
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
@@ -93,9 +93,9 @@ pub(crate) fn key(ui: &mut Ui, session: &Session, base: &Scene) {
         return;
     }
     ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
-    for (rating, name) in Rating::all(session.is_motion()) {
+    for (ink, name) in Rating::ALL.map(|rating| rating.entry(session.is_motion())) {
         legend::entry(ui, &said(&name), BOX, &|ui, rect| {
-            _ = ui.painter().rect_filled(rect, 0.0, Palette::new(ui.visuals()).ink(rating_ink(rating)));
+            _ = ui.painter().rect_filled(rect, 0.0, Palette::new(ui.visuals()).ink(ink));
         });
     }
     legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
