@@ -238,20 +238,17 @@ impl Claim {
             );
             Self::new("linear_theory", &[*percent, at.factor], text)
         };
-        let last = curve.samples.last().map(|sample| sample.factor).filter(|factor| *factor < 1.0);
-        let end = match (curve.buckles_at, last) {
-            (Some(factor), _) => {
-                let part = load_percent(factor);
-                let text = format!("the exact beam buckles at {part} of the load: beyond it, its path is unstable");
-                Some(Self::new("beam_buckles", &[factor], text))
-            }
-            (None, Some(factor)) => {
-                let part = engineering(three_digits(100.0 * factor), "%");
-                let text = format!("the exact beam could not be followed beyond {part} of the load");
-                Some(Self::new("beam_ends", &[factor], text))
-            }
-            (None, None) => None,
+        let buckles = |factor: f64| {
+            let part = load_percent(factor);
+            let text = format!("the exact beam buckles at {part} of the load: beyond it, its path is unstable");
+            Self::new("beam_buckles", &[factor], text)
         };
+        let last = curve.samples.last().map(|sample| sample.factor).filter(|factor| *factor < 1.0);
+        let ends = |factor: f64| {
+            let part = engineering(three_digits(100.0 * factor), "%");
+            Self::new("beam_ends", &[factor], format!("the exact beam could not be followed beyond {part} of the load"))
+        };
+        let end = curve.buckles_at.map(buckles).or_else(|| last.map(ends));
         curve.departures.iter().map(departure).chain(end).collect()
     }
 

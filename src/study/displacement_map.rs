@@ -44,13 +44,12 @@ impl DisplacementMap {
         by_x.sort_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
         let mut found = vec![(-OUTSIDE, None); points.len()];
         for triangle in &self.triangles {
-            let [Some((a, u)), Some((b, v)), Some((c, w))] = triangle.map(|corner| self.corner(corner)) else {
-                continue;
-            };
+            let corner = |corner: u32| (self.rest[corner as usize], self.displacements[corner as usize]);
+            let [(a, u), (b, v), (c, w)] = triangle.map(corner);
             // Barycentric coordinates; a triangle without area has none.
             let Some(inverse) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { continue };
             // Points at the largest distance are as far away as the triangle is large.
-            let [low, high] = [a.inf(b).inf(c), a.sup(b).sup(c)];
+            let [low, high] = [a.inf(&b).inf(&c), a.sup(&b).sup(&c)];
             let [low, high] = [low * 2.0 - high, high * 2.0 - low];
             let first = by_x.partition_point(|(_, at)| at.x < low.x);
             let around = by_x[first..].iter().take_while(|(_, at)| at.x <= high.x);
@@ -65,11 +64,6 @@ impl DisplacementMap {
             }
         }
         found.into_iter().map(|(_, u)| u).collect()
-    }
-
-    /// Returns rest position and displacement of a corner.
-    fn corner(&self, corner: u32) -> Option<(&Vector2<f64>, &Vector2<f64>)> {
-        Some((self.rest.get(corner as usize)?, self.displacements.get(corner as usize)?))
     }
 }
 

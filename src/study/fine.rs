@@ -349,27 +349,16 @@ fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
     2 * (vertices + on_sides * elements * corners / 2)
 }
 
-/// Point at which a scene has a support or a force.
-struct ScenePoint<'a> {
-    /// Key of its table.
-    key: String,
-    at: &'a [f64; 2],
-    at_point: bool,
-    width: f64,
-}
-
-/// Returns every point at which a scene has a support or a force.
-fn points(scene: &Scene) -> impl Iterator<Item = ScenePoint<'_>> {
-    let supports = scene.supports.iter().enumerate();
-    let supports = supports.map(|(i, s)| (format!("support.{i}"), &s.place, s.at_point, s.width));
-    let loads = scene.loads.iter().enumerate().filter_map(|(i, load)| match load {
-        Load::Force { place, at_point, width, .. } => Some((format!("load.{i}"), place, *at_point, *width)),
+/// Returns the places of a scene's supports and forces, each with the key of its table, and with its width if it acts at
+/// the point itself instead of on the nearest node.
+pub(super) fn places(scene: &mut Scene) -> impl Iterator<Item = (String, &mut Place, Option<f64>)> {
+    let supports = scene.supports.iter_mut().enumerate();
+    let supports = supports.map(|(i, s)| (format!("support.{i}"), &mut s.place, s.at_point.then_some(s.width)));
+    let loads = scene.loads.iter_mut().enumerate().filter_map(|(i, load)| match load {
+        Load::Force { place, at_point, width, .. } => Some((format!("load.{i}"), place, at_point.then_some(*width))),
         _ => None,
     });
-    supports.chain(loads).filter_map(|(key, place, at_point, width)| match place {
-        Place::At(at) => Some(ScenePoint { key, at, at_point, width }),
-        Place::Edge(_) => None,
-    })
+    supports.chain(loads)
 }
 
 /// Returns the points of a scene, of supports and forces that act on nodes, whose nearest node of its mesh is farther away
@@ -377,25 +366,21 @@ fn points(scene: &Scene) -> impl Iterator<Item = ScenePoint<'_>> {
 pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
     const ROUNDING: f64 = 1e-9;
     let (low, high) = mesh.bounds();
-    let on_nodes = points(scene).filter(|point| !point.at_point || mesh.locate((*point.at).into()).is_none());
-    let distances = on_nodes.map(|ScenePoint { key, at, .. }| {
-        let nearest = mesh.node(mesh.nearest_node((*at).into()));
-        MovedPoint { key, at: *at, distance: (nearest - Vector2::from(*at)).norm() }
-    });
-    distances.filter(|point| point.distance > ROUNDING * (high - low).norm()).collect()
+    let moved = |(key, place, width): (String, &mut Place, Option<f64>)| {
+        let Place::At(at) = *place else { return None };
+        let distance = (mesh.node(mesh.nearest_node(at.into())) - Vector2::from(at)).norm();
+        let is_on_node = width.is_none() || mesh.locate(at.into()).is_none();
+        let is_moved = is_on_node && distance > ROUNDING * (high - low).norm();
+        is_moved.then_some(MovedPoint { key, at, distance })
+    };
+    places(&mut scene.clone()).filter_map(moved).collect()
 }
 
 /// Moves the points of a scene to the nearest nodes of a mesh.
 fn snap(scene: &mut Scene, mesh: &Mesh) {
-    let to_node = |place: &mut Place| {
-        if let Place::At(at) = place {
+    for (_, place, width) in places(scene) {
+        if let (Place::At(at), None) = (place, width) {
             *at = mesh.node(mesh.nearest_node((*at).into())).into();
-        }
-    };
-    scene.supports.iter_mut().filter(|support| !support.at_point).for_each(|support| to_node(&mut support.place));
-    for load in &mut scene.loads {
-        if let Load::Force { place, at_point: false, .. } = load {
-            to_node(place);
         }
     }
 }
@@ -405,13 +390,15 @@ fn snap(scene: &mut Scene, mesh: &Mesh) {
 /// thin.
 fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let size = [beam.length, beam.height];
-    let probes = scene.probes.iter().filter_map(|p| if let Place::At(at) = &p.place { Some(at) } else { None });
+    let mut own = scene.clone();
+    let probes = scene.probes.iter().map(|probe| (&probe.place, 0.0));
+    let points = places(&mut own).map(|(_, place, width)| (&*place, width.unwrap_or(0.0))).chain(probes);
     // A width has lines at its ends, so that each mesh resolves it.
-    let lines_of = |ScenePoint { at: [x, y], width, .. }: ScenePoint<'_>| match width {
-        0.0 => vec![[*x, *y]],
-        width => vec![[x - 0.5 * width, *y], [x + 0.5 * width, *y]],
-    };
-    let points = points(scene).flat_map(lines_of).chain(probes.copied());
+    let points = points.flat_map(|(place, width)| match *place {
+        Place::At(at) if width == 0.0 => vec![at],
+        Place::At([x, y]) => vec![[x - 0.5 * width, y], [x + 0.5 * width, y]],
+        Place::Edge(_) => Vec::new(),
+    });
     let points = points.map(|at| straightened(beam, at.into())).map(|[along, across]| [along * size[0], across]);
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);

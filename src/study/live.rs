@@ -1,7 +1,7 @@
 //! Reference solution that follows a dragged load: fine solutions on a few small meshes, each of which goes on from its own
 //! last state.
 
-use super::fine::{Meshes, errors, prepared};
+use super::fine::{Meshes, errors, places, prepared};
 use super::prelude::*;
 use super::reference::{MovedPoint, Reference, probes_of};
 use crate::scene::SolverSettings;
@@ -58,12 +58,7 @@ impl LiveReference {
     pub(crate) fn follow(&mut self, scene: &Scene) -> Option<Reference> {
         // The points of the solutions are at nodes.
         let mut own = Scene { beam: self.own.beam.clone(), ..prepared(scene) };
-        own.supports.iter_mut().zip(&self.own.supports).for_each(|(to, from)| to.place.clone_from(&from.place));
-        for pair in own.loads.iter_mut().zip(&self.own.loads) {
-            if let (Load::Force { place: to, .. }, Load::Force { place: from, .. }) = pair {
-                to.clone_from(from);
-            }
-        }
+        places(&mut own).zip(places(&mut self.own)).for_each(|((_, to, _), (_, from, _))| to.clone_from(from));
         let goes_on = std::mem::replace(&mut self.is_started, false);
         if !(goes_on && self.solve(&own, MAX_WORK)) {
             // Far from the last load.

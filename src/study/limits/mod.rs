@@ -341,13 +341,12 @@ impl Strip {
         let all = [Property::Within(GOOD), Property::Within(USABLE), Property::Converges, Property::Law];
         all.into_iter().find_map(|property| {
             let answers: Vec<(f64, Option<bool>)> = self.answers(property).collect();
-            let is_change = |pair: &&[(f64, Option<bool>)]| {
+            let change = answers.windows(2).find(|pair| {
                 let [(from, before), (to, after)] = [pair[0], pair[1]];
-                let is_known = before.is_some() && after.is_some();
-                before != after && is_known && to > FINE * from && is_sought(property, to)
-            };
-            let is_error = matches!(property, Property::Within(_));
-            answers.windows(2).find(is_change).map(|pair| ((pair[0].0 * pair[1].0).sqrt(), is_error))
+                let changes = before.zip(after).is_some_and(|(before, after)| before != after);
+                changes && to > FINE * from && is_sought(property, to)
+            });
+            change.map(|pair| ((pair[0].0 * pair[1].0).sqrt(), matches!(property, Property::Within(_))))
         })
     }
 
