@@ -1,7 +1,12 @@
 //! Parallel execution of untimed work on all cores. Timed work must not run at the same time.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use rayon::prelude::*;
 
 use super::progress::StudyError;
 use crate::progress::{Observer, Progress};
@@ -30,21 +35,18 @@ pub fn all<T: Sync, R: Send>(
 
 /// Processes all items on all cores, and returns the results in order. Items are started in order. `observe` is called
 /// on the calling thread with the number of finished items, and can cancel the rest: items not started then give
-/// `None`, and the observer of running ones breaks.
-#[cfg(not(target_arch = "wasm32"))]
+/// `None`, and the observer of running ones breaks. A web page has no threads: it processes one item after the other.
 pub fn map<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T, Observer<'_>) -> R + Sync,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Vec<Option<R>> {
-    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-    use std::sync::mpsc::{self, RecvTimeoutError};
-    use std::time::Duration;
-
-    use rayon::prelude::*;
-
     /// Interval of calls of an observer while no item is finished.
     const ASK: Duration = Duration::from_millis(50);
+    if cfg!(target_arch = "wasm32") {
+        let one = |(done, item)| observe(done).is_continue().then(|| work(item, &|_| ControlFlow::Continue(())));
+        return items.iter().enumerate().map(one).collect();
+    }
     let cancelled = AtomicBool::new(false);
     let flow = |_: Progress<'_>| match cancelled.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
@@ -81,23 +83,9 @@ pub fn map<T: Sync, R: Send>(
     })
 }
 
-/// Processes all items one after the other, because a web page has no threads. `observe` is called with the number of
-/// finished items, and can cancel the rest, which then give `None`.
-#[cfg(target_arch = "wasm32")]
-pub fn map<T: Sync, R: Send>(
-    items: &[T],
-    work: impl Fn(&T, Observer<'_>) -> R + Sync,
-    mut observe: impl FnMut(usize) -> ControlFlow<()>,
-) -> Vec<Option<R>> {
-    let one = |(done, item)| observe(done).is_continue().then(|| work(item, &|_| ControlFlow::Continue(())));
-    items.iter().enumerate().map(one).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::{AtomicBool, Ordering};
     use std::thread;
-    use std::time::Duration;
 
     use super::*;
 
