@@ -16,27 +16,14 @@ const HATCH: Ink = Ink::Fixed([0x33; 3]);
 
 /// Draws the limits of a scene over the load.
 pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
-    const WIDTH: f64 = 1010.0;
-    const ROW: f64 = 26.0;
-    let loads = LoadAxis::of(scene);
-    let (across, curve) = ([150.0, 760.0], [56.0, 216.0]);
+    let (loads, curve) = (&LoadAxis::of(scene), [56.0, 216.0]);
     // A motion has no load curve.
     let has_curve = !limits.reference.is_empty();
-    let chart = LimitsChart {
-        limits,
-        loads: &loads,
-        across,
-        curve,
-        has_curve,
-        strips: 44.0 + curve[usize::from(has_curve)],
-        row: ROW,
-        height: 18.0,
-    };
-    let bottom = chart.bottom();
-    let mut drawing = Drawing::default();
-    drawing.page([WIDTH, bottom + 84.0]);
-    let title = Text::new([across[0] - 130.0, 30.0], Anchor::Start, scene.name.as_str());
-    drawing.put(Text { size: 16.0, ..title });
+    let (across, strips) = ([150.0, 760.0], 44.0 + curve[usize::from(has_curve)]);
+    let chart = LimitsChart { limits, loads, across, curve, has_curve, strips, row: 26.0, height: 18.0 };
+    let (bottom, mut drawing) = (chart.bottom(), Drawing::default());
+    drawing.page([1010.0, bottom + 84.0]);
+    drawing.put(Text { size: 16.0, ..Text::new([20.0, 30.0], Anchor::Start, scene.name.as_str()) });
     chart.grid(&mut drawing);
     // The scene's own load.
     if limits.contains(1.0) {
@@ -106,9 +93,7 @@ impl LimitsChart<'_> {
             let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
             drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Rating::NotConverged.entry(false).0, dashes);
         }
-        if let Some(up) = self.up() {
-            self.draw_curve(drawing, [axis, up], render);
-        }
+        self.draw_curve(drawing, render);
         for (row, strip) in self.limits.strips.iter().enumerate() {
             let y = self.strips + self.row * row as f64;
             let base = y + 0.5 * self.height + 5.0;
@@ -131,19 +116,18 @@ impl LimitsChart<'_> {
                     hatch(drawing, [from, to], [y, y + self.height], HATCH);
                 }
             }
-            let end = if is_complete {
-                strip.end(self.loads, range)
-            } else {
-                Some(sentence!("%{done} solved", done = format!("{:.0} %", 100.0 * strip.done)))
-            };
+            let done = || Some(sentence!("%{done} solved", done = format!("{:.0} %", 100.0 * strip.done)));
+            let end = if is_complete { strip.end(self.loads, range) } else { done() };
             let end = end.map_or_else(String::new, |end| render(&end));
             drawing.text([right + 12.0, base], Anchor::Start, &end);
         }
     }
 
     /// Draws the length of the reference displacement over the load.
-    fn draw_curve(&self, drawing: &mut dyn DrawTarget, [axis, up]: [ChartAxis; 2], render: Render<'_>) {
-        let ([left, right], [top, _]) = (self.across, self.curve);
+    fn draw_curve(&self, drawing: &mut dyn DrawTarget, render: Render<'_>) {
+        let (axis, Some(up), [left, right], [top, _]) = (self.axis(), self.up(), self.across, self.curve) else {
+            return;
+        };
         for (y, length) in up.ticks() {
             drawing.line(&[[left, y], [right, y]], Ink::Grid, solid(1.0));
             drawing.text([left - 12.0, y + 4.0], Anchor::End, &engineering(length, "m"));

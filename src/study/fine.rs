@@ -176,14 +176,12 @@ fn on_fine_meshes(
         let next = 4 * unknowns;
         let next_fits =
             next <= extent.pick(MAX_UNKNOWNS) && work + MIN_SOLVES_LEFT * next as f64 <= extent.pick(MAX_WORK);
-        let carried = if fine_enough || !next_fits { None } else { Some(meshes.refine(simulation.displacement())) };
+        let carried = (!fine_enough && next_fits).then(|| meshes.refine(simulation.displacement()));
         if converged {
             finest = Some(simulation);
         }
-        match carried {
-            Some(carried) => start = converged.then_some(carried),
-            None => break,
-        }
+        let Some(carried) = carried else { break };
+        start = converged.then_some(carried);
     }
     let simulation = finest.ok_or(StudyError::NoReference)?;
     // A state with inverted elements is not a solution of the continuous problem.
